@@ -1,0 +1,36 @@
+# Compile options every target of ours shares; nothing is set globally.
+add_library(slideway_options INTERFACE)
+target_compile_options(slideway_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+                       -Wno-sign-conversion -Wno-missing-field-initializers -ffp-contract=off)
+if(SLIDEWAY_SANITIZE)
+  target_compile_options(slideway_options INTERFACE -fsanitize=${SLIDEWAY_SANITIZE}
+                         -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(slideway_options INTERFACE -fsanitize=${SLIDEWAY_SANITIZE})
+endif()
+
+# slideway_room(name SOURCES a.cpp ... DEPENDS slideway::x ... PRIVATE_DEPENDS lib ...)
+# One room of the house: sources in src/<name>, public headers in include/slideway/<name>. The
+# link line is the layer arrow.
+function(slideway_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  add_library(slideway_${name} STATIC ${ROOM_SOURCES})
+  add_library(slideway::${name} ALIAS slideway_${name})
+  target_include_directories(slideway_${name} PUBLIC
+                             $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
+  target_link_libraries(slideway_${name} PUBLIC ${ROOM_DEPENDS} PRIVATE slideway_options
+                        ${ROOM_PRIVATE_DEPENDS})
+endfunction()
+
+# slideway_test(room SOURCES a_test.cpp ... DEPENDS lib ...)
+# One GoogleTest program per room, its cases registered as <room>/<Suite>.<Case>.
+function(slideway_test room)
+  cmake_parse_arguments(TEST "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_executable(${room}_test ${TEST_SOURCES})
+  target_include_directories(${room}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${room}_test PRIVATE slideway::${room} slideway_options ${TEST_DEPENDS}
+                        GTest::gmock_main)
+  target_compile_definitions(${room}_test PRIVATE
+    SLIDEWAY_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(${room}_test TEST_PREFIX ${room}/ DISCOVERY_TIMEOUT 60
+                       PROPERTIES TIMEOUT 600)
+endfunction()
