@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Text and numbers, the same in every locale.
+namespace slideway {
+
+/// The number a whole field spells, correctly rounded; blanks around it and a leading '+' are
+/// allowed. Nothing if the field is empty, spells anything else, or lies outside the range of
+/// double. "nan" and "inf" are numbers here.
+std::optional<double> parse_double(std::string_view field);
+
+/// Shortest text that reads back as the same double, with '.' as decimal point.
+std::string shortest(double value);
+
+/// `value` with `digits` significant digits, as printf's %.*g.
+std::string significant(double value, int digits);
+
+std::string_view trimmed(std::string_view text);
+
+/// "a, b, c"
+std::string joined(std::span<const std::string> words, std::string_view separator = ", ");
+
+/// Foreign text fit for a one-line message: its first `limit` characters, "..." if that cut it,
+/// and '?' for control characters and for bytes that are no UTF-8.
+std::string printable(std::string_view text, std::size_t limit = 24);
+
+/// " (did you mean 'squareness'?)" for the accepted word nearest to a mistyped one, or "" if none
+/// is near (edit distance above a third of the word's length, capital letters aside).
+std::string did_you_mean(std::string_view word, std::span<const std::string> accepted);
+
+}  // namespace slideway

@@ -1,0 +1,164 @@
+#include "slideway/base/file.hpp"
+
+#include <fcntl.h>
+#include <openssl/evp.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "slideway/base/error.hpp"
+
+namespace slideway {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string cause(int error) { return std::generic_category().message(error); }
+
+// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  [[nodiscard]] int number() const { return number_; }
+  // 0, or what went wrong (a full disk may tell only here).
+  int close() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0 ? 0 : errno; }
+
+ private:
+  int number_;
+};
+
+std::string read_all(int file, const fs::path& path) {
+  std::string bytes;
+  std::array<char, 65536> chunk;
+  for (;;) {
+    const ssize_t count = ::read(file, chunk.data(), chunk.size());
+    if (count > 0)
+      bytes.append(chunk.data(), static_cast<std::size_t>(count));
+    else if (count == 0)
+      return bytes;
+    else if (errno != EINTR)
+      throw DataError(path.string() + ": can not be read: " + cause(errno));
+  }
+}
+
+// 0, or what went wrong.
+int write_all(Descriptor& file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(file.number(), bytes.data(), bytes.size());
+    if (count >= 0)
+      bytes.remove_prefix(static_cast<std::size_t>(count));
+    else if (errno != EINTR)
+      return errno;
+  }
+  return file.close();
+}
+
+[[noreturn]] void fail_to_write(const fs::path& path, int error) {
+  throw std::runtime_error(path.string() + ": can not be written: " + cause(error));
+}
+
+// A device, a pipe, or a name for something the process holds open: /dev/stdout may end at a
+// regular file, which a rename would cut off from its other writers.
+bool is_stream(const fs::path& path, const struct stat& status) {
+  if (!S_ISREG(status.st_mode)) return true;
+  const std::string whole = fs::absolute(path).lexically_normal().string();
+  return fs::is_symlink(path) && (whole.starts_with("/dev/") || whole.starts_with("/proc/"));
+}
+
+void write_through(const fs::path& path, std::string_view contents) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+  const int error = file.number() < 0 ? errno : write_all(file, contents);
+  if (error != 0) fail_to_write(path, error);
+}
+
+}  // namespace
+
+FileBytes::FileBytes(const fs::path& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat status {};
+  if (file.number() < 0 || ::fstat(file.number(), &status) != 0)
+    throw DataError(path.string() + ": can not be read: " + cause(errno));
+  if (S_ISDIR(status.st_mode)) throw DataError(path.string() + ": is a directory, expected a file");
+  if (S_ISREG(status.st_mode) && status.st_size > 0) {
+    size_ = static_cast<std::size_t>(status.st_size);
+    void* const memory = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.number(), 0);
+    if (memory != MAP_FAILED) {
+      ::madvise(memory, size_, MADV_SEQUENTIAL);
+      data_ = static_cast<const char*>(memory);
+      mapped_ = true;
+      return;
+    }
+  }
+  owned_ = read_all(file.number(), path);
+  data_ = owned_.data();
+  size_ = owned_.size();
+}
+
+FileBytes::~FileBytes() {
+  if (mapped_) ::munmap(const_cast<char*>(data_), size_);
+}
+
+FileBytes::FileBytes(FileBytes&& other) noexcept { *this = std::move(other); }
+
+FileBytes& FileBytes::operator=(FileBytes&& other) noexcept {
+  if (this == &other) return *this;
+  if (mapped_) ::munmap(const_cast<char*>(data_), size_);
+  size_ = std::exchange(other.size_, 0);
+  mapped_ = std::exchange(other.mapped_, false);
+  owned_ = std::move(other.owned_);  // a short string moves with its bytes
+  data_ = std::exchange(other.data_, nullptr);
+  if (!mapped_) data_ = owned_.data();
+  return *this;
+}
+
+std::string sha256(std::string_view bytes) {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned size = 0;
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
+    throw std::runtime_error("SHA-256 is not available in this OpenSSL");
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string text;
+  for (unsigned i = 0; i < size; ++i) {
+    text += kDigits[digest[i] >> 4U];
+    text += kDigits[digest[i] & 15U];
+  }
+  return text;
+}
+
+void write_file(const fs::path& path, std::string_view contents) {
+  struct stat status {};
+  const bool exists = ::stat(path.c_str(), &status) == 0;
+  if (exists && S_ISDIR(status.st_mode)) fail_to_write(path, EISDIR);
+  if (exists && is_stream(path, status)) return write_through(path, contents);
+
+  const fs::path target = exists ? fs::canonical(path) : path;  // a link stays a link
+  const std::string stem = ".slideway." + std::to_string(::getpid()) + ".";
+  fs::path temporary;
+  int number = -1;
+  for (int attempt = 0; attempt < 100 && number < 0; ++attempt) {
+    temporary = target.parent_path() / (stem + std::to_string(attempt) + ".tmp");
+    number = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (number < 0 && errno != EEXIST) fail_to_write(path, errno);
+  }
+  if (number < 0) fail_to_write(path, EEXIST);
+
+  Descriptor file(number);
+  if (exists) ::fchmod(number, status.st_mode & 07777U);
+  int error = write_all(file, contents);
+  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
+  if (error == 0) return;
+  ::unlink(temporary.c_str());
+  fail_to_write(path, error);
+}
+
+}  // namespace slideway

@@ -1,0 +1,132 @@
+#include "slideway/base/file.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "base/temporary_folder.hpp"
+#include "slideway/base/error.hpp"
+
+namespace slideway {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::string contents_of(const fs::path& path) {
+  std::ostringstream contents;
+  contents << std::ifstream(path, std::ios::binary).rdbuf();
+  return contents.str();
+}
+
+std::size_t entries(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), {}));
+}
+
+TEST(Sha256, AgreesWithFips180Examples) {
+  // FIPS 180-2 appendix B.1 to B.3, and the empty message of NIST's CAVP vectors.
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256(std::string(1000000, 'a')),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST(FileBytes, GivesEveryByteOfAFile) {
+  const TemporaryFolder folder;
+  const std::string bytes("a\0b\r\n\xff", 6);
+  EXPECT_EQ(FileBytes(folder.file("a", bytes)).text(), bytes);
+  EXPECT_EQ(FileBytes(folder.file("empty", "")).text(), "");
+}
+
+TEST(FileBytes, ReadsAPipe) {
+  const TemporaryFolder folder;
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const std::string bytes(200000, 'x');
+  std::thread writer([&] { std::ofstream(pipe, std::ios::binary) << bytes; });
+  const FileBytes read(pipe);
+  writer.join();
+  EXPECT_EQ(read.text(), bytes);
+}
+
+TEST(FileBytes, KeepsItsBytesWhenMoved) {
+  const TemporaryFolder folder;
+  FileBytes mapped(folder.file("a", "mapped"));
+  FileBytes moved(std::move(mapped));
+  EXPECT_EQ(moved.text(), "mapped");
+  // Files of /proc have no size and are read; this one is short enough for a string's own buffer.
+  FileBytes owned("/proc/sys/kernel/ostype");
+  EXPECT_EQ(FileBytes(std::move(owned)).text(), "Linux\n");
+  moved = FileBytes("/proc/sys/kernel/ostype");
+  EXPECT_EQ(moved.text(), "Linux\n");
+}
+
+TEST(FileBytes, NamesWhatItCanNotRead) {
+  const TemporaryFolder folder;
+  const std::string missing = (folder.path() / "none.csv").string();
+  EXPECT_THAT([&] { FileBytes{missing}; },
+              ThrowsMessage<DataError>(missing + ": can not be read: No such file or directory"));
+  EXPECT_THAT(
+      [&] { FileBytes{folder.path()}; },
+      ThrowsMessage<DataError>(folder.path().string() + ": is a directory, expected a file"));
+}
+
+TEST(WriteFile, MakesAndReplacesAWholeFile) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "out.json";
+  write_file(path, "first, and longer");
+  write_file(path, "second");
+  EXPECT_EQ(contents_of(path), "second");
+  EXPECT_EQ(entries(folder.path()), 1U);
+}
+
+TEST(WriteFile, KeepsPermissionsAndLinks) {
+  const TemporaryFolder folder;
+  const fs::path target = folder.file("target", "old");
+  const fs::path link = folder.path() / "link";
+  fs::permissions(target, fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("target", link);
+  write_file(link, "new");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(contents_of(target), "new");
+  EXPECT_EQ(fs::status(target).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(WriteFile, WritesStraightIntoDevicesAndPipes) {
+  const TemporaryFolder folder;
+  EXPECT_NO_THROW(write_file("/dev/null", "gone"));
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::thread writer([&] { write_file(pipe, "through"); });
+  EXPECT_EQ(contents_of(pipe), "through");
+  writer.join();
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST(WriteFile, LeavesNothingBehindWhenItFails) {
+  const TemporaryFolder folder;
+  const std::string nowhere = (folder.path() / "none" / "out.json").string();
+  EXPECT_THAT([&] { write_file(nowhere, "x"); },
+              ThrowsMessage<std::runtime_error>(nowhere +
+                                                ": can not be written: No such file or directory"));
+  EXPECT_THAT([&] { write_file(folder.path(), "x"); },
+              ThrowsMessage<std::runtime_error>(
+                  AllOf(HasSubstr(folder.path().string()), HasSubstr("Is a directory"))));
+  EXPECT_THAT(
+      [] { write_file("/dev/full", "x"); },
+      ThrowsMessage<std::runtime_error>("/dev/full: can not be written: No space left on device"));
+  EXPECT_EQ(entries(folder.path()), 0U);
+}
+
+}  // namespace
+}  // namespace slideway
