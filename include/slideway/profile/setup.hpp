@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "slideway/base/units.hpp"
+#include "slideway/machine/machine.hpp"
+
+namespace slideway {
+
+enum class Kind {
+  face,  // a face-turned surface
+  slide  // a reading taken along the slide itself
+};
+enum class Quantity { height, slope };
+enum class CutDirection { inward, outward };
+
+/// How one profile was cut and measured. Lengths mm, times s.
+struct Setup {
+  Kind kind = Kind::face;
+  Quantity quantity = Quantity::height;
+  std::optional<double>
+      base_mm;             // slope over a base: foot spacing; the position is the base's centre
+  double center_mm = 0.0;  // where the spindle axis lies in the trace
+  double spindle_position_mm = 0.0;
+  double z_mm = 0.0;
+  double overhang_mm = 0.0;
+  std::optional<double> feed_mm_per_min;
+  std::optional<double> spindle_rpm;
+  std::optional<CutDirection> cut_direction;
+  std::optional<double>
+      cut_radius_mm;  // of a face; set to the largest r of the trace when left out
+  double start_s = 0.0;
+  std::optional<double> traverse_mm_per_s;
+  double first_mm = 0.0;  // smallest and largest trace position
+  double last_mm = 0.0;
+};
+
+/// What an effect is locked to (one clock per kind of cause).
+enum class Clock { radius, slide, time, revolution, distance, trace, measuring_time };
+
+/// One letter, as the literature of the project has it: r x t k s X m.
+std::string_view symbol(Clock clock);
+
+/// Keys of the problem file a profile lacks before that clock can be told, e.g.
+/// {"feed_mm_per_min", "cut_direction"}; empty if the clock is known.
+std::vector<std::string> missing_for(Clock clock, const Setup& setup);
+
+/// The samples of a profile (or a part of them) with their clocks.
+///
+/// A view: positions and setup must outlive it.
+class Stations {
+ public:
+  Stations(std::span<const double> positions, const Setup& setup, const Machine& machine)
+      : positions_(positions), setup_(&setup), machine_(&machine) {}
+
+  [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(positions_.size()); }
+  [[nodiscard]] const Setup& setup() const { return *setup_; }
+  [[nodiscard]] const Machine& machine() const { return *machine_; }
+  [[nodiscard]] std::span<const double> positions() const { return positions_; }
+
+  /// X, position in the trace from the spindle axis (face) or from its origin (slide), mm.
+  [[nodiscard]] double trace(Eigen::Index i) const {
+    return setup_->kind == Kind::face ? positions_[i] - setup_->center_mm : positions_[i];
+  }
+  /// r = |s - center_mm| of a face; the slide coordinate of a slide reading; mm.
+  [[nodiscard]] double radius(Eigen::Index i) const {
+    return setup_->kind == Kind::face ? std::abs(trace(i)) : positions_[i];
+  }
+  /// x, slide coordinate: spindle_position_mm + r of a face; the position of a slide reading; mm.
+  [[nodiscard]] double slide(Eigen::Index i) const {
+    return setup_->kind == Kind::face ? setup_->spindle_position_mm + radius(i) : positions_[i];
+  }
+  /// t, machining time, s. REQUIRES missing_for(Clock::time, setup) empty.
+  [[nodiscard]] double time(Eigen::Index i) const;
+  /// k = t rpm / 60, revolutions. REQUIRES Clock::revolution known.
+  [[nodiscard]] double revolution(Eigen::Index i) const {
+    return time(i) * *setup_->spindle_rpm / kMinute;
+  }
+  /// s, cutting distance along the spiral, mm: π (R² - r²) / f inward, π r² / f outward, with the
+  /// feed per revolution f. REQUIRES Clock::distance known.
+  [[nodiscard]] double distance(Eigen::Index i) const;
+  /// m = (X - first) / traverse, s: time on the instrument. REQUIRES Clock::measuring_time known.
+  [[nodiscard]] double measuring_time(Eigen::Index i) const {
+    return (positions_[i] - setup_->first_mm) / *setup_->traverse_mm_per_s;
+  }
+
+ private:
+  std::span<const double> positions_;
+  const Setup* setup_;
+  const Machine* machine_;
+};
+
+}  // namespace slideway

@@ -1,0 +1,58 @@
+#include "slideway/profile/setup.hpp"
+
+namespace slideway {
+
+std::string_view symbol(Clock clock) {
+  switch (clock) {
+    case Clock::radius:
+      return "r";
+    case Clock::slide:
+      return "x";
+    case Clock::time:
+      return "t";
+    case Clock::revolution:
+      return "k";
+    case Clock::distance:
+      return "s";
+    case Clock::trace:
+      return "X";
+    case Clock::measuring_time:
+      return "m";
+  }
+  return "";
+}
+
+std::vector<std::string> missing_for(Clock clock, const Setup& setup) {
+  std::vector<std::string> missing;
+  const bool turning = clock == Clock::revolution || clock == Clock::distance;
+  if ((clock == Clock::radius || clock == Clock::distance) && setup.kind != Kind::face)
+    missing.emplace_back("kind = \"face\"");
+  if (turning || clock == Clock::time) {
+    if (!setup.feed_mm_per_min) missing.emplace_back("feed_mm_per_min");
+    if (!setup.cut_direction) missing.emplace_back("cut_direction");
+  }
+  if (turning && !setup.spindle_rpm) missing.emplace_back("spindle_rpm");
+  if (clock == Clock::measuring_time && !setup.traverse_mm_per_s)
+    missing.emplace_back("traverse_mm_per_s");
+  return missing;
+}
+
+double Stations::time(Eigen::Index i) const {
+  const bool inward = setup_->cut_direction == CutDirection::inward;
+  double path = 0.0;  // what the tool has travelled since the cut started
+  if (setup_->kind == Kind::face)
+    path = inward ? *setup_->cut_radius_mm - radius(i) : radius(i);
+  else
+    path = inward ? setup_->last_mm - positions_[i] : positions_[i] - setup_->first_mm;
+  return setup_->start_s + path / *setup_->feed_mm_per_min * kMinute;
+}
+
+double Stations::distance(Eigen::Index i) const {
+  const double r = radius(i);
+  const double feed_per_revolution = *setup_->feed_mm_per_min / *setup_->spindle_rpm;
+  if (setup_->cut_direction == CutDirection::outward) return kPi * r * r / feed_per_revolution;
+  const double outer = *setup_->cut_radius_mm;
+  return kPi * (outer - r) * (outer + r) / feed_per_revolution;
+}
+
+}  // namespace slideway

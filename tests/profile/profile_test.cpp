@@ -1,0 +1,121 @@
+#include "slideway/profile/profile.hpp"
+
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "base/temporary_folder.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/file.hpp"
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::StartsWith;
+using testing::ThrowsMessage;
+
+class ReadProfile : public testing::Test {
+ protected:
+  // Reads text as columns 1 and 2 of a file, heights in um.
+  const Profile& read(const std::string& text) {
+    source_.path = folder_.file("face.csv", text);
+    source_.value_unit = length_unit("um").value();
+    profile_.name = "face";
+    read_profile(source_, profile_);
+    return profile_;
+  }
+  std::string file() { return (folder_.path() / "face.csv").string(); }
+
+  TemporaryFolder folder_;
+  ProfileSource source_;
+  Profile profile_;
+};
+
+TEST_F(ReadProfile, ConvertsToMillimetresAndCompletesTheSetup) {
+  profile_.setup.center_mm = 4.0;
+  const std::string text = "x_mm,z_um\n0,1\n2,-0.3\n10,2\n";
+  read(text);
+  EXPECT_THAT(profile_.positions, ElementsAre(0.0, 2.0, 10.0));
+  EXPECT_THAT(profile_.values, ElementsAre(0.001, -0.0003, 0.002));
+  EXPECT_EQ(profile_.sha256, sha256(text));
+  EXPECT_EQ(profile_.setup.first_mm, 0.0);
+  EXPECT_EQ(profile_.setup.last_mm, 10.0);
+  EXPECT_EQ(profile_.setup.cut_radius_mm, 6.0);
+  EXPECT_THAT(profile_.notes, IsEmpty());
+}
+
+TEST_F(ReadProfile, GivesTheSamePositionsFromMillimetresAndMicrometres) {
+  // mm text is rounded once, um text is rounded and then divided: within 1 ulp of one another.
+  std::string in_mm, in_um;
+  for (int i = 0; i < 2000; ++i) {
+    const std::string half = std::to_string(i * 5);  // 0.5 um steps, in tenths of a micrometre
+    in_um += half + "e-1,0\n";
+    in_mm += half + "e-4,0\n";
+  }
+  const std::vector<double> mm = read(in_mm).positions;
+  source_.position_unit = length_unit("um").value();
+  const std::vector<double> um = read(in_um).positions;
+  ASSERT_EQ(mm.size(), um.size());
+  for (std::size_t i = 0; i < mm.size(); ++i)
+    EXPECT_LE(std::abs(mm[i] - um[i]), std::nextafter(mm[i], 11.0) - mm[i]);
+}
+
+TEST_F(ReadProfile, TurnsTimeIntoPositionByTheFeed) {
+  source_.position_is_time = true;
+  EXPECT_THAT([&] { read("0,0\n30,1\n"); },
+              ThrowsMessage<UsageError>(StartsWith("profile 'face': positions in time need feed")));
+  profile_.setup.feed_mm_per_min = 2.0;
+  EXPECT_THAT(read("0,0\n30,1\n").positions, ElementsAre(0.0, 1.0));
+}
+
+TEST_F(ReadProfile, KeepsTheWindowWithItsEnds) {
+  source_.window = {1.0, 3.0};
+  EXPECT_THAT(read("0,0\n1,1\n2,2\n3,3\n4,4\n").positions, ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_EQ(profile_.setup.cut_radius_mm, 3.0);
+}
+
+TEST_F(ReadProfile, ReversesATraceThatRunsBackwards) {
+  read("3,30\n2,20\n-1,10\n");
+  EXPECT_THAT(profile_.positions, ElementsAre(-1.0, 2.0, 3.0));
+  EXPECT_THAT(profile_.values, ElementsAre(0.010, 0.020, 0.030));
+  EXPECT_THAT(profile_.notes, ElementsAre("trace runs backwards in the file: reversed"));
+}
+
+TEST_F(ReadProfile, RefusesPositionsOutOfOrder) {
+  const std::string rule = "; positions must strictly increase (or strictly decrease)";
+  EXPECT_THAT([&] { read("x,z\n0,0\n1,0\n0.5,0\n"); },
+              ThrowsMessage<DataError>(file() + ": row 3: position 0.5 follows 1" + rule));
+  EXPECT_THAT([&] { read("0,0\n0.5,0\n0.5,0\n"); },
+              ThrowsMessage<DataError>(file() + ": row 3: position 0.5 follows 0.5" + rule));
+  EXPECT_THAT([&] { read("0,0\n0,0\n1,0\n"); },
+              ThrowsMessage<DataError>(file() + ": row 2: position 0 follows 0" + rule));
+  EXPECT_THAT([&] { read("3,0\n2,0\n2.5,0\n"); },
+              ThrowsMessage<DataError>(file() + ": row 3: position 2.5 follows 2" + rule));
+}
+
+TEST_F(ReadProfile, RefusesFewerThanTwoSamples) {
+  EXPECT_THAT([&] { read("0,0\n"); },
+              ThrowsMessage<DataError>(file() + ": 1 sample, at least 2 are needed"));
+  source_.window = {5.0, 6.5};
+  EXPECT_THAT([&] { read("0,0\n1,1\n"); },
+              ThrowsMessage<DataError>(
+                  file() + ": no sample in the window [5, 6.5], at least 2 are needed"));
+}
+
+TEST_F(ReadProfile, RefusesATraceThatReachesBeyondTheCut) {
+  profile_.setup.cut_radius_mm = 9.0;
+  EXPECT_THAT([&] { read("0,0\n10,1\n"); },
+              ThrowsMessage<UsageError>(
+                  StartsWith("profile 'face': cut_radius_mm = 9 but the trace reaches r = 10; ")));
+  profile_.setup.cut_radius_mm = 10.0 * (1.0 - 1e-12);  // rounding of a unit is no contradiction
+  EXPECT_NO_THROW(read("0,0\n10,1\n"));
+  profile_.setup.kind = Kind::slide;
+  profile_.setup.cut_radius_mm = 9.0;
+  EXPECT_NO_THROW(read("0,0\n10,1\n"));
+}
+
+}  // namespace
+}  // namespace slideway

@@ -1,0 +1,123 @@
+#include "slideway/profile/setup.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace slideway {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr Clock kClocks[] = {Clock::radius,   Clock::slide, Clock::time,          Clock::revolution,
+                             Clock::distance, Clock::trace, Clock::measuring_time};
+
+// The paper's face: radius 10 mm at 110 rpm.
+Setup face(double feed, CutDirection direction) {
+  Setup setup;
+  setup.feed_mm_per_min = feed;
+  setup.spindle_rpm = 110.0;
+  setup.cut_direction = direction;
+  setup.cut_radius_mm = 10.0;
+  setup.traverse_mm_per_s = 0.5;
+  setup.last_mm = 10.0;
+  return setup;
+}
+
+class Clocks : public testing::Test {
+ protected:
+  Machine machine_{Machine::paper_lathe(), Lever::paper};
+  std::vector<double> positions_{0.0, 6.0, 10.0};
+};
+
+TEST(Clock, HasOneLetter) {
+  std::string letters;
+  for (const Clock clock : kClocks) letters += symbol(clock);
+  EXPECT_EQ(letters, "rxtksXm");
+}
+
+TEST_F(Clocks, WholeCutTakesTheTimeTurnsAndPathOfTheFeed) {
+  // Time R / feed, turns R / f, path pi R^2 / f with f = feed / rpm: 300 s, 550 turns, 17.28 m at
+  // 2 mm/min; 75 s, 137.5 turns, 4.32 m at 8 mm/min. 5 mm: the path is rounded to 10 mm.
+  for (const auto& [feed, time, turns, path] :
+       {std::array{2.0, 300.0, 550.0, 17280.0}, std::array{8.0, 75.0, 137.5, 4320.0}}) {
+    const auto outward = face(feed, CutDirection::outward);
+    const auto inward = face(feed, CutDirection::inward);
+    const Stations out(positions_, outward, machine_);
+    const Stations in(positions_, inward, machine_);
+    for (const auto& [stations, start, end] : {std::tuple{&out, 0, 2}, std::tuple{&in, 2, 0}}) {
+      EXPECT_EQ(stations->time(start), 0.0);
+      EXPECT_EQ(stations->distance(start), 0.0);
+      EXPECT_DOUBLE_EQ(stations->time(end), time);
+      EXPECT_DOUBLE_EQ(stations->revolution(end), turns);
+      EXPECT_NEAR(stations->distance(end), path, 5.0);
+    }
+  }
+}
+
+TEST_F(Clocks, InwardAndOutwardPathsAddUpToTheWholeFace) {
+  const auto outward = face(2.0, CutDirection::outward);
+  const auto inward = face(2.0, CutDirection::inward);
+  const Stations out(positions_, outward, machine_);
+  const Stations in(positions_, inward, machine_);
+  EXPECT_DOUBLE_EQ(out.distance(1) + in.distance(1), out.distance(2));
+  EXPECT_DOUBLE_EQ(out.distance(1) / out.distance(2), 0.36);  // (6 / 10)^2
+}
+
+TEST_F(Clocks, FaceTakesBothSidesOfADiameterAlike) {
+  auto setup = face(2.0, CutDirection::inward);
+  setup.center_mm = 8.0;
+  setup.spindle_position_mm = 100.0;
+  setup.start_s = 20.0;
+  const Stations stations(positions_, setup, machine_);
+  EXPECT_EQ(stations.trace(1), -2.0);
+  EXPECT_EQ(stations.trace(2), 2.0);
+  EXPECT_EQ(stations.radius(1), stations.radius(2));
+  EXPECT_EQ(stations.slide(1), 102.0);
+  EXPECT_EQ(stations.time(1), stations.time(2));
+  EXPECT_DOUBLE_EQ(stations.time(0), 20.0 + 60.0);  // 2 mm at 2 mm/min after the start
+  EXPECT_EQ(stations.measuring_time(2), 20.0);
+}
+
+TEST_F(Clocks, SlideReadingRunsFromEitherEnd) {
+  auto setup = face(30.0, CutDirection::outward);
+  setup.kind = Kind::slide;
+  const Stations stations(positions_, setup, machine_);
+  EXPECT_DOUBLE_EQ(stations.time(1), 12.0);
+  EXPECT_EQ(stations.slide(1), 6.0);
+  setup.cut_direction = CutDirection::inward;
+  EXPECT_DOUBLE_EQ(stations.time(1), 8.0);
+}
+
+TEST(MissingFor, NamesTheKeysThatWouldMakeAClockKnown) {
+  const slideway::Setup bare;
+  EXPECT_THAT(missing_for(Clock::radius, bare), IsEmpty());
+  EXPECT_THAT(missing_for(Clock::slide, bare), IsEmpty());
+  EXPECT_THAT(missing_for(Clock::trace, bare), IsEmpty());
+  EXPECT_THAT(missing_for(Clock::time, bare), ElementsAre("feed_mm_per_min", "cut_direction"));
+  EXPECT_THAT(missing_for(Clock::revolution, bare),
+              ElementsAre("feed_mm_per_min", "cut_direction", "spindle_rpm"));
+  EXPECT_THAT(missing_for(Clock::distance, bare),
+              ElementsAre("feed_mm_per_min", "cut_direction", "spindle_rpm"));
+  EXPECT_THAT(missing_for(Clock::measuring_time, bare), ElementsAre("traverse_mm_per_s"));
+}
+
+TEST(MissingFor, FindsNothingInACompleteSetup) {
+  const auto setup = face(2.0, CutDirection::inward);
+  for (const Clock clock : kClocks) EXPECT_THAT(missing_for(clock, setup), IsEmpty());
+}
+
+TEST(MissingFor, AsksForAFaceWhereOnlyAFaceHasTheClock) {
+  auto setup = face(2.0, CutDirection::inward);
+  setup.kind = Kind::slide;
+  EXPECT_THAT(missing_for(Clock::radius, setup), ElementsAre("kind = \"face\""));
+  EXPECT_THAT(missing_for(Clock::distance, setup), ElementsAre("kind = \"face\""));
+  EXPECT_THAT(missing_for(Clock::revolution, setup), IsEmpty());
+}
+
+}  // namespace
+}  // namespace slideway
