@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace slideway {
+
+/// Stationary AR(p) noise, e_t = Σ_j φ_j e_(t-j) + u_t, given by its partial autocorrelations
+/// (each in (-1, 1): stationary by construction; Durbin-Levinson recursion).
+class Autoregression {
+ public:
+  explicit Autoregression(std::vector<double> partial_autocorrelations = {});
+
+  [[nodiscard]] int order() const { return static_cast<int>(partial_.size()); }
+  [[nodiscard]] const std::vector<double>& partial_autocorrelations() const { return partial_; }
+
+  /// φ of the predictor of order m from the m samples before, m <= order().
+  [[nodiscard]] std::span<const double> predictor(int m) const;
+
+  /// Variance of the prediction error of order m over that of order p: 1 for m = p.
+  [[nodiscard]] double relative_variance(int m) const;
+
+  /// Var(e_t) / Var(u_t).
+  [[nodiscard]] double variance_ratio() const { return relative_variance(0); }
+
+  /// Autocorrelation ρ_0 ... ρ_max_lag.
+  [[nodiscard]] std::vector<double> autocorrelation(int max_lag) const;
+
+  /// Σ over all lags of ρ: a mean of n samples has variance Var(e) / n times this.
+  [[nodiscard]] double long_run_ratio() const;
+
+  /// Rows made independent with the variance of u: row t minus its prediction from the rows before,
+  /// divided by sqrt(relative_variance). In place; exact for the first rows too.
+  void whiten(Eigen::Ref<Eigen::MatrixXd> rows) const;
+
+  /// The transposed inverse of whiten(): columns X become Z with Z'Z = X' R X, where R is the
+  /// covariance of the noise with unit innovations. In place.
+  void colour_transposed(Eigen::Ref<Eigen::MatrixXd> rows) const;
+
+  /// ln det of the correlation structure: Σ_t ln(relative_variance) over n rows.
+  [[nodiscard]] double log_determinant(Eigen::Index n) const;
+
+  /// Partial autocorrelations of a series about zero up to order p (Burg's method; a mean is not
+  /// removed); each clipped to ±0.995.
+  static std::vector<double> burg(std::span<const double> series, int p);
+
+ private:
+  std::vector<double> partial_;
+  std::vector<std::vector<double>> predictors_;  // [m] has m entries
+  std::vector<double> relative_variance_;        // [m]
+};
+
+/// Ljung-Box p-value of a series for whiteness over `lags` lags, `fitted` parameters subtracted.
+double ljung_box_p_value(std::span<const double> series, int lags, int fitted);
+
+}  // namespace slideway

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace slideway {
+
+/// Pearson's coefficient, Eq. (6). Nothing correlates with a constant: then 0.
+/// REQUIRES x.size() == y.size().
+double pearson(std::span<const double> x, std::span<const double> y);
+
+/// The coefficient over the first n samples as n grows (Figs. 8, 9), at `points` values of n spread
+/// evenly up to N. REQUIRES x.size() == y.size().
+struct RunningCoefficient {
+  std::vector<std::size_t> samples;
+  std::vector<double> coefficient;
+};
+RunningCoefficient running_pearson(std::span<const double> x, std::span<const double> y,
+                                   std::size_t points);
+
+/// Lag (in samples, positive if y comes later than x) within ±max_lag at which |Pearson| over the
+/// overlap is largest, and that coefficient. The smaller |lag| wins a tie.
+struct Lag {
+  int lag = 0;
+  double coefficient = 0.0;
+};
+Lag best_lag(std::span<const double> x, std::span<const double> y, int max_lag);
+
+/// Autocorrelation r_0 = 1, r_1 ... r_max_lag of a series (biased estimator, mean removed).
+std::vector<double> autocorrelation(std::span<const double> x, int max_lag);
+
+/// Number of independent observations the correlation of x and y rests on,
+///   N / (1 + 2 Σ_k (1 - k/N) r_x(k) r_y(k))   (Bartlett),
+/// the sum cut at the first lag where the product is no longer positive; between 3 and N.
+double effective_observations(std::span<const double> x, std::span<const double> y);
+
+/// Two-sided p-value of a correlation coefficient r on n (effective) observations, Student's t with
+/// n - 2 degrees of freedom.
+double correlation_p_value(double r, double n);
+
+}  // namespace slideway

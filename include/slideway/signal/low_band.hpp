@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "slideway/signal/dwt.hpp"
+
+namespace slideway {
+
+struct LowBandOptions {
+  std::string wavelet = "db1";
+  int level = 5;  // 0: no low band, the raw profile
+  Boundary boundary = Boundary::symmetric;
+};
+
+/// The low band of a profile as a linear operator: samples at given positions -> approximation
+/// coefficients of the last level. Data and the model's columns go through the same operator, so
+/// that neither block averaging nor the way to a uniform grid biases a fit.
+///
+/// Positions that are not uniform (spacing off by more than 1e-3 of the mean step) are first
+/// brought to a uniform grid of as many samples by linear interpolation.
+class LowBand {
+ public:
+  /// @throws DataError  fewer samples than 2^level
+  LowBand(const LowBandOptions& options, std::span<const double> positions);
+
+  [[nodiscard]] Eigen::Index samples() const { return samples_; }
+  [[nodiscard]] Eigen::Index values() const { return values_; }  // approximation coefficients
+  [[nodiscard]] bool resampled() const { return !cell_.empty(); }
+
+  /// #samples -> #values coefficients. Scaled as the orthonormal transform has it: white noise
+  /// keeps its standard deviation, a constant c becomes c * sqrt(2)^level.
+  void apply(std::span<const double> signal, std::span<double> coefficients) const;
+
+  /// apply() on every column.
+  [[nodiscard]] Eigen::MatrixXd apply(const Eigen::MatrixXd& columns) const;
+
+  /// Mean position of each coefficient: what apply() makes of the positions, back in mm.
+  [[nodiscard]] std::vector<double> positions(std::span<const double> sample_positions) const;
+
+  /// a_L at full length (on the uniform grid where there is one).
+  [[nodiscard]] std::vector<double> reconstruct(std::span<const double> coefficients) const;
+
+ private:
+  struct Workspace;
+  void apply(std::span<const double> signal, std::span<double> coefficients,
+             Workspace& workspace) const;
+
+  Wavelet wavelet_;
+  LowBandOptions options_;
+  Eigen::Index samples_ = 0;
+  Eigen::Index values_ = 0;
+  std::vector<Eigen::Index> cell_;  // left neighbour of each grid point; empty on a uniform grid
+  std::vector<double> weight_;      // of the right neighbour
+};
+
+}  // namespace slideway

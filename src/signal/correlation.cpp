@@ -1,0 +1,196 @@
+#include "slideway/signal/correlation.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <bit>
+#include <boost/math/special_functions/beta.hpp>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <unsupported/Eigen/FFT>
+
+namespace slideway {
+namespace {
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+// A spread no larger than the last digits of the values is a constant's.
+bool is_rounding(double squares, double n, double mean) {
+  const double last_digits = 4.0 * kEpsilon * mean;
+  return squares <= n * last_digits * last_digits;
+}
+
+// Sums of squares and products about the means, updated one pair at a time (Welford). Values count
+// from the first one, so that no digits go to a huge mean and a constant has exactly no spread.
+class CoMoments {
+ public:
+  void add(double x, double y) {
+    if (n_ == 0.0) {
+      first_x_ = x;
+      first_y_ = y;
+    }
+    ++n_;
+    const double dx = x - first_x_ - mean_x_;
+    const double dy = y - first_y_ - mean_y_;
+    mean_x_ += dx / n_;
+    mean_y_ += dy / n_;
+    const double share = (n_ - 1.0) / n_;
+    xx_ += share * dx * dx;
+    yy_ += share * dy * dy;
+    xy_ += share * dx * dy;
+  }
+
+  double coefficient() const {
+    if (is_rounding(xx_, n_, first_x_ + mean_x_) || is_rounding(yy_, n_, first_y_ + mean_y_))
+      return 0.0;
+    return std::clamp(xy_ / std::sqrt(xx_) / std::sqrt(yy_), -1.0, 1.0);
+  }
+
+ private:
+  double n_ = 0.0;
+  double first_x_ = 0.0, first_y_ = 0.0;
+  double mean_x_ = 0.0, mean_y_ = 0.0;  // from the first
+  double xx_ = 0.0, yy_ = 0.0, xy_ = 0.0;
+};
+
+// The series about its mean; all zeros for a constant.
+Eigen::VectorXd centred(std::span<const double> x) {
+  if (x.empty()) return {};
+  Eigen::VectorXd d =
+      Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x)).array() - x.front();
+  const double offset = d.mean();
+  d.array() -= offset;
+  if (is_rounding(d.squaredNorm(), static_cast<double>(d.size()), x.front() + offset)) d.setZero();
+  return d;
+}
+
+// Running sums of d and of d^2: [i] is over the first i samples.
+struct RunningSums {
+  explicit RunningSums(const Eigen::VectorXd& d) : sum(d.size() + 1), squares(d.size() + 1) {
+    sum[0] = squares[0] = 0.0;
+    for (Eigen::Index i = 0; i < d.size(); ++i) {
+      sum[i + 1] = sum[i] + d[i];
+      squares[i + 1] = squares[i] + d[i] * d[i];
+    }
+  }
+  Eigen::VectorXd sum, squares;
+};
+
+double lagged_product(const Eigen::VectorXd& d, Eigen::Index lag) {
+  return d.head(d.size() - lag).dot(d.tail(d.size() - lag));
+}
+
+// Σ_t d_t d_(t+k) of two series at once for every k, by the fast Fourier transform: the real part
+// of the result is of x, the imaginary part of y.
+std::vector<std::complex<double>> all_lagged_products(const Eigen::VectorXd& x,
+                                                      const Eigen::VectorXd& y) {
+  const std::size_t size = std::bit_ceil(2 * static_cast<std::size_t>(x.size()));
+  std::vector<std::complex<double>> signal(size);
+  std::vector<std::complex<double>> spectrum(size);
+  for (Eigen::Index t = 0; t < x.size(); ++t) signal[t] = {x[t], y[t]};
+  Eigen::FFT<double> fft;
+  fft.fwd(spectrum, signal);
+  for (std::size_t f = 0; f < size; ++f) {
+    const std::complex<double> mirrored = std::conj(spectrum[(size - f) % size]);
+    signal[f] = {std::norm(spectrum[f] + mirrored) / 4.0, std::norm(spectrum[f] - mirrored) / 4.0};
+  }
+  fft.inv(spectrum, signal);
+  return spectrum;
+}
+
+}  // namespace
+
+double pearson(std::span<const double> x, std::span<const double> y) {
+  const Eigen::VectorXd dx = centred(x);
+  const Eigen::VectorXd dy = centred(y);
+  const double scale = dx.norm() * dy.norm();
+  return scale > 0.0 ? std::clamp(dx.dot(dy) / scale, -1.0, 1.0) : 0.0;
+}
+
+RunningCoefficient running_pearson(std::span<const double> x, std::span<const double> y,
+                                   std::size_t points) {
+  RunningCoefficient running;
+  points = std::min(points, x.size());
+  CoMoments moments;
+  std::size_t done = 0;
+  for (std::size_t k = 1; k <= points; ++k) {
+    for (const std::size_t end = k * x.size() / points; done < end; ++done)
+      moments.add(x[done], y[done]);
+    running.samples.push_back(done);
+    running.coefficient.push_back(moments.coefficient());
+  }
+  return running;
+}
+
+Lag best_lag(std::span<const double> x, std::span<const double> y, int max_lag) {
+  const Eigen::VectorXd dx = centred(x);
+  const Eigen::VectorXd dy = centred(y);
+  const Eigen::Index n = dx.size();
+  const RunningSums x_sums(dx);
+  const RunningSums y_sums(dy);
+  constexpr double kNothing = 1e-12;  // of the whole: cancellation, not variation
+
+  const auto coefficient = [&](Eigen::Index lag) {
+    const Eigen::Index size = n - std::abs(lag);
+    const Eigen::Index from_x = std::max<Eigen::Index>(0, -lag);
+    const Eigen::Index from_y = std::max<Eigen::Index>(0, lag);
+    const double count = static_cast<double>(size);
+    const double sum_x = x_sums.sum[from_x + size] - x_sums.sum[from_x];
+    const double sum_y = y_sums.sum[from_y + size] - y_sums.sum[from_y];
+    const double xx =
+        x_sums.squares[from_x + size] - x_sums.squares[from_x] - sum_x * sum_x / count;
+    const double yy =
+        y_sums.squares[from_y + size] - y_sums.squares[from_y] - sum_y * sum_y / count;
+    if (xx <= kNothing * x_sums.squares[n] || yy <= kNothing * y_sums.squares[n]) return 0.0;
+    const double xy = dx.segment(from_x, size).dot(dy.segment(from_y, size));
+    return std::clamp((xy - sum_x * sum_y / count) / std::sqrt(xx) / std::sqrt(yy), -1.0, 1.0);
+  };
+
+  if (n < 3) return {};
+  Lag best{0, coefficient(0)};
+  for (int lag = 1; lag <= std::min<Eigen::Index>(max_lag, n - 3); ++lag)
+    for (const int signed_lag : {lag, -lag}) {
+      const double r = coefficient(signed_lag);
+      if (std::abs(r) > std::abs(best.coefficient) + kNothing) best = {signed_lag, r};
+    }
+  return best;
+}
+
+std::vector<double> autocorrelation(std::span<const double> x, int max_lag) {
+  const Eigen::VectorXd d = centred(x);
+  std::vector<double> r(static_cast<std::size_t>(max_lag) + 1, 0.0);
+  r[0] = 1.0;
+  const double variance = d.squaredNorm();
+  if (variance > 0.0)
+    for (Eigen::Index k = 1; k <= std::min<Eigen::Index>(max_lag, d.size() - 1); ++k)
+      r[k] = lagged_product(d, k) / variance;
+  return r;
+}
+
+double effective_observations(std::span<const double> x, std::span<const double> y) {
+  const Eigen::VectorXd dx = centred(x);
+  const Eigen::VectorXd dy = centred(y);
+  const double scale = dx.squaredNorm() * dy.squaredNorm();
+  const double n = static_cast<double>(dx.size());
+  constexpr Eigen::Index kDirect = 32;  // few lags are cheaper than a transform
+  std::vector<std::complex<double>> products;
+  double sum = 0.0;
+  for (Eigen::Index k = 1; k < dx.size() && scale > 0.0; ++k) {
+    if (k == kDirect) products = all_lagged_products(dx, dy);
+    const double product = k < kDirect ? lagged_product(dx, k) * lagged_product(dy, k)
+                                       : products[k].real() * products[k].imag();
+    if (product <= 0.0) break;
+    sum += (1.0 - static_cast<double>(k) / n) * product / scale;
+  }
+  return std::clamp(n / (1.0 + 2.0 * sum), std::min(3.0, n), n);
+}
+
+double correlation_p_value(double r, double n) {
+  if (n <= 2.0) return 1.0;
+  // With t^2 = r^2 (n - 2) / (1 - r^2) Student's two tails are an incomplete beta function of
+  // 1 - r^2.
+  const double rest = (1.0 - r) * (1.0 + r);
+  return rest > 0.0 ? boost::math::ibeta(0.5 * (n - 2.0), 0.5, std::min(rest, 1.0)) : 0.0;
+}
+
+}  // namespace slideway

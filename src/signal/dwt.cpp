@@ -1,0 +1,289 @@
+#include "slideway/signal/dwt.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "slideway/base/error.hpp"
+
+namespace slideway {
+namespace {
+
+using Index = std::ptrdiff_t;
+
+Index floor_mod(Index i, Index period) {
+  const Index remainder = i % period;
+  return remainder < 0 ? remainder + period : remainder;
+}
+
+// The signal gone on beyond its ends, for any index.
+class Extension {
+ public:
+  Extension(std::span<const double> signal, Boundary boundary)
+      : x_(signal.data()), n_(std::ssize(signal)), boundary_(boundary) {
+    // What reflects about an end sample or goes on by a slope needs two samples.
+    const bool needs_two = boundary == Boundary::smooth || boundary == Boundary::reflect ||
+                           boundary == Boundary::antireflect;
+    if (n_ == 1 && needs_two) boundary_ = Boundary::constant;
+  }
+
+  double operator()(Index i) const {
+    if (i >= 0 && i < n_) return x_[i];
+    switch (boundary_) {
+      case Boundary::zero:
+        return 0.0;
+      case Boundary::constant:
+        return x_[i < 0 ? 0 : n_ - 1];
+      case Boundary::symmetric:
+        return mirrored(i, 1.0);
+      case Boundary::antisymmetric:
+        return mirrored(i, -1.0);
+      case Boundary::periodic:
+        return x_[floor_mod(i, n_)];
+      case Boundary::periodization:
+        return x_[std::min(floor_mod(i, n_ + n_ % 2), n_ - 1)];
+      case Boundary::smooth:
+        return on_the_slope(i);
+      case Boundary::reflect: {
+        const Index k = floor_mod(i, 2 * n_ - 2);
+        return x_[std::min(k, 2 * n_ - 2 - k)];
+      }
+      case Boundary::antireflect:
+        return turned_about_the_ends(i);
+    }
+    return 0.0;
+  }
+
+ private:
+  double mirrored(Index i, double sign) const {
+    const Index k = floor_mod(i, 2 * n_);
+    return k < n_ ? x_[k] : sign * x_[2 * n_ - 1 - k];
+  }
+
+  double on_the_slope(Index i) const {
+    if (i < 0) return x_[0] - static_cast<double>(i) * (x_[0] - x_[1]);
+    return x_[n_ - 1] + static_cast<double>(i - n_ + 1) * (x_[n_ - 1] - x_[n_ - 2]);
+  }
+
+  double turned_about_the_ends(Index i) const {
+    const Index period = 2 * n_ - 2;
+    const Index k = floor_mod(i, period);
+    const double first = x_[0];
+    const double last = x_[n_ - 1];
+    const double rise = 2.0 * (last - first);
+    return (k < n_ ? x_[k] : 2.0 * last - x_[period - k]) +
+           static_cast<double>((i - k) / period) * rise;
+  }
+
+  const double* x_;
+  Index n_;
+  Boundary boundary_;
+};
+
+// out[o] = Σ_j filter[j] x[2 o + taps - 1 - j]. Taps = 0: their number is known at run time only.
+template <int Taps>
+void convolve(std::span<const double> filter, const double* x, Index count, double* out) {
+  const Index taps = Taps > 0 ? Taps : std::ssize(filter);
+  const double* f = filter.data();
+  for (Index o = 0; o < count; ++o, x += 2) {
+    double sum = 0.0;
+    for (Index j = 0; j < taps; ++j) sum += f[j] * x[taps - 1 - j];
+    out[o] = sum;
+  }
+}
+
+void convolve(std::span<const double> filter, const double* x, Index count, double* out) {
+  switch (filter.size()) {
+    case 2:
+      return convolve<2>(filter, x, count, out);
+    case 4:
+      return convolve<4>(filter, x, count, out);
+    case 6:
+      return convolve<6>(filter, x, count, out);
+    case 8:
+      return convolve<8>(filter, x, count, out);
+    default:
+      return convolve<0>(filter, x, count, out);
+  }
+}
+
+// One filter and the dyadic decimation. The filter's window of output o is x[start + 2 o] onwards;
+// only windows that reach beyond an end ask for the extension.
+void downsample(std::span<const double> filter, Boundary boundary, std::span<const double> signal,
+                std::vector<double>& out) {
+  const Index n = std::ssize(signal);
+  const Index taps = std::ssize(filter);
+  out.resize(dwt_length(signal.size(), static_cast<int>(taps), boundary));
+  const Index count = std::ssize(out);
+  const Index start = (boundary == Boundary::periodization ? taps / 2 : 1) - taps + 1;
+  const Index first_inside = std::min((1 - start) / 2, count);
+  const Index end_inside = std::max(first_inside, (n - taps - start + 2) / 2);
+
+  std::vector<double> window(filter.size());
+  const Extension extended(signal, boundary);
+  const auto at_an_end = [&](Index o) {
+    for (Index k = 0; k < taps; ++k) window[k] = extended(start + 2 * o + k);
+    convolve(filter, window.data(), 1, &out[o]);
+  };
+  for (Index o = 0; o < first_inside; ++o) at_an_end(o);
+  if (end_inside > first_inside)
+    convolve(filter, signal.data() + start + 2 * first_inside, end_inside - first_inside,
+             out.data() + first_inside);
+  for (Index o = end_inside; o < count; ++o) at_an_end(o);
+}
+
+// out[2 i] += Σ_j filter[2 j] c[i - j], out[2 i + 1] += Σ_j filter[2 j + 1] c[i - j].
+template <int Half>
+void add_pairs(std::span<const double> filter, const double* c, Index count, double* out) {
+  const Index half = Half > 0 ? Half : std::ssize(filter) / 2;
+  const double* f = filter.data();
+  for (Index i = 0; i < count; ++i) {
+    double even = 0.0;
+    double odd = 0.0;
+    for (Index j = 0; j < half; ++j) {
+      even += f[2 * j] * c[i - j];
+      odd += f[2 * j + 1] * c[i - j];
+    }
+    out[2 * i] += even;
+    out[2 * i + 1] += odd;
+  }
+}
+
+void add_pairs(std::span<const double> filter, const double* c, Index count, double* out) {
+  switch (filter.size()) {
+    case 2:
+      return add_pairs<1>(filter, c, count, out);
+    case 4:
+      return add_pairs<2>(filter, c, count, out);
+    case 6:
+      return add_pairs<3>(filter, c, count, out);
+    case 8:
+      return add_pairs<4>(filter, c, count, out);
+    default:
+      return add_pairs<0>(filter, c, count, out);
+  }
+}
+
+// Adds the dyadic upsampling of c, filtered: with u = m + shift, i = floor(u / 2), p = u mod 2,
+// signal[m] += Σ_j filter[2 j + p] c[i - j]. The transform is orthonormal on a circle of twice as
+// many samples as coefficients under periodization, hence the indices that wrap there.
+void add_upsampled(std::span<const double> filter, Boundary boundary, std::span<const double> c,
+                   std::vector<double>& signal) {
+  if (c.empty()) return;
+  const Index n = std::ssize(signal);
+  const Index size = std::ssize(c);
+  const Index half = std::ssize(filter) / 2;
+  const bool wraps = boundary == Boundary::periodization;
+  const Index shift = wraps ? half - 1 : 2 * half - 2;
+  const double* f = filter.data();
+
+  const auto at_an_end = [&](Index m) {
+    const Index i = (m + shift) / 2;
+    for (Index j = 0; j < half; ++j) {
+      const Index k = wraps ? floor_mod(i - j, size) : i - j;
+      if (k >= 0 && k < size) signal[m] += f[2 * j + (m + shift) % 2] * c[k];
+    }
+  };
+  const Index first = std::max(half - 1, (shift + 1) / 2);  // whole pairs, no index below 0
+  const Index end = std::max(first, std::min(size, (n + shift) / 2));
+  for (Index m = 0; m < std::min(n, 2 * first - shift); ++m) at_an_end(m);
+  if (end > first)
+    add_pairs(filter, c.data() + first, end - first, signal.data() + 2 * first - shift);
+  for (Index m = 2 * end - shift; m < n; ++m) at_an_end(m);
+}
+
+// Coefficients of level lengths.size() up to full length, the other filter's being zeros. Bands of
+// coarser levels pass through the scratch buffers.
+void to_full_length(const Wavelet& wavelet, Boundary boundary, std::span<const std::size_t> lengths,
+                    std::span<const double> low, std::span<const double> high,
+                    std::array<std::vector<double>, 2>& scratch, std::vector<double>& band) {
+  for (std::size_t j = lengths.size(); j > 0; --j) {
+    std::vector<double>& finer = j == 1 ? band : scratch[j % 2];
+    inverse_dwt(wavelet, boundary, low, high, lengths[j - 1], finer);
+    low = finer;
+    high = {};
+  }
+}
+
+}  // namespace
+
+Boundary boundary(std::string_view name) {
+  int index = 0;
+  for (std::string_view rest = kBoundaries; !rest.empty(); ++index) {
+    const std::string_view word = rest.substr(0, rest.find(' '));
+    if (word == name) return static_cast<Boundary>(index);
+    rest.remove_prefix(std::min(word.size() + 1, rest.size()));
+  }
+  throw UsageError("boundary '" + std::string(name) +
+                   "' is unknown; accepted: " + std::string(kBoundaries));
+}
+
+std::string_view name(Boundary boundary) {
+  std::string_view rest = kBoundaries;
+  for (int index = static_cast<int>(boundary); index > 0; --index)
+    rest.remove_prefix(rest.find(' ') + 1);
+  return rest.substr(0, rest.find(' '));
+}
+
+std::size_t dwt_length(std::size_t n, int taps, Boundary boundary) {
+  if (boundary == Boundary::periodization) return (n + 1) / 2;
+  return (n + static_cast<std::size_t>(taps) - 1) / 2;
+}
+
+void dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> signal,
+         std::vector<double>& low, std::vector<double>* high) {
+  if (signal.empty()) throw DataError("signal: 0 samples; accepted: at least 1");
+  downsample(wavelet.decompose_low, boundary, signal, low);
+  if (high != nullptr) downsample(wavelet.decompose_high, boundary, signal, *high);
+}
+
+void inverse_dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> low,
+                 std::span<const double> high, std::size_t n, std::vector<double>& signal) {
+  signal.assign(n, 0.0);
+  add_upsampled(wavelet.reconstruct_low, boundary, low, signal);
+  add_upsampled(wavelet.reconstruct_high, boundary, high, signal);
+}
+
+Decomposition decompose(const Wavelet& wavelet, Boundary boundary, int levels,
+                        std::span<const double> signal) {
+  if (levels < 0)
+    throw UsageError("level " + std::to_string(levels) + ": accepted: 0 or a positive number");
+  Decomposition parts;
+  parts.details.resize(static_cast<std::size_t>(levels));
+  std::vector<double> low;
+  for (std::vector<double>& detail : parts.details) {
+    parts.lengths.push_back(signal.size());
+    dwt(wavelet, boundary, signal, low, &detail);
+    parts.approximation.swap(low);
+    signal = parts.approximation;
+  }
+  if (levels == 0) parts.approximation.assign(signal.begin(), signal.end());
+  return parts;
+}
+
+Bands reconstruct_bands(const Wavelet& wavelet, Boundary boundary, int levels,
+                        std::span<const double> signal) {
+  const Decomposition parts = decompose(wavelet, boundary, levels, signal);
+  const std::size_t count = parts.details.size();
+  Bands bands;
+  bands.approximations.resize(count);
+  bands.details.resize(count);
+  std::array<std::vector<double>, 2> scratch;
+  const std::span<const std::size_t> lengths(parts.lengths);
+  for (std::size_t j = 1; j <= count; ++j)
+    to_full_length(wavelet, boundary, lengths.first(j), {}, parts.details[j - 1], scratch,
+                   bands.details[j - 1]);
+  if (count > 0)
+    to_full_length(wavelet, boundary, lengths, parts.approximation, {}, scratch,
+                   bands.approximations[count - 1]);
+  for (std::size_t j = count; j > 1; --j) {  // a_(j-1) = a_j + d_j
+    bands.approximations[j - 2].resize(signal.size());
+    std::ranges::transform(bands.approximations[j - 1], bands.details[j - 1],
+                           bands.approximations[j - 2].begin(), std::plus<>());
+  }
+  return bands;
+}
+
+}  // namespace slideway

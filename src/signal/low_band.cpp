@@ -1,0 +1,144 @@
+#include "slideway/signal/low_band.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr double kUniform = 1e-3;  // of the mean step
+
+double mean_step(std::span<const double> positions) {
+  return (positions.back() - positions.front()) / static_cast<double>(positions.size() - 1);
+}
+
+void check_size(const LowBandOptions& options, std::size_t samples) {
+  if (options.level < 0)
+    throw UsageError("low band: level " + std::to_string(options.level) +
+                     "; accepted: 0 or a positive number");
+  const int largest = static_cast<int>(std::bit_width(samples)) - 1;
+  if (options.level <= largest) return;
+  if (samples == 0) throw DataError("low band: 0 samples; accepted: at least 1");
+  const std::string least = options.level < 63 ? std::to_string(std::uint64_t{1} << options.level)
+                                               : "2^" + std::to_string(options.level);
+  throw DataError("low band: " + std::to_string(samples) + " samples, level " +
+                  std::to_string(options.level) + " needs at least " + least +
+                  "; accepted: level <= " + std::to_string(largest));
+}
+
+// Whether the steps are all the same. A trace that turns back or stands still has no grid.
+bool is_uniform(std::span<const double> positions) {
+  const double mean = mean_step(positions);
+  bool uniform = true;
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    const double step = positions[i] - positions[i - 1];
+    if (!(step * mean > 0.0))
+      throw DataError("low band: position " + shortest(positions[i]) + " mm of sample " +
+                      std::to_string(i + 1) + " after " + shortest(positions[i - 1]) +
+                      " mm; accepted: positions that only rise or only fall");
+    uniform = uniform && std::abs(step - mean) <= kUniform * std::abs(mean);
+  }
+  return uniform;
+}
+
+// REQUIRES signal.size() >= 2
+void interpolate(std::span<const Eigen::Index> cell, std::span<const double> weight,
+                 std::span<const double> signal, std::vector<double>& grid) {
+  grid.resize(cell.size());
+  for (std::size_t i = 0; i < cell.size(); ++i) {
+    const double* left = signal.data() + cell[i];
+    grid[i] = (1.0 - weight[i]) * left[0] + weight[i] * left[1];
+  }
+}
+
+}  // namespace
+
+// Room for the grid and each level, so that a matrix of columns allocates once.
+struct LowBand::Workspace {
+  std::vector<double> grid;
+  std::vector<std::vector<double>> levels;
+};
+
+LowBand::LowBand(const LowBandOptions& options, std::span<const double> positions)
+    : wavelet_(daubechies(options.wavelet)),
+      options_(options),
+      samples_(std::ssize(positions)),
+      values_(samples_) {
+  check_size(options, positions.size());
+  if (options.level == 0) return;
+  for (int level = 0; level < options.level; ++level)
+    values_ = static_cast<Eigen::Index>(
+        dwt_length(static_cast<std::size_t>(values_), wavelet_.taps(), options.boundary));
+  if (is_uniform(positions)) return;
+
+  const double step = mean_step(positions);
+  const std::size_t n = positions.size();
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double along = static_cast<double>(i) * std::abs(step);
+    while (left + 2 < n && std::abs(positions[left + 1] - positions[0]) <= along) ++left;
+    const double cell = std::abs(positions[left + 1] - positions[left]);
+    const double inside = along - std::abs(positions[left] - positions[0]);
+    cell_.push_back(static_cast<Eigen::Index>(left));
+    weight_.push_back(std::clamp(inside / cell, 0.0, 1.0));
+  }
+}
+
+void LowBand::apply(std::span<const double> signal, std::span<double> coefficients,
+                    Workspace& workspace) const {
+  if (resampled()) {
+    interpolate(cell_, weight_, signal, workspace.grid);
+    signal = workspace.grid;
+  }
+  workspace.levels.resize(static_cast<std::size_t>(options_.level));
+  for (std::vector<double>& low : workspace.levels) {
+    dwt(wavelet_, options_.boundary, signal, low, nullptr);
+    signal = low;
+  }
+  std::ranges::copy(signal, coefficients.begin());
+}
+
+void LowBand::apply(std::span<const double> signal, std::span<double> coefficients) const {
+  Workspace workspace;
+  apply(signal, coefficients, workspace);
+}
+
+Eigen::MatrixXd LowBand::apply(const Eigen::MatrixXd& columns) const {
+  Eigen::MatrixXd out(values_, columns.cols());
+  Workspace workspace;
+  for (Eigen::Index j = 0; j < columns.cols(); ++j)
+    apply({columns.col(j).data(), static_cast<std::size_t>(samples_)},
+          {out.col(j).data(), static_cast<std::size_t>(values_)}, workspace);
+  return out;
+}
+
+std::vector<double> LowBand::positions(std::span<const double> sample_positions) const {
+  std::vector<double> mean(static_cast<std::size_t>(values_));
+  apply(sample_positions, mean);
+  const double scale = std::pow(0.5, 0.5 * options_.level);
+  // Boundaries that do not keep constants pull the outermost values out of the trace.
+  const auto [least, largest] = std::minmax(sample_positions.front(), sample_positions.back());
+  for (double& position : mean) position = std::clamp(scale * position, least, largest);
+  return mean;
+}
+
+std::vector<double> LowBand::reconstruct(std::span<const double> coefficients) const {
+  std::vector<std::size_t> lengths;
+  for (std::size_t n = static_cast<std::size_t>(samples_); std::ssize(lengths) < options_.level;
+       n = dwt_length(n, wavelet_.taps(), options_.boundary))
+    lengths.push_back(n);
+  std::vector<double> band(coefficients.begin(), coefficients.end());
+  std::vector<double> finer;
+  for (auto n = lengths.rbegin(); n != lengths.rend(); ++n) {
+    inverse_dwt(wavelet_, options_.boundary, band, {}, *n, finer);
+    band.swap(finer);
+  }
+  return band;
+}
+
+}  // namespace slideway
