@@ -1,0 +1,122 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "slideway/profile/setup.hpp"
+
+/// Every error of the machine, the carriage's own and those nobody declared, is an Effect: for the
+/// stations of a profile it gives columns, and what it adds to the profile is
+///
+///   h(i) = Σ_j  column_j(i; shape) * amplitude_j
+///
+/// linear in the amplitudes, non-linear in zero or more shape parameters (a time constant, a
+/// period, a position). Amplitudes are an inner basis chosen for the numerics (Legendre
+/// polynomials, cosine and sine); users meet `parameters`, in the units of the problem file, and
+/// the effect converts between the two.
+namespace slideway {
+
+struct Parameter {
+  std::string name;    // "b2", "time_constant_s"
+  std::string symbol;  // "b_2", "τ"
+  std::string unit;    // "mm^-1", "s"
+  double scale = 1.0;  // ordinary size, in the unit: what an optimiser should call a step of one
+  double lower =
+      -std::numeric_limits<double>::infinity();  // physically possible range, in the unit
+  double upper = std::numeric_limits<double>::infinity();
+};
+
+/// What a person wants to know about an effect.
+struct Description {
+  std::string name;           // as in the problem file
+  std::string standard_name;  // ISO 230-1 / 230-3 / 230-7 term, with the symbol where there is one
+  std::string formula;        // "A (1 - exp(-t/τ))"
+  std::string source;         // "Eq. (15)", "ISO 230-3"
+  std::string cause;          // what makes it
+  std::string typical;        // "5 to 50 µm/m on a precision lathe"
+  Clock clock = Clock::radius;
+  std::string confounded_with;
+  std::string separated_by;
+};
+
+/// One shape parameter: which of the parameters it is, and where to look for it.
+struct Shape {
+  int parameter = 0;         // index into parameters()
+  bool logarithmic = false;  // search and step on a log scale
+  bool stepwise = false;     // columns are piecewise constant in it: scanned, not differentiated
+};
+
+/// Values of an effect's parameters and how they move with amplitudes and shape.
+struct ParameterValues {
+  Eigen::VectorXd values;    // #parameters, in the units of parameters()
+  Eigen::MatrixXd jacobian;  // #parameters by (#amplitudes + #shapes)
+};
+
+/// What an effect must know of all profiles together before it can choose its inner basis.
+struct TravelRange {
+  double slide_min = 0.0, slide_max = 1.0;  // mm, over all profiles
+  double z_min = 0.0, z_max = 0.0;          // mm
+};
+
+class Effect {
+ public:
+  virtual ~Effect() = default;
+
+  [[nodiscard]] virtual const Description& description() const = 0;
+  [[nodiscard]] virtual const std::vector<Parameter>& parameters() const = 0;
+  [[nodiscard]] virtual int amplitudes() const = 0;
+  [[nodiscard]] virtual const std::vector<Shape>& shapes() const = 0;
+
+  /// Range a shape parameter is searched in for these data, in its unit: what the profile can show
+  /// (a period between two samples and the travel, a step inside the cut).
+  /// REQUIRES 0 <= shape < #shapes, applies_to(stations.setup()), lacking(stations.setup()) empty.
+  [[nodiscard]] virtual std::pair<double, double> search_range(int shape,
+                                                               const Stations& stations) const;
+
+  /// False where the reading can not see the effect at all (a slope reading and a drift of height):
+  /// its columns are then zero.
+  [[nodiscard]] virtual bool applies_to(const Setup& setup) const = 0;
+
+  /// Keys of the problem file this profile lacks for the effect's clock; see missing_for().
+  [[nodiscard]] virtual std::vector<std::string> lacking(const Setup& setup) const;
+
+  /// Fills `out` (#stations by #amplitudes): mm per unit of amplitude for heights, rad for slopes.
+  /// Finite for every shape inside the bounds. REQUIRES lacking(stations.setup()) empty.
+  virtual void columns(const Stations& stations, std::span<const double> shape,
+                       Eigen::Ref<Eigen::MatrixXd> out) const = 0;
+
+  /// Fills `out` with d(columns)/d(shape[which]); zero for a stepwise shape.
+  virtual void derivatives(const Stations& stations, std::span<const double> shape, int which,
+                           Eigen::Ref<Eigen::MatrixXd> out) const;
+
+  /// Parameters from amplitudes and shape, with the Jacobian.
+  [[nodiscard]] virtual ParameterValues parameter_values(const Eigen::VectorXd& amplitudes,
+                                                         std::span<const double> shape) const = 0;
+
+  /// The reverse: amplitudes (first) and shape (behind them) from parameter values.
+  [[nodiscard]] virtual Eigen::VectorXd from_parameters(const Eigen::VectorXd& values) const = 0;
+
+  /// True if parameter_values() is linear in the amplitudes (no phase, no modulus).
+  [[nodiscard]] virtual bool linear_parameters() const { return true; }
+
+  /// Size of the effect as one number in the unit of the first parameter: |amplitude|, or the
+  /// modulus of cosine and sine parts.
+  [[nodiscard]] virtual double size(const Eigen::VectorXd& parameter_values) const {
+    return std::abs(parameter_values[0]);
+  }
+};
+
+/// What the problem file says of a declared effect, besides its name.
+struct EffectOptions {
+  std::optional<std::string> body;
+  std::optional<int> degree;
+  std::optional<double> span_mm;  // gantry_sag
+};
+
+}  // namespace slideway

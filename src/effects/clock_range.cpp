@@ -1,0 +1,45 @@
+#include "clock_range.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slideway {
+
+double time_of(const Stations& stations, Eigen::Index i) { return stations.time(i); }
+double slide_of(const Stations& stations, Eigen::Index i) { return stations.slide(i); }
+double radius_of(const Stations& stations, Eigen::Index i) { return stations.radius(i); }
+double revolution_of(const Stations& stations, Eigen::Index i) { return stations.revolution(i); }
+double distance_m_of(const Stations& stations, Eigen::Index i) {
+  return stations.distance(i) / kMetre;
+}
+double measuring_time_of(const Stations& stations, Eigen::Index i) {
+  return stations.measuring_time(i);
+}
+
+ClockRange range_of(const Stations& stations, ClockReading clock) {
+  if (stations.size() == 0) return {};
+  ClockRange range{clock(stations, 0), clock(stations, 0), 0.0};
+  double travelled = 0.0;
+  double previous = range.low;
+  for (Eigen::Index i = 1; i < stations.size(); ++i) {
+    const double value = clock(stations, i);
+    range.low = std::min(range.low, value);
+    range.high = std::max(range.high, value);
+    // On a diameter the clock of the cut runs there and back.
+    travelled += std::abs(value - previous);
+    previous = value;
+  }
+  if (stations.size() > 1) range.step = travelled / static_cast<double>(stations.size() - 1);
+  return range;
+}
+
+std::pair<double, double> transient_range(const Stations& stations, ClockReading clock) {
+  const ClockRange range = range_of(stations, clock);
+  return {4.0 * range.step, 10.0 * range.extent()};
+}
+
+bool is_height(const Setup& setup) { return setup.quantity == Quantity::height; }
+
+bool is_face_height(const Setup& setup) { return is_height(setup) && setup.kind == Kind::face; }
+
+}  // namespace slideway

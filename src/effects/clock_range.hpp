@@ -1,0 +1,36 @@
+#pragma once
+
+#include <utility>
+
+#include "slideway/effects/effect.hpp"
+
+namespace slideway {
+
+// One clock of a station, e.g. [](const Stations& s, Eigen::Index i) { return s.time(i); }
+using ClockReading = double (*)(const Stations&, Eigen::Index);
+
+double time_of(const Stations& stations, Eigen::Index i);
+double slide_of(const Stations& stations, Eigen::Index i);
+double radius_of(const Stations& stations, Eigen::Index i);
+double revolution_of(const Stations& stations, Eigen::Index i);
+double distance_m_of(const Stations& stations, Eigen::Index i);
+double measuring_time_of(const Stations& stations, Eigen::Index i);
+
+// What a profile shows of a clock.
+struct ClockRange {
+  double low = 0.0, high = 0.0;
+  double step = 0.0;  // mean change from one sample to the next
+
+  [[nodiscard]] double extent() const { return high - low; }
+};
+
+ClockRange range_of(const Stations& stations, ClockReading clock);
+
+// Time constants (or distances) of a transient the profile can show.
+std::pair<double, double> transient_range(const Stations& stations, ClockReading clock);
+
+// Which readings see an effect.
+bool is_height(const Setup& setup);
+bool is_face_height(const Setup& setup);
+
+}  // namespace slideway

@@ -1,0 +1,84 @@
+#include "periodic_effect.hpp"
+
+#include <cmath>
+
+#include "linear_effect.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr double kTurn = 2.0 * kPi;
+
+}  // namespace
+
+PeriodicEffect::PeriodicEffect(PeriodicSpec spec)
+    : spec_(std::move(spec)),
+      parameters_{{"amplitude_um", "A", "µm", 0.1}, spec_.rate, {"phase_rad", "φ", "rad", 1.0}},
+      shapes_{{.parameter = 1, .logarithmic = spec_.rate_is_period, .stepwise = false}} {}
+
+std::pair<double, double> PeriodicEffect::search_range(int /*shape*/,
+                                                       const Stations& stations) const {
+  return within_bounds(spec_.range(stations), spec_.rate);
+}
+
+bool PeriodicEffect::applies_to(const Setup& setup) const { return spec_.applies_to(setup); }
+
+void PeriodicEffect::columns(const Stations& stations, std::span<const double> shape,
+                             Eigen::Ref<Eigen::MatrixXd> out) const {
+  if (!applies_to(stations.setup())) return void(out.setZero());
+  const double cycles = spec_.rate_is_period ? 1.0 / shape[0] : shape[0];
+  for (Eigen::Index i = 0; i < stations.size(); ++i) {
+    const double angle = kTurn * cycles * spec_.clock(stations, i);
+    out(i, 0) = std::cos(angle);
+    out(i, 1) = std::sin(angle);
+  }
+}
+
+void PeriodicEffect::derivatives(const Stations& stations, std::span<const double> shape,
+                                 int /*which*/, Eigen::Ref<Eigen::MatrixXd> out) const {
+  if (!applies_to(stations.setup())) return void(out.setZero());
+  const double cycles = spec_.rate_is_period ? 1.0 / shape[0] : shape[0];
+  const double cycles_slope = spec_.rate_is_period ? -cycles * cycles : 1.0;
+  for (Eigen::Index i = 0; i < stations.size(); ++i) {
+    const double clock = spec_.clock(stations, i);
+    const double angle = kTurn * cycles * clock;
+    const double angle_slope = kTurn * cycles_slope * clock;
+    out(i, 0) = -std::sin(angle) * angle_slope;
+    out(i, 1) = std::cos(angle) * angle_slope;
+  }
+}
+
+ParameterValues PeriodicEffect::parameter_values(const Eigen::VectorXd& amplitudes,
+                                                 std::span<const double> shape) const {
+  const double c = amplitudes[0];
+  const double s = amplitudes[1];
+  const double modulus = std::hypot(c, s);
+  ParameterValues result;
+  result.values.resize(3);
+  result.values << modulus / kMicrometre, shape[0], modulus > 0.0 ? std::atan2(-s, c) : 0.0;
+  result.jacobian = Eigen::MatrixXd::Zero(3, 3);
+  result.jacobian(1, 2) = 1.0;
+  // Modulus and phase have no derivative at zero; zero is the one finite choice without a
+  // direction.
+  if (modulus > 0.0) {
+    const double cosine = c / modulus;
+    const double sine = s / modulus;
+    result.jacobian.row(0) << cosine / kMicrometre, sine / kMicrometre, 0.0;
+    result.jacobian.row(2) << sine / modulus, -cosine / modulus, 0.0;
+  }
+  return result;
+}
+
+Eigen::VectorXd PeriodicEffect::from_parameters(const Eigen::VectorXd& values) const {
+  const double modulus = values[0] * kMicrometre;
+  Eigen::VectorXd result(3);
+  result << modulus * std::cos(values[2]), -modulus * std::sin(values[2]), values[1];
+  return result;
+}
+
+std::pair<double, double> period_range(const Stations& stations, ClockReading clock) {
+  const ClockRange range = range_of(stations, clock);
+  return {4.0 * range.step, 2.0 * range.extent()};
+}
+
+}  // namespace slideway

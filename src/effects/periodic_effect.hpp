@@ -1,0 +1,51 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "clock_range.hpp"
+#include "slideway/effects/effect.hpp"
+
+namespace slideway {
+
+struct PeriodicSpec {
+  Description description;
+  Parameter rate;  // the period, or the number of cycles per unit of the clock
+  bool rate_is_period = true;
+  ClockReading clock = nullptr;
+  std::pair<double, double> (*range)(const Stations&) = nullptr;
+  bool (*applies_to)(const Setup&) = is_height;
+};
+
+// h = A cos(2πq + φ) with q = clock / period or clock * frequency. The amplitudes are A cos φ on
+// cos 2πq and -A sin φ on sin 2πq; the parameters amplitude_um, period or frequency, phase_rad.
+class PeriodicEffect : public Effect {
+ public:
+  explicit PeriodicEffect(PeriodicSpec spec);
+
+  [[nodiscard]] const Description& description() const override { return spec_.description; }
+  [[nodiscard]] const std::vector<Parameter>& parameters() const override { return parameters_; }
+  [[nodiscard]] int amplitudes() const override { return 2; }
+  [[nodiscard]] const std::vector<Shape>& shapes() const override { return shapes_; }
+  [[nodiscard]] std::pair<double, double> search_range(int shape,
+                                                       const Stations& stations) const override;
+  [[nodiscard]] bool applies_to(const Setup& setup) const override;
+  void columns(const Stations& stations, std::span<const double> shape,
+               Eigen::Ref<Eigen::MatrixXd> out) const override;
+  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+                   Eigen::Ref<Eigen::MatrixXd> out) const override;
+  [[nodiscard]] ParameterValues parameter_values(const Eigen::VectorXd& amplitudes,
+                                                 std::span<const double> shape) const override;
+  [[nodiscard]] Eigen::VectorXd from_parameters(const Eigen::VectorXd& values) const override;
+  [[nodiscard]] bool linear_parameters() const override { return false; }
+
+ private:
+  PeriodicSpec spec_;
+  std::vector<Parameter> parameters_;
+  std::vector<Shape> shapes_;
+};
+
+// Periods from 4 samples to twice what the profile covers of the clock.
+std::pair<double, double> period_range(const Stations& stations, ClockReading clock);
+
+}  // namespace slideway

@@ -1,0 +1,51 @@
+#include <cmath>
+
+#include "../clock_range.hpp"
+#include "../linear_effect.hpp"
+#include "../request.hpp"
+
+namespace slideway {
+namespace {
+
+// (sqrt(r² + h²) - r)/h without the cancellation at large r.
+double value(const Stations& stations, Eigen::Index i, double h) {
+  const double r = stations.radius(i);
+  return h / (std::hypot(r, h) + r);
+}
+
+double derivative(const Stations& stations, Eigen::Index i, double h) {
+  const double r = stations.radius(i);
+  const double hypotenuse = std::hypot(r, h);
+  return r / (hypotenuse * (hypotenuse + r));
+}
+
+}  // namespace
+
+std::unique_ptr<Effect> make_centre_height(const Request& request) {
+  request.accept_only({});
+  return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
+      .description = {.name = "centre_height",
+                      .standard_name = "offset of the tool edge from the spindle axis in Y",
+                      .formula = "A (sqrt(r² + h²) - r)/h",
+                      .source = "geometry of a cut that passes the axis at the distance h",
+                      .cause = "the tool edge is too high or too low and passes the axis; a trace "
+                               "beside the diameter looks the same",
+                      .typical = "h is 1 to 50 µm; the nub at the centre is at most as high as the "
+                                 "depth of cut",
+                      .clock = Clock::radius,
+                      .confounded_with = "speed_effect; a trace off the diameter by h",
+                      .separated_by =
+                          "parallel traces at known spacing, a microscope: a nub is there "
+                          "or not"},
+      .amplitude = {"amplitude_um", "A", "µm", 0.1},
+      .value = value,
+      .applies_to = is_face_height,
+      .shape = ShapeSpec{.parameter = {"height_mm", "h", "mm", 0.05, 1e-4, 10.0},
+                         .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
+                         .derivative = derivative,
+                         .range = [](const Stations&) {
+                           return std::pair{0.005, 1.0};
+                         }}});
+}
+
+}  // namespace slideway

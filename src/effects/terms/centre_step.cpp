@@ -1,0 +1,40 @@
+#include "../clock_range.hpp"
+#include "../linear_effect.hpp"
+#include "../request.hpp"
+
+namespace slideway {
+namespace {
+
+double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
+
+// On one side of the axis it would be an offset.
+bool crosses_the_axis(const Setup& setup) {
+  return is_face_height(setup) && setup.first_mm < setup.center_mm &&
+         setup.center_mm < setup.last_mm;
+}
+
+}  // namespace
+
+std::unique_ptr<Effect> make_centre_step(const Request& request) {
+  request.accept_only({});
+  return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
+      .description = {.name = "centre_step",
+                      .standard_name = "synchronous axial error motion of the spindle, odd orders "
+                                       "(ISO 230-7)",
+                      .formula = "A sgn(X)",
+                      .source = "ISO 230-7",
+                      .cause =
+                          "axial motion of odd order per turn: the two halves of a diameter were "
+                          "cut at opposite spindle angles",
+                      .typical = "5 to 50 nm (aerostatic spindle), 0.1 to 1 µm (rolling bearings)",
+                      .clock = Clock::trace,
+                      .confounded_with = "a centring error of the trace on a conical face",
+                      .separated_by = "traces at three or more azimuths: the step goes with the "
+                                      "spindle angle; on a radius it can not be seen"},
+      .amplitude = {"height_um", "A", "µm", 0.01},
+      .value = [](const Stations& stations, Eigen::Index i,
+                  double) { return sign(stations.trace(i)); },
+      .applies_to = crosses_the_axis});
+}
+
+}  // namespace slideway

@@ -1,0 +1,55 @@
+#include <algorithm>
+#include <cmath>
+
+#include "../clock_range.hpp"
+#include "../linear_effect.hpp"
+#include "../request.hpp"
+
+namespace slideway {
+namespace {
+
+// Distance from the rim, <= 0; a sample beyond the rim counts as on it.
+double from_rim(const Stations& stations, Eigen::Index i) {
+  return std::min(stations.radius(i) - *stations.setup().cut_radius_mm, 0.0);
+}
+
+double value(const Stations& stations, Eigen::Index i, double width) {
+  return std::exp(from_rim(stations, i) / width);
+}
+
+double derivative(const Stations& stations, Eigen::Index i, double width) {
+  const double distance = from_rim(stations, i);
+  return -distance / (width * width) * std::exp(distance / width);
+}
+
+}  // namespace
+
+std::unique_ptr<Effect> make_edge_roll_off(const Request& request) {
+  request.accept_only({});
+  return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
+      .description = {.name = "edge_roll_off",
+                      .standard_name = "edge of undefined shape at the rim (ISO 13715)",
+                      .formula = "A exp((r - R)/w)",
+                      .source = "empirical shape of a rim",
+                      .cause = "the rim gives way, burrs, or is rounded where the tool enters",
+                      .typical = "0.05 to 5 µm, w of 0.03 to 0.4 mm",
+                      .clock = Clock::radius,
+                      .confounded_with =
+                          "a short thermal_drift or tool_running_in of an inward cut "
+                          "at one feed",
+                      .separated_by =
+                          "it stays at the same radii at every feed and in both cutting "
+                          "directions"},
+      .amplitude = {"amplitude_um", "A", "µm", 0.1},
+      .value = value,
+      .applies_to = is_face_height,
+      .needs_cut_radius = true,
+      .shape = ShapeSpec{.parameter = {"width_mm", "w", "mm", 0.1, 1e-3, 10.0},
+                         .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
+                         .derivative = derivative,
+                         .range = [](const Stations&) {
+                           return std::pair{0.02, 1.0};
+                         }}});
+}
+
+}  // namespace slideway

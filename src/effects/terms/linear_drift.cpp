@@ -1,0 +1,27 @@
+#include "../clock_range.hpp"
+#include "../linear_effect.hpp"
+#include "../request.hpp"
+
+namespace slideway {
+
+std::unique_ptr<Effect> make_linear_drift(const Request& request) {
+  request.accept_only({});
+  return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
+      .description = {.name = "linear_drift",
+                      .standard_name = "thermal distortion in Z at a constant rate (ISO 230-3)",
+                      .formula = "a t",
+                      .source = "ISO 230-3",
+                      .cause = "slow warming of spindle, column or room, seen over a short cut",
+                      .typical = "0.2 to 100 nm/min",
+                      .clock = Clock::time,
+                      .confounded_with = "squareness and tilt at one feed (exactly)",
+                      .separated_by =
+                          "a second feed: the slope on the face goes with 1/feed; a cut "
+                          "in the other direction changes its sign"},
+      .amplitude = {"rate_um_per_min", "a", "µm/min", 0.01},
+      .unit = kMicrometre / kMinute,
+      .value = [](const Stations& stations, Eigen::Index i, double) { return stations.time(i); },
+      .applies_to = is_height});
+}
+
+}  // namespace slideway

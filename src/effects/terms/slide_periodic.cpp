@@ -1,0 +1,80 @@
+#include <algorithm>
+#include <cmath>
+
+#include "../locus.hpp"
+#include "../periodic_effect.hpp"
+#include "../request.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr double kTurn = 2.0 * kPi;
+
+// The height itself, without a pitch: waviness shorter than the carriage lifts it but the pads even
+// out most of the slope.
+CarriageReading height_only() { return {.height = {1.0, 0.0}, .pitch = {0.0, 0.0}}; }
+
+std::pair<double, double> search(const Stations& stations) {
+  const ClockRange range = range_of(stations, slide_of);
+  return {std::max(4.0 * range.step, 0.1), range.extent()};
+}
+
+class SlidePeriodic : public PeriodicEffect {
+ public:
+  using PeriodicEffect::PeriodicEffect;
+
+  void columns(const Stations& stations, std::span<const double> shape,
+               Eigen::Ref<Eigen::MatrixXd> out) const override {
+    const double wave = kTurn / shape[0];
+    const auto line = [wave](double x, Eigen::RowVectorXd& value, Eigen::RowVectorXd& slope) {
+      const double cosine = std::cos(wave * x);
+      const double sine = std::sin(wave * x);
+      value << cosine, sine;
+      slope << -wave * sine, wave * cosine;
+    };
+    fill_from_locus(stations, height_only(), line, out);
+  }
+
+  void derivatives(const Stations& stations, std::span<const double> shape, int /*which*/,
+                   Eigen::Ref<Eigen::MatrixXd> out) const override {
+    const double wave = kTurn / shape[0];
+    const double change = -wave / shape[0];  // d wave / d period
+    const auto line = [=](double x, Eigen::RowVectorXd& value, Eigen::RowVectorXd& slope) {
+      const double cosine = std::cos(wave * x);
+      const double sine = std::sin(wave * x);
+      value << -change * x * sine, change * x * cosine;
+      slope << -change * (sine + wave * x * cosine), change * (cosine - wave * x * sine);
+    };
+    fill_from_locus(stations, height_only(), line, out);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_slide_periodic(const Request& request) {
+  request.accept_only({});
+  return std::make_unique<SlidePeriodic>(PeriodicSpec{
+      .description = {.name = "slide_periodic",
+                      .standard_name = "E_ZX, periodic straightness error motion of X (ISO 230-1)",
+                      .formula = "A cos(2πx/λ + φ)",
+                      .source = "effect of the guideway, periodic in the slide coordinate",
+                      .cause =
+                          "waviness of the rail, orifice or bolt pitch of an air bearing, pitch "
+                          "of the feed screw through the force of its nut",
+                      .typical = "5 to 50 nm; λ is 20 to 60 mm for bolts and orifices, 2 to 10 mm "
+                                 "for a screw",
+                      .clock = Clock::slide,
+                      .confounded_with =
+                          "the straightness polynomial when λ is longer than most of "
+                          "the travel; revolution_periodic, time_periodic and "
+                          "traverse_periodic at one feed and one traverse speed",
+                      .separated_by = "a second feed or spindle speed: λ stays as it is in mm; a "
+                                      "data-sheet pitch"},
+      .rate = {"period_mm", "λ", "mm", 1.0, 1e-3, 1e5},
+      .rate_is_period = true,
+      .clock = slide_of,
+      .range = search,
+      .applies_to = sees_carriage});
+}
+
+}  // namespace slideway

@@ -1,0 +1,57 @@
+#include "../clock_range.hpp"
+#include "../linear_effect.hpp"
+#include "../locus.hpp"
+#include "../request.hpp"
+
+namespace slideway {
+namespace {
+
+Description describe() {
+  return {.name = "squareness",
+          .standard_name =
+              "E_B(0C)X, squareness of X motion to the spindle axis average line "
+              "(ISO 230-1)",
+          .formula = "-Δβxz p_x",
+          .source = "Eq. (15)",
+          .cause =
+              "the X guideway is not at a right angle to the spindle axis: the face becomes a "
+              "cone",
+          .typical = "5 to 50 µrad on a precision lathe: 50 to 500 nm over a radius of 10 mm",
+          .clock = Clock::radius,
+          .confounded_with =
+              "the tilt of the trace on a radius; c_1 of vertical_straightness; "
+              "linear_drift at one feed",
+          .separated_by =
+              "a trace over the full diameter (cone against tilt), a second feed "
+              "(linear_drift), cuts from both sides of the axis (the cone changes sign)"};
+}
+
+class Squareness : public LinearEffect {
+ public:
+  explicit Squareness(int body)
+      : LinearEffect(describe(), {{"dbeta_xz", "Δβxz", "rad", 1e-5}}, diagonal_map(1, 1.0)),
+        body_(body) {}
+
+  [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_face_height(setup); }
+
+  void columns(const Stations& stations, std::span<const double> /*shape*/,
+               Eigen::Ref<Eigen::MatrixXd> out) const override {
+    if (!applies_to(stations.setup())) return void(out.setZero());
+    const AlongCut lever = along_cut(stations.setup(), [&](const Pose& pose) {
+      return stations.machine().squareness_sensitivity(body_, pose);
+    });
+    for (Eigen::Index i = 0; i < stations.size(); ++i) out(i, 0) = lever(stations.radius(i));
+  }
+
+ private:
+  int body_;
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_squareness(const Request& request) {
+  request.accept_only({"body"});
+  return std::make_unique<Squareness>(request.carriage(Axis::x));
+}
+
+}  // namespace slideway

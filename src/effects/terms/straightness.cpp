@@ -1,0 +1,123 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "../linear_effect.hpp"
+#include "../locus.hpp"
+#include "../request.hpp"
+
+namespace slideway {
+namespace {
+
+// u in [-1, 1] over the slide travel of all profiles.
+struct Interval {
+  double centre, half;
+};
+
+Interval interval_of(const TravelRange& range) {
+  const double half = (range.slide_max - range.slide_min) / 2.0;
+  return {(range.slide_min + range.slide_max) / 2.0, half > 0.0 ? half : 1.0};
+}
+
+// Column k: the coefficients of P_k(u) in powers of x, from
+//   (k + 1) P_{k+1} = (2k + 1) u P_k - k P_{k-1}   and   u = (x - centre) / half.
+ExtendedMatrix powers_from_legendre(int degree, const Interval& interval) {
+  const long double half = interval.half;
+  const long double shift = -static_cast<long double>(interval.centre) / half;
+  ExtendedMatrix map = ExtendedMatrix::Zero(degree + 1, degree + 1);
+  map(0, 0) = 1.0L;
+  for (int k = 0; k < degree; ++k) {
+    const long double next = k + 1;
+    map.col(k + 1) = ((2 * k + 1) * shift / next) * map.col(k);
+    map.col(k + 1).tail(degree) += ((2 * k + 1) / (half * next)) * map.col(k).head(degree);
+    if (k > 0) map.col(k + 1) -= (k / next) * map.col(k - 1);
+  }
+  return map;
+}
+
+std::vector<Parameter> parameters_of(int degree, const TravelRange& range) {
+  const double reach = std::max({std::abs(range.slide_min), std::abs(range.slide_max), 1.0});
+  std::vector<Parameter> parameters;
+  for (int k = 0; k <= degree; ++k) {
+    const std::string index = std::to_string(k);
+    parameters.push_back(
+        {"b" + index, "b_" + index, power_of_mm(1 - k), kMicrometre * std::pow(reach, -k)});
+  }
+  return parameters;
+}
+
+Description describe() {
+  return {
+      .name = "straightness",
+      .standard_name =
+          "E_ZX, straightness error motion of X in the direction Z, with the pitch "
+          "E_BX that follows from it (ISO 230-1)",
+      .formula = "Δz1(x) - p_x Δz1'(x) with Δz1(x) = Σ b_k x^k, k = 0..n",
+      .source = "Eqs. (10), (12), (14)",
+      .cause = "the form of the guideway the X carriage follows; its slope pitches the carriage",
+      .typical =
+          "0.5 to 1 µm over 200 mm on an aerostatic slide: about 10 nm of curvature "
+          "within 10 mm of travel, 2 to 10 µm over 600 mm on a conventional bed",
+      .clock = Clock::slide,
+      .confounded_with =
+          "every smooth effect: b_2 with cup, linear tool wear and slow drift; "
+          "with one lever p_x = x the coefficient b_1 vanishes, and b_0 is the "
+          "offset of the trace (both are gauge: the reference line of ISO 230-1)",
+      .separated_by =
+          "a second feed or cutting direction (drift and wear change, straightness "
+          "does not), a reading along the slide by autocollimator or straightedge "
+          "reversal, a second overhang (pitch against straightness)"};
+}
+
+// b_0..b_n of Eq. (10); inside, Legendre polynomials over the travel.
+class Straightness : public LinearEffect {
+ public:
+  Straightness(int body, int degree, const TravelRange& range)
+      : LinearEffect(describe(), parameters_of(degree, range),
+                     powers_from_legendre(degree, interval_of(range))),
+        body_(body),
+        interval_(interval_of(range)) {}
+
+  [[nodiscard]] bool applies_to(const Setup& setup) const override { return sees_carriage(setup); }
+
+  void columns(const Stations& stations, std::span<const double> /*shape*/,
+               Eigen::Ref<Eigen::MatrixXd> out) const override {
+    const auto legendre = [this](double x, Eigen::RowVectorXd& value, Eigen::RowVectorXd& slope) {
+      const double u = (x - interval_.centre) / interval_.half;
+      value[0] = 1.0;
+      slope[0] = 0.0;
+      if (value.size() == 1) return;
+      value[1] = u;
+      slope[1] = 1.0 / interval_.half;
+      for (Eigen::Index k = 1; k + 1 < value.size(); ++k) {
+        const auto order = static_cast<double>(k);
+        value[k + 1] = ((2.0 * order + 1.0) * u * value[k] - order * value[k - 1]) / (order + 1.0);
+        slope[k + 1] = slope[k - 1] + (2.0 * order + 1.0) * value[k] / interval_.half;
+      }
+    };
+    fill_from_locus(stations, carriage_reading(stations, body_, 1.0), legendre, out);
+  }
+
+  [[nodiscard]] double size(const Eigen::VectorXd& values) const override {
+    // Peak of the largest term over the travel: the coefficients have different units.
+    const double reach = std::abs(interval_.centre) + interval_.half;
+    double largest = 0.0;
+    for (Eigen::Index k = 0; k < values.size(); ++k)
+      largest = std::max(largest, std::abs(values[k]) * std::pow(reach, static_cast<double>(k)));
+    return largest;
+  }
+
+ private:
+  int body_;
+  Interval interval_;
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_straightness(const Request& request) {
+  request.accept_only({"body", "degree"});
+  return std::make_unique<Straightness>(request.carriage(Axis::x), request.degree(0, 20),
+                                        request.range);
+}
+
+}  // namespace slideway

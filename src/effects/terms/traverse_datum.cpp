@@ -1,0 +1,42 @@
+#include <algorithm>
+#include <cmath>
+
+#include "../clock_range.hpp"
+#include "../linear_effect.hpp"
+#include "../request.hpp"
+
+namespace slideway {
+namespace {
+
+double value(const Stations& stations, Eigen::Index i, double) {
+  const Setup& setup = stations.setup();
+  const double reach = std::max(std::abs(setup.first_mm - setup.center_mm),
+                                std::abs(setup.last_mm - setup.center_mm));
+  const double ratio = reach > 0.0 ? stations.trace(i) / reach : 0.0;
+  return ratio * ratio * ratio;
+}
+
+}  // namespace
+
+std::unique_ptr<Effect> make_traverse_datum(const Request& request) {
+  request.accept_only({});
+  return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
+      .description = {.name = "traverse_datum",
+                      .standard_name = "straightness of the traverse unit (ISO 3274), odd part",
+                      .formula = "A (X/X_max)³, X_max the largest |X| of the trace",
+                      .source = "guide profile of the profilometer",
+                      .cause = "the instrument's own guide is not straight; a three-jaw clamping "
+                               "(trefoil) gives the same odd cubic on a diameter",
+                      .typical = "5 to 50 nm over 20 mm",
+                      .clock = Clock::trace,
+                      .confounded_with = "b_3 of straightness on a radius",
+                      .separated_by =
+                          "turning the part by 180° on the instrument (the datum stays), "
+                          "a trace at another azimuth (the trefoil changes), a trace over "
+                          "the diameter (odd against even)"},
+      .amplitude = {"amplitude_um", "A", "µm", 0.01},
+      .value = value,
+      .applies_to = is_face_height});
+}
+
+}  // namespace slideway

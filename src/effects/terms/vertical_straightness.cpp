@@ -1,0 +1,97 @@
+#include <algorithm>
+#include <cmath>
+
+#include "../clock_range.hpp"
+#include "../linear_effect.hpp"
+#include "../locus.hpp"
+#include "../request.hpp"
+
+namespace slideway {
+namespace {
+
+double reach_of(const TravelRange& range) {
+  return std::max({std::abs(range.z_min), std::abs(range.z_max), 1.0});
+}
+
+ExtendedMatrix map_of(int degree, double reach) {
+  ExtendedMatrix map = ExtendedMatrix::Identity(degree, degree);
+  for (int k = 1; k < degree; ++k) map(k, k) = map(k - 1, k - 1) / reach;
+  return map;
+}
+
+std::vector<Parameter> parameters_of(int degree, double reach) {
+  std::vector<Parameter> parameters;
+  for (int k = 1; k <= degree; ++k) {
+    const std::string index = std::to_string(k);
+    parameters.push_back(
+        {"c" + index, "c_" + index, power_of_mm(1 - k), 1e-5 * std::pow(reach, 1 - k)});
+  }
+  return parameters;
+}
+
+Description describe() {
+  return {.name = "vertical_straightness",
+          .standard_name = "E_BZ, pitch of Z about Y, from the straightness E_XZ (ISO 230-1)",
+          .formula = "-Δβ2(z) p_x with Δβ2(z) = Σ k c_k z^(k-1), k = 1..m",
+          .source = "Eqs. (13), (14)",
+          .cause =
+              "the form of the guideway the Z carriage follows: its slope at the height of the "
+              "face tilts the tool",
+          .typical = "1 to 50 µrad over the Z travel",
+          .clock = Clock::radius,
+          .confounded_with =
+              "squareness: at one z level only Σ k c_k z^(k-1) + Δβxz is seen, and "
+              "c_1 and Δβxz are one column at any number of levels (one lever)",
+          .separated_by =
+              "faces at m or more z levels for c_2 .. c_m; the split lever with two "
+              "overhangs, or a direct measurement of one of the two, for c_1"};
+}
+
+// c_1..c_m of Eq. (13); inside, powers of z over the largest |z| there is.
+class VerticalStraightness : public LinearEffect {
+ public:
+  VerticalStraightness(int body, int degree, double reach)
+      : LinearEffect(describe(), parameters_of(degree, reach), map_of(degree, reach)),
+        body_(body),
+        reach_(reach) {}
+
+  [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_face_height(setup); }
+
+  void columns(const Stations& stations, std::span<const double> /*shape*/,
+               Eigen::Ref<Eigen::MatrixXd> out) const override {
+    if (!applies_to(stations.setup())) return void(out.setZero());
+    const AlongCut lever = along_cut(stations.setup(), [&](const Pose& pose) {
+      return stations.machine().height_sensitivity(body_, Component::beta, pose);
+    });
+    Eigen::RowVectorXd pitch(out.cols());
+    double power = 1.0;
+    for (Eigen::Index k = 0; k < pitch.size(); ++k) {
+      pitch[k] = static_cast<double>(k + 1) * power;
+      power *= stations.setup().z_mm / reach_;
+    }
+    for (Eigen::Index i = 0; i < stations.size(); ++i)
+      out.row(i) = lever(stations.radius(i)) * pitch;
+  }
+
+  [[nodiscard]] double size(const Eigen::VectorXd& values) const override {
+    double largest = 0.0;
+    for (Eigen::Index k = 0; k < values.size(); ++k)
+      largest = std::max(largest, std::abs(values[k]) * static_cast<double>(k + 1) *
+                                      std::pow(reach_, static_cast<double>(k)));
+    return largest;
+  }
+
+ private:
+  int body_;
+  double reach_;
+};
+
+}  // namespace
+
+std::unique_ptr<Effect> make_vertical_straightness(const Request& request) {
+  request.accept_only({"body", "degree"});
+  return std::make_unique<VerticalStraightness>(request.carriage(Axis::z), request.degree(1, 20),
+                                                reach_of(request.range));
+}
+
+}  // namespace slideway

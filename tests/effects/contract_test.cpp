@@ -1,0 +1,225 @@
+// What every effect of the catalogue must keep, whatever it is.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "effects/effect_cases.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace testing_support;
+
+class EffectContract : public ::testing::TestWithParam<std::string> {
+ protected:
+  std::unique_ptr<Effect> effect_ = make(GetParam());
+
+  // Shape parameters to try: ordinary, and close to each end of what is possible.
+  [[nodiscard]] std::vector<std::vector<double>> shapes_to_try(const Stations& stations) const {
+    if (effect_->shapes().empty()) return {{}};
+    const Parameter& p = effect_->parameters()[effect_->shapes()[0].parameter];
+    const auto [low, high] = effect_->search_range(0, stations);
+    std::vector<std::vector<double>> result{{std::sqrt(low * high)}, {low}, {high}};
+    // Ends far outside the search: three decades beyond, or the bound itself.
+    result.push_back({std::max(p.lower, low * 1e-3)});
+    result.push_back({std::min(p.upper, high * 1e3)});
+    return result;
+  }
+
+  template <typename Check>
+  void for_each_case(Check&& check) const {
+    for (const Case& profile : all_cases()) {
+      if (!effect_->applies_to(profile.setup)) continue;
+      SCOPED_TRACE(profile.name);
+      const Stations stations(profile.positions, profile.setup, lathe());
+      for (const std::vector<double>& shape : shapes_to_try(stations)) {
+        SCOPED_TRACE(::testing::PrintToString(shape));
+        check(stations, shape);
+      }
+    }
+  }
+
+  [[nodiscard]] Eigen::MatrixXd columns_at(const Stations& stations,
+                                           const std::vector<double>& shape) const {
+    Eigen::MatrixXd out(stations.size(), effect_->amplitudes());
+    effect_->columns(stations, shape, out);
+    return out;
+  }
+};
+
+TEST_P(EffectContract, IsDescribedInFull) {
+  const Description& d = effect_->description();
+  EXPECT_EQ(d.name, GetParam());
+  for (const std::string& text : {d.standard_name, d.formula, d.source, d.cause, d.typical,
+                                  d.confounded_with, d.separated_by})
+    EXPECT_FALSE(text.empty());
+}
+
+TEST_P(EffectContract, DeclaresUnitsScalesAndBounds) {
+  for (const Parameter& p : effect_->parameters()) {
+    SCOPED_TRACE(p.name);
+    EXPECT_FALSE(p.name.empty());
+    EXPECT_FALSE(p.symbol.empty());
+    EXPECT_FALSE(p.unit.empty());
+    EXPECT_GT(p.scale, 0.0);
+    EXPECT_LT(p.lower, p.upper);
+  }
+  EXPECT_EQ(effect_->parameters().size(), effect_->amplitudes() + effect_->shapes().size());
+}
+
+TEST_P(EffectContract, AppliesToSomethingAndFillsFiniteColumns) {
+  int cases = 0;
+  for_each_case([&](const Stations& stations, const std::vector<double>& shape) {
+    ++cases;
+    EXPECT_TRUE(columns_at(stations, shape).allFinite());
+    for (std::size_t which = 0; which < shape.size(); ++which) {
+      Eigen::MatrixXd out(stations.size(), effect_->amplitudes());
+      effect_->derivatives(stations, shape, static_cast<int>(which), out);
+      EXPECT_TRUE(out.allFinite());
+    }
+  });
+  EXPECT_GT(cases, 0);
+}
+
+TEST_P(EffectContract, IsZeroOnReadingsItDoesNotApplyTo) {
+  for (const Case& profile : all_cases()) {
+    if (effect_->applies_to(profile.setup) || GetParam() == "centre_step") continue;
+    const std::vector<double> shape(effect_->shapes().size(), 1.0);
+    EXPECT_TRUE(columns(*effect_, profile, shape).isZero(0.0)) << profile.name;
+  }
+}
+
+TEST_P(EffectContract, ZeroAmplitudeGivesZero) {
+  for_each_case([&](const Stations& stations, const std::vector<double>& shape) {
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(effect_->amplitudes());
+    EXPECT_TRUE((columns_at(stations, shape) * none).isZero(0.0));
+    const ParameterValues values = effect_->parameter_values(none, shape);
+    EXPECT_EQ(effect_->size(values.values), 0.0);
+    EXPECT_TRUE(values.jacobian.allFinite());
+  });
+}
+
+TEST_P(EffectContract, DerivativesAgreeWithCentralDifferences) {
+  for_each_case([&](const Stations& stations, const std::vector<double>& shape) {
+    for (std::size_t which = 0; which < shape.size(); ++which) {
+      Eigen::MatrixXd slope(stations.size(), effect_->amplitudes());
+      effect_->derivatives(stations, shape, static_cast<int>(which), slope);
+      if (effect_->shapes()[which].stepwise) {
+        EXPECT_TRUE(slope.isZero(0.0));
+        continue;
+      }
+      const double largest = slope.cwiseAbs().maxCoeff();
+      const double size = columns_at(stations, shape).cwiseAbs().maxCoeff();
+      // A step that changes the columns by 1e-4 of their size: truncation is then of order 1e-8.
+      double step = 1e-4 * std::abs(shape[which]);
+      if (largest > 0.0) step = std::min(step, 1e-4 * size / largest);
+      std::vector<double> plus = shape, minus = shape;
+      plus[which] += step;
+      minus[which] -= step;
+      const Eigen::MatrixXd difference =
+          (columns_at(stations, plus) - columns_at(stations, minus)) / (plus[which] - minus[which]);
+      // Rounding of the columns, and of a phase that may run to many turns, over the step.
+      const double rounding = 1e-15 * (size + largest * std::abs(shape[which])) / step;
+      EXPECT_LE((difference - slope).cwiseAbs().maxCoeff(), 1e-5 * largest + rounding);
+    }
+  });
+}
+
+TEST_P(EffectContract, ParametersAndAmplitudesAreInverse) {
+  for_each_case([&](const Stations&, const std::vector<double>& shape) {
+    Eigen::VectorXd amplitudes(effect_->amplitudes());
+    for (Eigen::Index i = 0; i < amplitudes.size(); ++i)
+      amplitudes[i] = 1e-3 * std::cos(1.0 + 2.0 * static_cast<double>(i));  // no zero among them
+    const Eigen::VectorXd values = effect_->parameter_values(amplitudes, shape).values;
+    const Eigen::VectorXd back = effect_->from_parameters(values);
+    // Degree 5 on [0, 600] loses 3 digits in the powers of x.
+    EXPECT_LT((back.head(amplitudes.size()) - amplitudes).norm(), 1e-12 * amplitudes.norm());
+    for (std::size_t i = 0; i < shape.size(); ++i)
+      EXPECT_DOUBLE_EQ(back[amplitudes.size() + static_cast<Eigen::Index>(i)], shape[i]);
+  });
+}
+
+TEST_P(EffectContract, ParameterJacobianAgreesWithCentralDifferences) {
+  const std::vector<double> shape(effect_->shapes().size(), 3.0);
+  Eigen::VectorXd at(effect_->amplitudes() + static_cast<Eigen::Index>(shape.size()));
+  for (Eigen::Index i = 0; i < at.size(); ++i)
+    at[i] = 1e-3 * std::cos(1.0 + 2.0 * static_cast<double>(i));
+  at.tail(shape.size()).setConstant(3.0);
+  const auto values_at = [&](const Eigen::VectorXd& point) {
+    const std::vector<double> moved(point.data() + effect_->amplitudes(),
+                                    point.data() + point.size());
+    return effect_->parameter_values(point.head(effect_->amplitudes()), moved);
+  };
+  const Eigen::MatrixXd jacobian = values_at(at).jacobian;
+  for (Eigen::Index j = 0; j < at.size(); ++j) {
+    const double step = 1e-4 * std::abs(at[j]);
+    Eigen::VectorXd plus = at, minus = at;
+    plus[j] += step;
+    minus[j] -= step;
+    const Eigen::VectorXd difference =
+        (values_at(plus).values - values_at(minus).values) / (plus[j] - minus[j]);
+    for (Eigen::Index i = 0; i < difference.size(); ++i) {
+      // Truncation is of order 1e-8 of the row's size, rounding 1e-16 of the value over the step.
+      const double tolerance = 1e-6 * jacobian.row(i).cwiseAbs().maxCoeff() +
+                               1e-15 * std::abs(values_at(at).values[i]) / step;
+      EXPECT_NEAR(difference[i], jacobian(i, j), tolerance) << i << " " << j;
+    }
+  }
+}
+
+TEST_P(EffectContract, IsLinearAsDeclared) {
+  const std::vector<double> shape(effect_->shapes().size(), 3.0);
+  Eigen::VectorXd a(effect_->amplitudes()), b(effect_->amplitudes());
+  for (Eigen::Index i = 0; i < a.size(); ++i) {
+    a[i] = std::cos(static_cast<double>(i));
+    b[i] = std::sin(1.0 + static_cast<double>(i));
+  }
+  const auto head = [&](const Eigen::VectorXd& amplitudes) -> Eigen::VectorXd {
+    return effect_->parameter_values(amplitudes, shape)
+        .values.head(static_cast<Eigen::Index>(effect_->parameters().size() - shape.size()));
+  };
+  const Eigen::VectorXd defect = head(a + b) - head(a) - head(b);
+  const double scale = head(a).cwiseAbs().maxCoeff();
+  if (effect_->linear_parameters())
+    EXPECT_LT(defect.norm(), 1e-12 * scale);
+  else
+    EXPECT_GT(defect.norm(), 1e-3 * scale);
+}
+
+TEST_P(EffectContract, NamesTheMetadataItLacks) {
+  for (const Case& profile : all_cases()) {
+    if (!effect_->applies_to(profile.setup)) continue;
+    EXPECT_TRUE(effect_->lacking(profile.setup).empty()) << profile.name;
+    slideway::Setup bare = profile.setup;
+    bare.feed_mm_per_min.reset();
+    bare.spindle_rpm.reset();
+    bare.cut_direction.reset();
+    bare.traverse_mm_per_s.reset();
+    const std::vector<std::string> lacking = effect_->lacking(bare);
+    for (const std::string& key : missing_for(effect_->description().clock, bare))
+      EXPECT_THAT(lacking, ::testing::Contains(key));
+    EXPECT_EQ(lacking.empty(), missing_for(effect_->description().clock, bare).empty());
+  }
+}
+
+TEST_P(EffectContract, SearchesInsideTheBounds) {
+  for (const Case& profile : all_cases()) {
+    if (!effect_->applies_to(profile.setup)) continue;
+    const Stations stations(profile.positions, profile.setup, lathe());
+    for (std::size_t i = 0; i < effect_->shapes().size(); ++i) {
+      const auto [low, high] = effect_->search_range(static_cast<int>(i), stations);
+      const Parameter& p = effect_->parameters()[effect_->shapes()[i].parameter];
+      EXPECT_LT(low, high) << profile.name;
+      EXPECT_GE(low, p.lower) << profile.name;
+      EXPECT_LE(high, p.upper) << profile.name;
+      EXPECT_GT(low, 0.0) << profile.name;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, EffectContract, ::testing::ValuesIn(effect_names()),
+                         [](const auto& entry) { return entry.param; });
+
+}  // namespace
+}  // namespace slideway

@@ -1,0 +1,86 @@
+// Readings along the slide: height, local slope, slope over a base.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "effects/effect_cases.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace testing_support;
+
+Case slide(Quantity quantity, std::optional<double> base = {}) {
+  Case profile{"slide", setup_of(Kind::slide, quantity, 0, 600), spaced(0, 600, 31)};
+  profile.setup.base_mm = base;
+  return profile;
+}
+
+// Straightness of degree 3 whose only coefficient is b_k = 1.
+Eigen::VectorXd power(int k, const Case& profile) {
+  const auto effect = make("straightness", kTravel, Lever::paper, 3);
+  return signal(*effect, profile, Eigen::VectorXd::Unit(4, k));
+}
+
+TEST(SlideReadings, HeightIsThePolynomialWithoutAnyLever) {
+  const Case profile = slide(Quantity::height);
+  const Eigen::VectorXd z = power(3, profile);
+  for (Eigen::Index i = 0; i < z.size(); ++i)
+    EXPECT_NEAR(z[i], std::pow(profile.positions[i], 3), 1e-13 * 2.16e8);
+}
+
+TEST(SlideReadings, LocalSlopeIsTheDerivative) {
+  const Case profile = slide(Quantity::slope);
+  const Eigen::VectorXd z = power(3, profile);
+  for (Eigen::Index i = 0; i < z.size(); ++i)
+    EXPECT_NEAR(z[i], 3.0 * std::pow(profile.positions[i], 2), 1e-13 * 1.08e6);
+}
+
+TEST(SlideReadings, SlopeOverABaseIsTheChordOverItsFeet) {
+  // ((x + B/2)³ - (x - B/2)³)/B = 3x² + B²/4, worked out by hand, B = 100 mm.
+  const Case profile = slide(Quantity::slope, 100.0);
+  const Eigen::VectorXd z = power(3, profile);
+  for (Eigen::Index i = 0; i < z.size(); ++i)
+    EXPECT_NEAR(z[i], 3.0 * std::pow(profile.positions[i], 2) + 2500.0, 1e-12 * 1.08e6);
+}
+
+TEST(SlideReadings, SlopeOverAShrinkingBaseBecomesTheLocalSlope) {
+  const auto effect = make("slide_periodic");
+  Eigen::VectorXd values(3);
+  values << 1.0, 80.0, 0.4;
+  const Eigen::VectorXd local = signal(*effect, slide(Quantity::slope), values);
+  double previous = 0.0;
+  for (const double base : {8.0, 4.0, 2.0, 1.0}) {
+    const double error = (signal(*effect, slide(Quantity::slope, base), values) - local).norm();
+    // sinc: the error goes with the square of the base, its next term is (πB/λ)²/20 of it.
+    if (previous > 0.0) {
+      EXPECT_NEAR(previous / error, 4.0, 0.03);
+    }
+    previous = error;
+  }
+}
+
+TEST(SlideReadings, BaseAveragesAWaveByTheSinc) {
+  // A base of one period sees nothing; of half a period 2/π of the local slope.
+  const auto effect = make("slide_periodic");
+  Eigen::VectorXd values(3);
+  values << 1.0, 80.0, 0.4;
+  const Eigen::VectorXd local = signal(*effect, slide(Quantity::slope), values);
+  const Eigen::VectorXd whole = signal(*effect, slide(Quantity::slope, 80.0), values);
+  const Eigen::VectorXd half = signal(*effect, slide(Quantity::slope, 40.0), values);
+  EXPECT_LT(whole.norm(), 1e-13 * local.norm());
+  EXPECT_LT((half - 2.0 / kPi * local).norm(), 1e-13 * local.norm());
+}
+
+TEST(SlideReadings, SlopesSeeNoDriftOfHeight) {
+  const slideway::Setup slope = slide(Quantity::slope).setup;
+  for (const char* name :
+       {"thermal_drift", "linear_drift", "time_periodic", "revolution_periodic", "spindle_runout",
+        "traverse_periodic", "squareness", "vertical_straightness", "tool_wear", "cup"})
+    EXPECT_FALSE(make(name)->applies_to(slope)) << name;
+  for (const char* name : {"straightness", "gantry_sag", "slide_periodic"})
+    EXPECT_TRUE(make(name)->applies_to(slope)) << name;
+}
+
+}  // namespace
+}  // namespace slideway

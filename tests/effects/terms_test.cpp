@@ -1,0 +1,215 @@
+// What the carriage model lacks: each effect against its formula's numbers, worked out by hand or
+// taken from the literature of the project (R = 10 mm, 110 rpm, feeds of 2 and 8 mm/min).
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "effects/effect_cases.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace testing_support;
+
+Case face(std::vector<double> positions, double feed = 2.0,
+          CutDirection direction = CutDirection::inward) {
+  Case profile{"face", setup_of(Kind::face, Quantity::height, 0, 10), std::move(positions)};
+  profile.setup.feed_mm_per_min = feed;
+  profile.setup.cut_direction = direction;
+  return profile;
+}
+
+Eigen::VectorXd values(std::initializer_list<double> list) {
+  Eigen::VectorXd result(static_cast<Eigen::Index>(list.size()));
+  std::copy(list.begin(), list.end(), result.data());
+  return result;
+}
+
+// Height in µm.
+Eigen::VectorXd height_um(const std::string& name, const Case& profile,
+                          std::initializer_list<double> parameters) {
+  return signal(*make(name), profile, values(parameters)) / kMicrometre;
+}
+
+TEST(LinearDrift, RisesWithTheTimeOfTheCut) {
+  // 10 nm/min: 50 nm in the 300 s of feed 2, 12.5 nm in the 75 s of feed 8.
+  EXPECT_NEAR(height_um("linear_drift", face({0.0}), {0.01})[0], 0.05, 1e-15);
+  EXPECT_NEAR(height_um("linear_drift", face({0.0}, 8.0), {0.01})[0], 0.0125, 1e-15);
+  EXPECT_NEAR(height_um("linear_drift", face({10.0}, 2.0, CutDirection::outward), {0.01})[0], 0.05,
+              1e-15);
+}
+
+TEST(ThermalDrift, ReachesSixtyThreePercentAtItsTimeConstant) {
+  // Feed 2 inward: t = 120 s at r = 10 - 4 = 6 mm; 1 - 1/e = 0.632120558828558 (DLMF 4.2.11).
+  const Eigen::VectorXd z = height_um("thermal_drift", face({10.0, 6.0}), {2.0, 120.0});
+  EXPECT_EQ(z[0], 0.0);
+  EXPECT_NEAR(z[1], 2.0 * 0.632120558828558, 1e-14);
+}
+
+TEST(ToolWear, GoesWithTheDistanceAlongTheSpiral) {
+  // 17.28 m at feed 2, 4.32 m at feed 8: π R² n/F = π 100 mm² 110/2 = 17278.76 mm.
+  EXPECT_NEAR(height_um("tool_wear", face({0.0}), {1.0})[0], 17.27875959474386, 1e-12);
+  EXPECT_NEAR(height_um("tool_wear", face({0.0}, 8.0), {1.0})[0], 17.27875959474386 / 4, 1e-12);
+}
+
+TEST(ToolWear, IsExactlyRSquaredInBothDirections) {
+  const std::vector<double> r = spaced(0, 10, 21);
+  const Eigen::VectorXd inward = height_um("tool_wear", face(r), {1.0});
+  const Eigen::VectorXd outward =
+      height_um("tool_wear", face(r, 2.0, CutDirection::outward), {1.0});
+  for (Eigen::Index i = 0; i < inward.size(); ++i) {
+    EXPECT_NEAR(inward[i], inward[0] * (1.0 - r[i] * r[i] / 100.0), 1e-13);
+    EXPECT_NEAR(outward[i], inward[0] * r[i] * r[i] / 100.0, 1e-13);
+  }
+}
+
+TEST(ToolRunningIn, SettlesAfterItsDistance) {
+  // s0 equal to the whole path: 1 - 1/e at the centre.
+  const Eigen::VectorXd z =
+      height_um("tool_running_in", face({10.0, 0.0}), {1.0, 17.27875959474386});
+  EXPECT_EQ(z[0], 0.0);
+  EXPECT_NEAR(z[1], 0.632120558828558, 1e-14);
+}
+
+TEST(Periodic, PhaseShiftsACosine) {
+  // A cos(2πq + φ): at φ = π/3 and q = 0 it is A/2, a sixth of a period later -A/2.
+  Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 600), {0.0, 10.0}};
+  const Eigen::VectorXd z = height_um("slide_periodic", profile, {2.0, 60.0, kPi / 3});
+  EXPECT_NEAR(z[0], 1.0, 1e-14);
+  EXPECT_NEAR(z[1], -1.0, 1e-14);
+}
+
+// Distance after which the signal repeats, tested at many places.
+void expect_period(const std::string& name, double feed, double rate, double period) {
+  const Case here = face(spaced(1, 5, 19), feed);
+  Case there = here;
+  for (double& r : there.positions) r += period;
+  const Eigen::VectorXd a = height_um(name, here, {1.0, rate, 0.3});
+  const Eigen::VectorXd b = height_um(name, there, {1.0, rate, 0.3});
+  EXPECT_LT((a - b).cwiseAbs().maxCoeff(), 1e-10) << name;  // 1e3 turns of 1e-13
+  EXPECT_GT(a.cwiseAbs().maxCoeff(), 0.5) << name;
+}
+
+TEST(Periodic, EachClockGivesItsOwnWavelengthOnTheFace) {
+  for (const double feed : {2.0, 8.0}) {
+    expect_period("slide_periodic", feed, 1.7, 1.7);                      // fixed in mm
+    expect_period("time_periodic", feed, 30.0, feed * 0.5);               // feed times T
+    expect_period("revolution_periodic", feed, 0.1, feed / 110.0 / 0.1);  // f/ν
+    expect_period("traverse_periodic", feed, 50.0, 0.01);                 // v/f = 10 µm
+  }
+}
+
+TEST(FeedMarks, RepeatOncePerTurnWithMeanZero) {
+  // Groove centres at r = R - i f inward and r = i f outward; -1/3 there, 2/3 at the cusps.
+  const double f = 2.0 / 110.0;
+  const Eigen::VectorXd inward =
+      height_um("feed_marks", face({10.0, 10.0 - 7 * f, 10.0 - 7.5 * f}), {1.0});
+  EXPECT_NEAR(inward[0], -1.0 / 3, 1e-9);
+  EXPECT_NEAR(inward[1], -1.0 / 3, 1e-9);
+  EXPECT_NEAR(inward[2], 2.0 / 3, 1e-9);
+  const Eigen::VectorXd outward =
+      height_um("feed_marks", face({3 * f}, 2.0, CutDirection::outward), {1.0});
+  EXPECT_NEAR(outward[0], -1.0 / 3, 1e-9);
+  // Mid-point rule over one groove: the mean of a parabola to 1/(4 · 3 · n²) of its height.
+  const Eigen::VectorXd groove =
+      height_um("feed_marks", face(spaced(5 + f / 2000, 5 + f - f / 2000, 1000)), {1.0});
+  EXPECT_NEAR(groove.mean(), 0.0, 1e-5);
+}
+
+TEST(FeedMarks, DoNotMoveWithTheStartOfTheClock) {
+  Case late = face(spaced(0, 10, 77));
+  const Eigen::VectorXd z = height_um("feed_marks", late, {1.0});
+  late.setup.start_s = 77.7;
+  EXPECT_LT((height_um("feed_marks", late, {1.0}) - z).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Step, LiftsEverythingInsideItsRadius) {
+  const Eigen::VectorXd z = height_um("step", face({0.0, 3.9, 4.0, 10.0}), {0.5, 4.0});
+  EXPECT_DOUBLE_EQ(z[0], 0.5);
+  EXPECT_DOUBLE_EQ(z[1], 0.5);
+  EXPECT_EQ(z[2], 0.0);
+  EXPECT_EQ(z[3], 0.0);
+}
+
+TEST(CentreHeight, IsAHyperbolaWithItsNubAtTheAxis) {
+  // h = 3, r = 4: (5 - 4)/3.
+  const Eigen::VectorXd z = height_um("centre_height", face({0.0, 4.0}), {1.0, 3.0});
+  EXPECT_DOUBLE_EQ(z[0], 1.0);
+  EXPECT_NEAR(z[1], 1.0 / 3, 1e-15);
+}
+
+TEST(SpeedEffect, IsZeroAtTheRimAndCappedAtTheCentre) {
+  // m = 1/2: (r/R)^-1/2 - 1 is 1 at r = R/4; below 0.02 mm it stays at sqrt(500) - 1.
+  const Eigen::VectorXd z = height_um("speed_effect", face({10.0, 2.5, 0.01, 0.0}), {1.0, 0.5});
+  EXPECT_EQ(z[0], 0.0);
+  EXPECT_NEAR(z[1], 1.0, 1e-14);
+  EXPECT_NEAR(z[2], std::sqrt(500.0) - 1.0, 1e-12);
+  EXPECT_EQ(z[2], z[3]);
+}
+
+TEST(EdgeRollOff, FallsToOneOverEWithinItsWidth) {
+  const Eigen::VectorXd z = height_um("edge_roll_off", face({10.0, 9.5}), {1.0, 0.5});
+  EXPECT_DOUBLE_EQ(z[0], 1.0);
+  EXPECT_NEAR(z[1], 0.367879441171442, 1e-14);
+}
+
+TEST(Cup, IsAParabolaOfTheStatedSag) {
+  const Eigen::VectorXd z = height_um("cup", face({0.0, 5.0, 10.0}), {0.8});
+  EXPECT_EQ(z[0], 0.0);
+  EXPECT_NEAR(z[1], 0.2, 1e-15);
+  EXPECT_NEAR(z[2], 0.8, 1e-15);
+}
+
+TEST(OddEffects, ChangeSignAcrossTheAxis) {
+  Case diameter{"", setup_of(Kind::face, Quantity::height, 2, 22), {2.0, 7.0, 12.0, 17.0, 22.0}};
+  diameter.setup.center_mm = 12.0;
+  const Eigen::VectorXd cubic = height_um("traverse_datum", diameter, {1.0});
+  const Eigen::VectorXd step = height_um("centre_step", diameter, {1.0});
+  const double cubes[] = {-1.0, -0.125, 0.0, 0.125, 1.0};
+  const double signs[] = {-1.0, -1.0, 0.0, 1.0, 1.0};
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    EXPECT_DOUBLE_EQ(cubic[i], cubes[i]);
+    EXPECT_DOUBLE_EQ(step[i], signs[i]);
+  }
+}
+
+TEST(CentreStep, IsOfNoUseOnARadius) {
+  EXPECT_FALSE(make("centre_step")->applies_to(face({0.0}).setup));
+  EXPECT_TRUE(make("centre_step")->applies_to(all_cases()[2].setup));
+}
+
+TEST(SpindleRunout, GrowsAlongTheReading) {
+  // 60 rpm and 60 mm/min: one turn per second and per mm. cos 2πhk is 1 at whole mm; the growth
+  // counts -1 at the first and +1 at the last position.
+  Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), {0.0, 50.0, 100.0, 100.25}};
+  profile.setup.feed_mm_per_min = 60.0;
+  profile.setup.cut_direction = CutDirection::outward;
+  const Eigen::VectorXd first =
+      height_um("spindle_runout", profile, {1.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 60.0});
+  EXPECT_NEAR(first[0], 0.5, 1e-12);
+  EXPECT_NEAR(first[1], 1.0, 1e-12);
+  EXPECT_NEAR(first[2], 1.5, 1e-12);
+  EXPECT_NEAR(first[3], 0.0, 1e-12);  // a quarter turn
+  const Eigen::VectorXd second =
+      height_um("spindle_runout", profile, {0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 60.0});
+  EXPECT_NEAR(second[3], -1.0, 1e-12);
+}
+
+TEST(SearchRange, StaysWithinWhatTheProfileShows) {
+  const Case profile = face(spaced(0, 10, 1001));  // 0.01 mm, 0.3 s, 0.55 turns a step; 300 s
+  const Stations stations(profile.positions, profile.setup, lathe());
+  const auto near = [](std::pair<double, double> range, double low, double high) {
+    // Sums of a thousand steps.
+    EXPECT_NEAR(range.first, low, 1e-9 * low);
+    EXPECT_NEAR(range.second, high, 1e-9 * high);
+  };
+  near(make("time_periodic")->search_range(0, stations), 1.2, 600.0);
+  near(make("thermal_drift")->search_range(0, stations), 1.2, 3000.0);
+  near(make("slide_periodic")->search_range(0, stations), 0.1, 10.0);
+  near(make("revolution_periodic")->search_range(0, stations), 1.0 / 1100.0, 0.5);
+  near(make("spindle_runout")->search_range(0, stations), 110 * 0.98, 110 * 1.02);
+  near(make("step")->search_range(0, stations), 0.01, 9.99);
+}
+
+}  // namespace
+}  // namespace slideway
