@@ -1,0 +1,16 @@
+#pragma once
+
+#include "slideway/identify/problem.hpp"
+#include "slideway/identify/result.hpp"
+
+namespace slideway {
+
+enum class Scope { rank, fit, identify };
+
+/// The main job on a problem and its profiles: low band, fit, ranking, cross-check. Scope::rank
+/// leaves the fit and cross-check out of the result, Scope::fit the ranking and cross-check.
+/// @throws UsageError, DataError
+Result identify(const Problem& problem, const std::vector<Profile>& profiles,
+                Scope scope = Scope::identify);
+
+}  // namespace slideway

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "slideway/effects/effect.hpp"
+#include "slideway/identify/problem.hpp"
+#include "slideway/signal/low_band.hpp"
+
+namespace slideway {
+
+/// One effect of the model with the place of its numbers among all: linear amplitudes and shape
+/// parameters of all effects are numbered through, effect by effect.
+struct ModelTerm {
+  std::string name;  // "squareness"
+  std::shared_ptr<const Effect> effect;
+  std::vector<Prior> priors;
+  Eigen::Index first_amplitude = 0;
+  Eigen::Index first_shape = 0;
+  Eigen::Index first_parameter = 0;
+};
+
+/// One profile as the fit sees it: its low band and the columns of its own nuisances in it.
+struct Observation {
+  const Profile* profile = nullptr;
+  LowBand low_band;
+  Eigen::VectorXd values;     // #values
+  Eigen::MatrixXd nuisances;  // #values by 0, 1 or 2: offset, tilt of the trace
+  std::vector<std::string> nuisance_names;
+};
+
+/// The declared model and the data it is held against.
+struct Model {
+  Machine machine;
+  TravelRange range;  // of all profiles
+  std::vector<ModelTerm> terms;
+  std::vector<Observation>
+      observations;  // one per profile, fit and holdout, in the problem's order
+
+  [[nodiscard]] Eigen::Index amplitudes() const;
+  [[nodiscard]] Eigen::Index shapes() const;
+  [[nodiscard]] Eigen::Index parameters() const;
+  /// "squareness.dbeta_xz"
+  [[nodiscard]] std::vector<std::string> parameter_names() const;
+};
+
+/// Builds effects (with an inner basis for the travel of the profiles) and the low bands. The
+/// profiles must outlive the model.
+/// @throws UsageError  an effect lacks the metadata of its clock, named by profile and key
+/// @throws DataError   fewer samples than 2^level
+Model build_model(const Problem& problem, const std::vector<Profile>& profiles);
+
+/// Puts one more effect into a model. @throws UsageError as build_model().
+void append_term(Model& model, const DeclaredEffect& declared, const TravelRange& range);
+
+/// Columns of one effect in the low band of one observation: #values by #amplitudes; zero where the
+/// reading can not see the effect.
+Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
+                                 const Observation& observation, std::span<const double> shape);
+
+/// The same for d(columns)/d(shape[which]).
+Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
+                                     const Observation& observation, std::span<const double> shape,
+                                     int which);
+
+/// What an effect with these amplitudes adds to every sample of a profile, mm or rad.
+Eigen::VectorXd effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,
+                              const Eigen::VectorXd& amplitudes, std::span<const double> shape);
+
+}  // namespace slideway

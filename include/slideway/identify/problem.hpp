@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slideway/effects/effect.hpp"
+#include "slideway/profile/profile.hpp"
+#include "slideway/signal/low_band.hpp"
+
+namespace slideway {
+
+/// A normal prior on one parameter, in the parameter's unit.
+struct Prior {
+  std::string parameter;
+  double value = 0.0;
+  double standard_uncertainty = 0.0;
+};
+
+struct DeclaredEffect {
+  std::string name;
+  EffectOptions options;
+  std::vector<Prior> priors;
+};
+
+/// The run-out measurement of Eq. (21): θ = (r + p) / L.
+struct Runout {
+  double r_um = 0.0;
+  double p_um = 0.0;
+  double diameter_mm = 0.0;
+  double standard_uncertainty_um = 0.0;
+};
+
+struct TraceOptions {
+  std::vector<std::string> candidates;  // effect names; "all" is written out
+  int max_effects = 3;
+  double significance = 0.01;
+};
+
+/// What `simulate` makes profiles from.
+struct Truth {
+  std::uint64_t seed = 1;
+  double noise_um = 0.0;              // standard deviation of one sample (slope profiles: µrad)
+  double noise_correlation_mm = 0.0;  // 0: white; else exponential autocorrelation exp(-|Δs| / it)
+  std::size_t samples = 20000;        // of a profile whose file is not there yet
+  std::map<std::string, double> parameters;  // "squareness.dbeta_xz" -> value
+  struct HiddenEffect {                      // one the model does not declare
+    std::string name;
+    EffectOptions options;
+    std::map<std::string, double> parameters;
+  };
+  std::vector<HiddenEffect> effects;
+};
+
+/// One [[profile]] of the problem file: where the data are, and everything but the data.
+struct ProfileEntry {
+  ProfileSource source;
+  Profile profile;  // name, file, setup, role, ...; positions and values empty
+  std::string position_unit, value_unit;
+};
+
+/// A problem file, checked.
+struct Problem {
+  std::filesystem::path path;
+  std::string title;
+  std::vector<Body> bodies;  // the paper's lathe unless the file lists its own
+  Lever lever = Lever::paper;
+  LowBandOptions low_band;
+  std::vector<ProfileEntry> profiles;
+  std::vector<DeclaredEffect> effects;
+  std::optional<Runout> runout;
+  TraceOptions trace;
+  std::optional<Truth> truth;
+
+  [[nodiscard]] Machine machine() const { return {bodies, lever}; }
+};
+
+/// Reads a problem file (TOML). `data_dir` replaces ${SLIDEWAY_DATA} in paths; without it the
+/// environment variable of that name does.
+/// @throws UsageError  "file:line: key: what is wrong; accepted: ..." for an unknown key, a missing
+///                     unit, a wrong type, a value out of range; a file that is not there or is no
+///                     TOML
+Problem read_problem(const std::filesystem::path& path,
+                     const std::optional<std::filesystem::path>& data_dir = std::nullopt);
+
+/// Reads all profiles of a problem, in order. @throws DataError
+std::vector<Profile> read_profiles(const Problem& problem);
+
+/// The problem file without its [truth], each profile's `file` replaced by one of `files` with the
+/// columns x_mm and z_um (slopes: slope_urad), and no window. The same text on every machine.
+/// REQUIRES one file per profile.
+/// @throws UsageError  the problem file can no longer be read
+std::string simulated_problem_text(const Problem& problem, const std::vector<std::string>& files);
+
+}  // namespace slideway

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "slideway/identify/fit.hpp"
+#include "slideway/identify/result.hpp"
+
+namespace slideway {
+
+/// Correlates what each effect of a fitted model puts into each profile with the profile itself,
+/// before and after the low band: Eqs. (6), (19), (20) and Figs. 8, 9.
+///
+/// The signal of an effect is that of the fit; where the data leave it no size (a squareness
+/// levelled away) and it has one amplitude, its shape alone.
+RankingResult rank_effects(const Model& model, const Fit& fit);
+
+/// The effect whose |low-band coefficient|, averaged over the fitted profiles, is largest, and the
+/// one with the largest share of the fitted low band.
+Dominant dominant_effects(const RankingResult& ranking, const FitResult& fit);
+
+/// One column held against the signal's column.
+struct ColumnRanking {
+  std::string candidate;
+  double raw = 0.0, low_band = 0.0;
+  int lag = 0;  // rows, of the largest |coefficient|
+  double lag_coefficient = 0.0;
+  double effective_observations = 0.0;
+  double p_value = 1.0;
+};
+
+/// Ranks columns of a table against one of them (Fig. 11), largest |low-band coefficient| first.
+/// @throws DataError, UsageError
+std::vector<ColumnRanking> rank_columns(const std::filesystem::path& file,
+                                        const std::string& signal,
+                                        const std::vector<std::string>& candidates,
+                                        const LowBandOptions& options);
+
+}  // namespace slideway

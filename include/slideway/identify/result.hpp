@@ -1,0 +1,166 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// What an identification finds: plain values, the report's raw material. Lengths in the unit the
+/// name says; a number that could not be determined is std::nullopt, never NaN.
+namespace slideway {
+
+struct InputSummary {
+  std::string name, file, sha256, kind, quantity, role;
+  std::size_t samples = 0;
+  std::size_t missing = 0;
+  double position_min_mm = 0.0, position_max_mm = 0.0;
+  std::optional<double> rms_um, pv_um;      // heights: about the mean; none for slopes
+  std::optional<double> rms_urad, pv_urad;  // slopes
+  std::vector<std::string> notes;
+};
+
+struct RunningSeries {
+  std::vector<std::size_t> samples;
+  std::vector<double> raw, low_band;
+};
+
+/// Pearson's coefficient of one effect and one profile, Eqs. (6), (19), (20).
+struct Ranking {
+  std::string effect, profile;
+  double raw = 0.0, low_band = 0.0;
+  double lag_mm = 0.0;  // lag at which the low-band coefficient is largest
+  double lag_coefficient = 0.0;
+  double effective_observations = 0.0;
+  double p_value = 1.0;   // of the low-band coefficient, on effective observations
+  RunningSeries running;  // Figs. 8 and 9
+};
+
+/// Correlation of two effects' signals on one profile: how little a high coefficient selects.
+struct CandidateCorrelation {
+  std::string a, b, profile;
+  double coefficient = 0.0;
+};
+
+struct RankingResult {
+  std::vector<Ranking> entries;
+  std::vector<CandidateCorrelation> among_candidates;
+  std::vector<std::string> notes;
+};
+
+struct FittedParameter {
+  std::string name, symbol, unit, standard_name;
+  std::optional<double> value, standard_uncertainty, expanded_uncertainty;
+  double coverage_factor = 2.0;
+  std::optional<double> degrees_of_freedom;  // effective, for coverage_factor; none: infinite
+  bool identifiable = true;
+  bool at_bound = false;
+};
+
+/// A direction in parameter space: name -> coefficient.
+using Combination = std::vector<std::pair<std::string, double>>;
+
+struct UndeterminedDirection {
+  Combination combination;  // unit length; moving along it changes no prediction
+  std::string advice;       // which measurement would determine it
+};
+
+/// What the data do say of parameters they can not tell apart: Σ coefficient * parameter.
+struct DeterminedCombination {
+  Combination combination;
+  double value = 0.0, standard_uncertainty = 0.0, expanded_uncertainty = 0.0;
+  std::string unit;
+};
+
+struct Identifiability {
+  std::size_t parameters = 0;
+  std::size_t rank = 0;
+  double condition = 1.0;  // of the scaled columns within the rank
+  std::vector<UndeterminedDirection> unidentifiable;
+  std::vector<DeterminedCombination> determined;
+};
+
+/// The noise of one profile as the fit has it.
+struct NoiseSummary {
+  std::string profile;
+  std::string
+      scaling;    // "declared" | "estimated" | "estimated: the declared uncertainty is too small"
+  int order = 0;  // p of AR(p)
+  std::optional<double> standard_deviation_um,
+      standard_deviation_urad;  // of one low-band value, as height
+  double correlation_mm = 0.0;  // integral correlation length
+  double effective_observations = 0.0;
+  double ljung_box_p = 1.0;  // of the whitened residual
+};
+
+/// One effect's share of the low band at the fitted values.
+struct Contribution {
+  std::string effect, profile;
+  double rms_um = 0.0;  // about its mean (slopes: µrad)
+  double share = 0.0;   // of the sum of mean squares of all effects on that profile
+};
+
+/// Residual of one profile in the low band.
+struct ResidualSummary {
+  std::string profile, role;
+  double rms_um = 0.0;  // µm, slopes: µrad
+  double pv_um = 0.0;
+  std::string unit;  // "um" or "urad"
+};
+
+struct GuidewayBound {  // plausibility of a fitted straightness coefficient
+  std::string text;
+};
+
+struct FitResult {
+  bool converged = false;
+  std::string message;           // the solver's, where it did not converge
+  std::optional<double> rms_um;  // of fitted height profiles
+  std::size_t observations = 0;
+  double effective_observations = 0.0;
+  std::vector<FittedParameter> parameters;
+  std::vector<FittedParameter> nuisances;  // "feed2.offset", "feed2.tilt"
+  std::vector<std::tuple<std::string, std::string, double>> correlations;  // |ρ| >= 0.1
+  Identifiability identifiability;
+  std::vector<NoiseSummary> noise;
+  std::vector<Contribution> contributions;
+  std::vector<ResidualSummary> residuals;  // fitted and held-out profiles
+  double chi_square = 0.0;                 // of the whitened residual
+  double degrees_of_freedom = 0.0;
+  std::optional<double>
+      neglected_um;                // largest |exact - first order| of Eq. (5) at the fitted values
+  std::vector<std::string> notes;  // how uncertainties were scaled, plausibility, what was done
+
+  [[nodiscard]] const FittedParameter* find(const std::string& name) const;
+};
+
+struct Dominant {
+  std::optional<std::string> by_correlation, by_fit;
+  std::optional<bool> agree;
+};
+
+struct SquarenessCheck {
+  std::optional<double> fit_rad, fit_U_rad, indirect_rad, indirect_U_rad, En;
+  std::string verdict = "not_available";  // "consistent" | "inconsistent" | "not_available"
+  std::string reason;
+  std::optional<double> travel_mm;  // over which the squareness acts in these data
+  std::optional<double> fit_amplitude_um, indirect_amplitude_um;  // squareness times travel
+};
+
+struct Result {
+  std::string title;
+  std::string version;
+  std::vector<InputSummary> inputs;
+  std::string wavelet, boundary;
+  int level = 0;
+  std::size_t low_band_values = 0;
+  std::optional<RankingResult> ranking;  // `fit` has none
+  Dominant dominant;
+  std::optional<FitResult> fit;  // `rank` prints none
+  std::optional<SquarenessCheck> squareness;
+};
+
+/// True if the verdict is negative for `--strict`: inconsistent, not identifiable.
+bool is_negative(const Result& result);
+
+}  // namespace slideway

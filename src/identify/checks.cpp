@@ -1,0 +1,140 @@
+#include "checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "residual.hpp"
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+/// A good slide: 1 µm of straightness over 200 mm (air-bearing makers' figures).
+constexpr double kGoodStraightness = 1.0 * kMicrometre;
+constexpr double kGoodTravel = 200.0;
+constexpr double kImplausible = 10.0;  // times the good slide's
+
+/// Σ_k p_k x^k and its derivative, from the parameters `prefix`0, 1, ... of a term ("b", "c").
+struct Polynomial {
+  std::vector<double> coefficients;
+  [[nodiscard]] double operator()(double x) const {
+    double sum = 0.0;
+    for (std::size_t k = coefficients.size(); k-- > 0;) sum = sum * x + coefficients[k];
+    return sum;
+  }
+  [[nodiscard]] double slope(double x) const {
+    double sum = 0.0;
+    for (std::size_t k = coefficients.size(); k-- > 1;)
+      sum = sum * x + static_cast<double>(k) * coefficients[k];
+    return sum;
+  }
+};
+
+const ModelTerm* find_term(const Model& model, const std::string& name) {
+  for (const ModelTerm& term : model.terms)
+    if (term.name == name) return &term;
+  return nullptr;
+}
+
+Polynomial polynomial(const ModelTerm* term, const Fit& fit, std::size_t first_power) {
+  Polynomial out;
+  if (!term) return out;
+  out.coefficients.assign(first_power, 0.0);
+  for (std::size_t p = 0; p < term->effect->parameters().size(); ++p)
+    out.coefficients.push_back(fit.parameters.values[term->first_parameter + p]);
+  return out;
+}
+
+/// Largest |exact - first order| of the volumetric error's height at the fitted values, mm.
+std::optional<double> neglected_height(const Model& model, const Fit& fit) {
+  const Polynomial straightness = polynomial(find_term(model, "straightness"), fit, 0);
+  const Polynomial vertical = polynomial(find_term(model, "vertical_straightness"), fit, 1);
+  const ModelTerm* squareness = find_term(model, "squareness");
+  const std::vector<int> x = model.machine.carriages(Axis::x), z = model.machine.carriages(Axis::z);
+  std::optional<double> largest;
+  for (const Observation* observation : fit.linear.observations) {
+    const Setup& setup = observation->profile->setup;
+    if (setup.kind != Kind::face || x.empty()) continue;
+    const double reach = std::max(std::abs(setup.first_mm - setup.center_mm),
+                                  std::abs(setup.last_mm - setup.center_mm));
+    for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const Pose pose{part * reach, setup.z_mm, setup.overhang_mm};
+      std::vector<BodyErrors> errors(model.machine.bodies().size());
+      BodyErrors& carriage = errors[x.front() - 1];
+      const double slide = setup.spindle_position_mm + pose.radius;
+      carriage.motion.z = straightness(slide);
+      carriage.motion.beta = straightness.slope(slide);
+      if (squareness) carriage.squareness = fit.parameters.values[squareness->first_parameter];
+      if (!z.empty()) errors[z.front() - 1].motion.beta = vertical.slope(setup.z_mm);
+      const double gap = model.machine.volumetric_error(pose, errors).z() -
+                         model.machine.volumetric_error_first_order(pose, errors).z();
+      largest = std::max(largest.value_or(0.0), std::abs(gap));
+    }
+  }
+  return largest;
+}
+
+/// Peak to valley of a curve about its least-squares line over [low, high].
+double straightness_error(const Polynomial& curve, double low, double high) {
+  constexpr int kPoints = 201;
+  Eigen::VectorXd x(kPoints), y(kPoints);
+  for (int i = 0; i < kPoints; ++i) {
+    x[i] = low + (high - low) * i / (kPoints - 1);
+    y[i] = curve(x[i]);
+  }
+  x.array() -= x.mean();
+  y.array() -= y.mean();
+  y -= x * (x.dot(y) / x.squaredNorm());
+  return y.maxCoeff() - y.minCoeff();
+}
+
+void check_plausibility(const Model& model, const Fit& fit, FitResult& out) {
+  const ModelTerm* term = find_term(model, "straightness");
+  const double travel = model.range.slide_max - model.range.slide_min;
+  if (!term || !(travel > 0.0)) return;
+  bool face = false;
+  for (const Observation* observation : fit.linear.observations)
+    face = face || observation->profile->setup.kind == Kind::face;
+  const double found =
+      straightness_error(polynomial(term, fit, 0), model.range.slide_min, model.range.slide_max);
+  const double part = travel / kGoodTravel;
+  const double good = kGoodStraightness * (part < 1.0 ? part * part : part);
+  if (!face || found < kImplausible * good) return;
+  out.notes.push_back("the fitted straightness is " + significant(found / kMicrometre, 2) +
+                      " um over " + significant(travel, 4) +
+                      " mm; a slide of 1 um per 200 mm makes " +
+                      significant(good / kMicrometre, 2) +
+                      " um there: look for another cause before blaming the slide");
+}
+
+void explain_scaling(const Fit& fit, FitResult& out) {
+  const bool estimated = std::any_of(fit.noise.begin(), fit.noise.end(),
+                                     [](const Noise& noise) { return !noise.declared; });
+  const bool correlated = std::any_of(fit.noise.begin(), fit.noise.end(), [](const Noise& noise) {
+    return noise.correlation.order() > 0;
+  });
+  out.notes.emplace_back(
+      !estimated ? "uncertainties rest on the declared standard uncertainties, taken as white"
+      : correlated
+          ? "uncertainties are scaled by the residual and widened for its correlation (AR noise, "
+            "restricted likelihood); coverage factors from Student's t for 95.45 %"
+          : "uncertainties are scaled by the residual, which shows no correlation; coverage "
+            "factors "
+            "from Student's t for 95.45 %");
+}
+
+}  // namespace
+
+void add_checks(const Model& model, const Fit& fit, FitResult& out) {
+  if (const std::optional<double> gap = neglected_height(model, fit))
+    out.neglected_um = *gap / kMicrometre;
+  explain_scaling(fit, out);
+  check_plausibility(model, fit, out);
+  for (const Observation& observation : model.observations)
+    if (observation.low_band.resampled())
+      out.notes.push_back("profile '" + observation.profile->name +
+                          "': positions are not uniform; brought to a uniform grid for the wavelet "
+                          "by linear interpolation, the model's columns likewise");
+}
+
+}  // namespace slideway

@@ -1,0 +1,73 @@
+#include "slideway/identify/identify.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/identify/crosscheck.hpp"
+#include "slideway/identify/fit.hpp"
+#include "slideway/identify/ranking.hpp"
+
+namespace slideway {
+namespace {
+
+InputSummary summarise_input(const Profile& profile) {
+  InputSummary out{profile.name,
+                   profile.file,
+                   profile.sha256,
+                   profile.setup.kind == Kind::face ? "face" : "slide",
+                   profile.setup.quantity == Quantity::height ? "height" : "slope",
+                   profile.role == Role::fit ? "fit" : "holdout"};
+  out.samples = profile.values.size();
+  out.position_min_mm = profile.positions.front();
+  out.position_max_mm = profile.positions.back();
+  double mean = 0.0, squares = 0.0;
+  for (const double value : profile.values) mean += value;
+  mean /= static_cast<double>(profile.values.size());
+  for (const double value : profile.values) squares += (value - mean) * (value - mean);
+  const auto [low, high] = std::minmax_element(profile.values.begin(), profile.values.end());
+  const double rms = std::sqrt(squares / static_cast<double>(profile.values.size()));
+  if (profile.setup.quantity == Quantity::height) {
+    out.rms_um = rms / kMicrometre;
+    out.pv_um = (*high - *low) / kMicrometre;
+  } else {
+    out.rms_urad = rms * 1e6;
+    out.pv_urad = (*high - *low) * 1e6;
+  }
+  out.notes = profile.notes;
+  return out;
+}
+
+}  // namespace
+
+Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope) {
+  Result result;
+  result.title = problem.title;
+  for (const Profile& profile : profiles) result.inputs.push_back(summarise_input(profile));
+  result.wavelet = problem.low_band.wavelet;
+  result.level = problem.low_band.level;
+  result.boundary = name(problem.low_band.boundary);
+
+  const Model model = build_model(problem, profiles);
+  const Fit fitted = fit(model);
+  FitResult summary = summarise(model, fitted);
+  for (const Observation* observation : fitted_observations(model))
+    result.low_band_values += static_cast<std::size_t>(observation->values.size());
+  if (scope != Scope::fit) {
+    result.ranking = rank_effects(model, fitted);
+    result.dominant = dominant_effects(*result.ranking, summary);
+  }
+  if (scope == Scope::identify)
+    result.squareness = check_squareness(model, problem.runout, summary);
+  if (scope != Scope::rank) result.fit = std::move(summary);
+  return result;
+}
+
+bool is_negative(const Result& result) {
+  const bool undetermined =
+      result.fit && std::any_of(result.fit->parameters.begin(), result.fit->parameters.end(),
+                                [](const FittedParameter& p) { return !p.identifiable; });
+  const bool inconsistent = result.squareness && result.squareness->verdict == "inconsistent";
+  return undetermined || inconsistent || (result.fit && !result.fit->converged);
+}
+
+}  // namespace slideway

@@ -1,0 +1,157 @@
+#include "slideway/identify/model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
+
+namespace slideway {
+namespace {
+
+TravelRange travel_range(const std::vector<Profile>& profiles, const Machine& machine) {
+  TravelRange range{INFINITY, -INFINITY, INFINITY, -INFINITY};
+  for (const Profile& profile : profiles) {
+    const Stations stations = profile.stations(machine);
+    for (Eigen::Index i = 0; i < stations.size(); ++i) {
+      range.slide_min = std::min(range.slide_min, stations.slide(i));
+      range.slide_max = std::max(range.slide_max, stations.slide(i));
+    }
+    if (profile.setup.base_mm) {  // the feet of a bridge reach beyond its centre
+      range.slide_min -= *profile.setup.base_mm / 2.0;
+      range.slide_max += *profile.setup.base_mm / 2.0;
+    }
+    range.z_min = std::min(range.z_min, profile.setup.z_mm);
+    range.z_max = std::max(range.z_max, profile.setup.z_mm);
+  }
+  return range;
+}
+
+/// Offset and tilt of the trace. A slope reading knows no offset of height, and a tilt of the line
+/// is the zero of the reading: one constant column.
+Eigen::MatrixXd nuisance_columns(const Profile& profile, std::vector<std::string>& names) {
+  const auto n = static_cast<Eigen::Index>(profile.positions.size());
+  const bool slope = profile.setup.quantity == Quantity::slope;
+  std::vector<Eigen::VectorXd> columns;
+  if (slope ? (profile.free_offset || profile.free_tilt) : profile.free_offset) {
+    columns.emplace_back(Eigen::VectorXd::Ones(n));
+    names.emplace_back(slope ? "zero" : "offset");
+  }
+  if (!slope && profile.free_tilt) {
+    const double middle = 0.5 * (profile.setup.first_mm + profile.setup.last_mm);
+    columns.emplace_back(Eigen::Map<const Eigen::VectorXd>(profile.positions.data(), n).array() -
+                         middle);
+    names.emplace_back("tilt");
+  }
+  Eigen::MatrixXd out(n, static_cast<Eigen::Index>(columns.size()));
+  for (Eigen::Index j = 0; j < out.cols(); ++j) out.col(j) = columns[j];
+  return out;
+}
+
+Observation observe(const Profile& profile, const LowBandOptions& options) {
+  std::vector<std::string> names;
+  const Eigen::MatrixXd nuisances = nuisance_columns(profile, names);
+  LowBand low_band(options, profile.positions);
+  Eigen::VectorXd values(low_band.values());
+  low_band.apply(profile.values, {values.data(), static_cast<std::size_t>(values.size())});
+  Eigen::MatrixXd low_nuisances = low_band.apply(nuisances);
+  return {&profile, std::move(low_band), std::move(values), std::move(low_nuisances),
+          std::move(names)};
+}
+
+void require_metadata(const ModelTerm& term, const Profile& profile) {
+  if (!term.effect->applies_to(profile.setup)) return;
+  const std::vector<std::string> lacking = term.effect->lacking(profile.setup);
+  if (!lacking.empty())
+    throw UsageError("effect '" + term.name + "' needs " + joined(lacking) + " of profile '" +
+                     profile.name + "'");
+}
+
+}  // namespace
+
+Eigen::Index Model::amplitudes() const {
+  return terms.empty() ? 0 : terms.back().first_amplitude + terms.back().effect->amplitudes();
+}
+
+Eigen::Index Model::shapes() const {
+  return terms.empty() ? 0
+                       : terms.back().first_shape +
+                             static_cast<Eigen::Index>(terms.back().effect->shapes().size());
+}
+
+Eigen::Index Model::parameters() const {
+  return terms.empty() ? 0
+                       : terms.back().first_parameter +
+                             static_cast<Eigen::Index>(terms.back().effect->parameters().size());
+}
+
+std::vector<std::string> Model::parameter_names() const {
+  std::vector<std::string> names;
+  for (const ModelTerm& term : terms)
+    for (const Parameter& parameter : term.effect->parameters())
+      names.push_back(term.name + "." + parameter.name);
+  return names;
+}
+
+void append_term(Model& model, const DeclaredEffect& declared, const TravelRange& range) {
+  ModelTerm term{
+      declared.name,   make_effect(declared.name, declared.options, model.machine, range),
+      declared.priors, model.amplitudes(),
+      model.shapes(),  model.parameters()};
+  const bool taken = std::any_of(model.terms.begin(), model.terms.end(),
+                                 [&](const ModelTerm& other) { return other.name == term.name; });
+  if (taken) term.name += "[" + declared.options.body.value_or("") + "]";
+  for (const Observation& observation : model.observations)
+    require_metadata(term, *observation.profile);
+  model.terms.push_back(std::move(term));
+}
+
+Model build_model(const Problem& problem, const std::vector<Profile>& profiles) {
+  Model model{problem.machine(), travel_range(profiles, problem.machine()), {}, {}};
+  for (const Profile& profile : profiles) {
+    try {
+      model.observations.push_back(observe(profile, problem.low_band));
+    } catch (const DataError& error) {
+      throw DataError("profile '" + profile.name + "': " + error.what());
+    }
+  }
+  for (const DeclaredEffect& declared : problem.effects) append_term(model, declared, model.range);
+  return model;
+}
+
+Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
+                                 const Observation& observation, std::span<const double> shape) {
+  const Profile& profile = *observation.profile;
+  const Eigen::Index amplitudes = term.effect->amplitudes();
+  if (!term.effect->applies_to(profile.setup))
+    return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
+  const Stations stations = profile.stations(model.machine);
+  Eigen::MatrixXd columns(stations.size(), amplitudes);
+  term.effect->columns(stations, shape, columns);
+  return observation.low_band.apply(columns);
+}
+
+Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
+                                     const Observation& observation, std::span<const double> shape,
+                                     int which) {
+  const Profile& profile = *observation.profile;
+  const Eigen::Index amplitudes = term.effect->amplitudes();
+  if (!term.effect->applies_to(profile.setup))
+    return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
+  const Stations stations = profile.stations(model.machine);
+  Eigen::MatrixXd columns(stations.size(), amplitudes);
+  term.effect->derivatives(stations, shape, which, columns);
+  return observation.low_band.apply(columns);
+}
+
+Eigen::VectorXd effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,
+                              const Eigen::VectorXd& amplitudes, std::span<const double> shape) {
+  const Stations stations = profile.stations(model.machine);
+  if (!term.effect->applies_to(profile.setup)) return Eigen::VectorXd::Zero(stations.size());
+  Eigen::MatrixXd columns(stations.size(), term.effect->amplitudes());
+  term.effect->columns(stations, shape, columns);
+  return columns * amplitudes;
+}
+
+}  // namespace slideway

@@ -1,0 +1,312 @@
+#include "slideway/identify/noise.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace slideway {
+namespace {
+
+constexpr int kMaxOrder = 6;
+constexpr Eigen::Index kValuesPerOrder = 10;  // residual values asked for per AR coefficient
+constexpr double kRefuted = 10.0;      // likelihood gain (as -2 ln) that overrules a declaration
+constexpr double kLargestAtanh = 3.0;  // |π| < 0.995
+
+/// Whitened cross products of a matrix of columns for any AR noise, from the lagged products of the
+/// columns: the cost of one evaluation does not depend on the number of rows.
+class LaggedProducts {
+ public:
+  LaggedProducts(const Eigen::MatrixXd& columns, int max_order)
+      : head_(columns.topRows(max_order)) {
+    const Eigen::Index n = columns.rows();
+    products_.assign(max_order + 1, std::vector<Eigen::MatrixXd>(max_order + 1));
+    for (int b = 0; b <= max_order; ++b)
+      products_[0][b] = columns.bottomRows(n - max_order).transpose() *
+                        columns.middleRows(max_order - b, n - max_order);
+    for (int a = 1; a <= max_order; ++a)
+      for (int b = a; b <= max_order; ++b)
+        products_[a][b] = products_[a - 1][b - 1] +
+                          columns.row(max_order - a).transpose() * columns.row(max_order - b) -
+                          columns.row(n - a).transpose() * columns.row(n - b);
+  }
+
+  /// columns' R^-1 columns, R the correlation structure with unit innovations.
+  [[nodiscard]] Eigen::MatrixXd whitened(const Autoregression& noise) const {
+    const int max_order = static_cast<int>(head_.rows());
+    const int p = noise.order();
+    std::vector<double> filter(p + 1, 1.0);
+    for (int j = 1; j <= p; ++j) filter[j] = -noise.predictor(p)[j - 1];
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(head_.cols(), head_.cols());
+    for (int a = 0; a <= p; ++a) {
+      out += filter[a] * filter[a] * products_[a][a];
+      for (int b = a + 1; b <= p; ++b)
+        out += filter[a] * filter[b] * (products_[a][b] + products_[a][b].transpose());
+    }
+    for (int t = 0; t < max_order; ++t) {
+      const int m = std::min(t, p);
+      Eigen::RowVectorXd row = head_.row(t);
+      for (int j = 1; j <= m; ++j) row -= noise.predictor(m)[j - 1] * head_.row(t - j);
+      out += row.transpose() * row / noise.relative_variance(m);
+    }
+    return out;
+  }
+
+ private:
+  Eigen::MatrixXd head_;
+  std::vector<std::vector<Eigen::MatrixXd>> products_;
+};
+
+Autoregression from_atanh(const Eigen::VectorXd& parameters) {
+  std::vector<double> partial(parameters.size() - 1);
+  for (std::size_t j = 0; j < partial.size(); ++j)
+    partial[j] = std::tanh(std::clamp(parameters[j], -kLargestAtanh, kLargestAtanh));
+  return Autoregression(partial);
+}
+
+/// -2 ln of the restricted likelihood as a function of one profile's noise, the other profiles'
+/// fixed.
+class RestrictedLikelihood {
+ public:
+  RestrictedLikelihood(const LinearProfile& profile, int max_order)
+      : n_(profile.residual.size()), m_(profile.nuisances.cols()), r_(profile.columns.cols()) {
+    Eigen::MatrixXd all(n_, m_ + r_ + 1);
+    all << profile.nuisances, profile.columns, profile.residual;
+    products_.emplace(all, max_order);
+  }
+
+  /// Information on (w, residual) this profile gives, nuisances eliminated; adds -2 ln L's own
+  /// part.
+  Eigen::MatrixXd information(const Eigen::VectorXd& parameters, double* cost) const {
+    const Autoregression noise = from_atanh(parameters);
+    const double log_variance = 2.0 * parameters[parameters.size() - 1];
+    Eigen::MatrixXd gram = products_->whitened(noise) * std::exp(-log_variance);
+    double own = static_cast<double>(n_) * log_variance + noise.log_determinant(n_);
+    if (m_ > 0) {
+      const Eigen::LLT<Eigen::MatrixXd> nuisance(gram.topLeftCorner(m_, m_));
+      own += 2.0 * nuisance.matrixLLT().diagonal().array().log().sum();
+      const Eigen::MatrixXd cross = nuisance.matrixL().solve(gram.topRightCorner(m_, r_ + 1));
+      gram.bottomRightCorner(r_ + 1, r_ + 1) -= cross.transpose() * cross;
+    }
+    if (cost) *cost = own;
+    return gram.bottomRightCorner(r_ + 1, r_ + 1);
+  }
+
+  /// @param rest  information of all other profiles and the priors on (w, residual)
+  double operator()(const Eigen::VectorXd& parameters, const Eigen::MatrixXd& rest) const {
+    double own = 0.0;
+    const Eigen::LLT<Eigen::MatrixXd> joint(information(parameters, &own) + rest);
+    if (joint.info() != Eigen::Success) return INFINITY;
+    const Eigen::VectorXd diagonal = joint.matrixLLT().diagonal();
+    return own + 2.0 * diagonal.head(r_).array().log().sum() + diagonal[r_] * diagonal[r_];
+  }
+
+ private:
+  Eigen::Index n_, m_, r_;
+  std::optional<LaggedProducts> products_;
+};
+
+/// Central-difference gradient and Hessian.
+void differentiate(const std::function<double(const Eigen::VectorXd&)>& f, const Eigen::VectorXd& x,
+                   Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) {
+  constexpr double kStep = 1e-3;  // of atanh π and ln σ: both of order one
+  const Eigen::Index d = x.size();
+  gradient.resize(d);
+  hessian.resize(d, d);
+  const double f0 = f(x);
+  const auto at = [&](Eigen::Index i, double si, Eigen::Index j, double sj) {
+    Eigen::VectorXd y = x;
+    y[i] += si * kStep;
+    y[j] += sj * kStep;
+    return f(y);
+  };
+  for (Eigen::Index i = 0; i < d; ++i) {
+    const double up = at(i, 1, i, 0), down = at(i, -1, i, 0);
+    gradient[i] = (up - down) / (2.0 * kStep);
+    hessian(i, i) = (up - 2.0 * f0 + down) / (kStep * kStep);
+    for (Eigen::Index j = 0; j < i; ++j)
+      hessian(i, j) = hessian(j, i) =
+          (at(i, 1, j, 1) - at(i, 1, j, -1) - at(i, -1, j, 1) + at(i, -1, j, -1)) /
+          (4.0 * kStep * kStep);
+  }
+}
+
+/// Minimises by damped Newton steps; `hessian` is left at the minimum.
+Eigen::VectorXd minimise(const std::function<double(const Eigen::VectorXd&)>& f, Eigen::VectorXd x,
+                         Eigen::MatrixXd& hessian) {
+  Eigen::VectorXd gradient;
+  double best = f(x);
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    differentiate(f, x, gradient, hessian);
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
+    const Eigen::VectorXd curvature = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-3);
+    const Eigen::VectorXd step =
+        -eigen.eigenvectors() *
+        (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(curvature);
+    double length = std::min(1.0, 1.0 / std::max(step.lpNorm<Eigen::Infinity>(), 1e-12));
+    double next = INFINITY;
+    while (length > 1e-4 && !((next = f(x + length * step)) <= best)) length /= 4.0;
+    if (!(next <= best)) break;
+    x += length * step;
+    const double gain = best - next;
+    best = next;
+    if (gain < 1e-8) break;
+  }
+  return x;
+}
+
+int order_by_bic(const std::vector<double>& partial, Eigen::Index n) {
+  double best = 0.0, log_variance = 0.0;
+  int order = 0;
+  for (std::size_t p = 1; p <= partial.size(); ++p) {
+    log_variance += std::log1p(-partial[p - 1] * partial[p - 1]);
+    const double bic = static_cast<double>(n) * log_variance +
+                       static_cast<double>(p) * std::log(static_cast<double>(n));
+    if (bic < best) {
+      best = bic;
+      order = static_cast<int>(p);
+    }
+  }
+  return order;
+}
+
+Noise make_noise(const Eigen::VectorXd& parameters) {
+  Noise noise;
+  noise.correlation = from_atanh(parameters);
+  noise.innovation = std::exp(parameters[parameters.size() - 1]);
+  return noise;
+}
+
+Noise white(double deviation) {
+  Noise noise;
+  noise.innovation = deviation;
+  return noise;
+}
+
+/// State of the estimation: noise parameters of each profile and the information they give.
+class Estimator {
+ public:
+  Estimator(std::span<const LinearProfile> profiles, const Eigen::MatrixXd& prior_information)
+      : profiles_(profiles),
+        prior_(prior_information),
+        parameters_(profiles.size()),
+        information_(profiles.size()),
+        hessian_(profiles.size()) {
+    for (std::size_t i = 0; i < profiles.size(); ++i) start(i);
+  }
+
+  std::vector<Noise> run() {
+    constexpr int kSweeps = 3;  // the profiles are coupled only through a few shared parameters
+    for (int sweep = 0; sweep < kSweeps; ++sweep)
+      for (std::size_t i = 0; i < profiles_.size(); ++i) refine(i);
+    std::vector<Noise> out;
+    for (std::size_t i = 0; i < profiles_.size(); ++i) out.push_back(conclude(i));
+    return out;
+  }
+
+ private:
+  void start(std::size_t i) {
+    const LinearProfile& profile = profiles_[i];
+    const Eigen::Index n = profile.residual.size();
+    const Eigen::Index spare = n - profile.nuisances.cols() - profile.columns.cols();
+    const int most =
+        static_cast<int>(std::clamp<Eigen::Index>(spare / kValuesPerOrder - 1, 0, kMaxOrder));
+    std::vector<double> partial =
+        Autoregression::burg({profile.residual.data(), static_cast<std::size_t>(n)}, most);
+    partial.resize(order_by_bic(partial, n));
+    if (Autoregression(partial).long_run_ratio() < 1.0) partial.clear();
+    likelihood_.emplace_back(profile, static_cast<int>(partial.size()));
+    Eigen::VectorXd x(partial.size() + 1);
+    for (std::size_t j = 0; j < partial.size(); ++j) x[j] = std::atanh(partial[j]);
+    const double variance =
+        profile.residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(spare, 1));
+    x[x.size() - 1] = 0.5 * std::log(variance / Autoregression(partial).variance_ratio());
+    parameters_[i] = x;
+    information_[i] = likelihood_[i].information(x, nullptr);
+  }
+
+  [[nodiscard]] Eigen::MatrixXd others(std::size_t i) const {
+    Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(prior_.rows() + 1, prior_.cols() + 1);
+    rest.topLeftCorner(prior_.rows(), prior_.cols()) = prior_;
+    for (std::size_t j = 0; j < profiles_.size(); ++j)
+      if (j != i) rest += information_[j];
+    return rest;
+  }
+
+  void refine(std::size_t i) {
+    const Eigen::MatrixXd rest = others(i);
+    const auto cost = [&](const Eigen::VectorXd& x) { return likelihood_[i](x, rest); };
+    parameters_[i] = minimise(cost, parameters_[i], hessian_[i]);
+    information_[i] = likelihood_[i].information(parameters_[i], nullptr);
+  }
+
+  [[nodiscard]] Noise conclude(std::size_t i) const {
+    Noise noise = make_noise(parameters_[i]);
+    if (noise.correlation.order() > 0 && noise.correlation.long_run_ratio() < 1.0)
+      noise = white(noise.standard_deviation());
+    const Eigen::Index d = noise.correlation.order() + 1;
+    const Eigen::MatrixXd hessian = 0.5 * hessian_[i].bottomRightCorner(d, d);
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
+    noise.covariance = eigen.eigenvectors() *
+                       eigen.eigenvalues().cwiseMax(0.5).cwiseInverse().asDiagonal() *
+                       eigen.eigenvectors().transpose();
+    const std::optional<double>& declared = profiles_[i].declared;
+    if (!declared) return noise;
+    const Eigen::MatrixXd rest = others(i);
+    const double n = static_cast<double>(profiles_[i].residual.size());
+    const double gain = likelihood_[i](declared_parameters(i, *declared), rest) -
+                        likelihood_[i](parameters_[i], rest);
+    noise.overruled = gain > static_cast<double>(d) * std::log(n) + kRefuted &&
+                      noise.weight_deviation() > *declared;
+    if (noise.overruled) return noise;
+    Noise out = white(*declared);
+    out.declared = true;
+    return out;
+  }
+
+  [[nodiscard]] Eigen::VectorXd declared_parameters(std::size_t i, double declared) const {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(parameters_[i].size());
+    x[x.size() - 1] = std::log(declared);
+    return x;
+  }
+
+  std::span<const LinearProfile> profiles_;
+  const Eigen::MatrixXd& prior_;
+  std::vector<RestrictedLikelihood> likelihood_;
+  std::vector<Eigen::VectorXd> parameters_;
+  std::vector<Eigen::MatrixXd> information_;
+  std::vector<Eigen::MatrixXd> hessian_;
+};
+
+}  // namespace
+
+double Noise::standard_deviation() const {
+  return innovation * std::sqrt(correlation.variance_ratio());
+}
+
+double Noise::weight_deviation() const {
+  return standard_deviation() * std::sqrt(correlation.long_run_ratio());
+}
+
+Eigen::VectorXd Noise::parameters() const {
+  const auto& partial = correlation.partial_autocorrelations();
+  Eigen::VectorXd x(partial.size() + 1);
+  for (std::size_t j = 0; j < partial.size(); ++j) x[j] = std::atanh(partial[j]);
+  x[x.size() - 1] = std::log(innovation);
+  return x;
+}
+
+Noise Noise::at(const Eigen::VectorXd& parameters) const { return make_noise(parameters); }
+
+std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,
+                                  const Eigen::MatrixXd& prior_information) {
+  return Estimator(profiles, prior_information).run();
+}
+
+Eigen::MatrixXd coloured(const Noise& noise, Eigen::MatrixXd columns) {
+  noise.correlation.colour_transposed(columns);
+  return noise.innovation * columns;
+}
+
+}  // namespace slideway

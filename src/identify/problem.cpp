@@ -1,0 +1,293 @@
+#include "slideway/identify/problem.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "problem_profile.hpp"
+#include "problem_section.hpp"
+#include "problem_toml.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr int kHighestLevel = 30;
+constexpr int kHighestDegree = 99;
+constexpr int kHighestInteger = std::numeric_limits<int>::max();
+
+constexpr std::string_view kLevers =
+    "\"paper\" (one p_x = r for every term, Eq. (16)), \"split\" (pitch terms act on the constant "
+    "overhang_mm, squareness on r)";
+
+std::vector<Body> read_bodies(const Section& machine) {
+  if (!machine.has("body")) return Machine::paper_lathe();
+  std::vector<Body> bodies;
+  for (const Section& section : machine.tables("body")) {
+    section.accept("name lower axis");
+    Body body;
+    body.name = section.required("name", section.text("name"), "a name of its own");
+    body.lower = section.required("lower", section.integer("lower", 0, kHighestInteger),
+                                  "number of the adjacent lower body, 0 for the bed");
+    const auto axis = section.required("axis", section.one_of("axis", "x y z"), "x y z");
+    body.axis = axis == "x" ? Axis::x : axis == "y" ? Axis::y : Axis::z;
+    bodies.push_back(body);
+  }
+  return bodies;
+}
+
+MachineDefaults read_machine(const Section& root, Problem& problem) {
+  MachineDefaults defaults;
+  problem.bodies = Machine::paper_lathe();
+  const std::optional<Section> section = root.table("machine");
+  if (!section) return defaults;
+  section->accept("lever overhang_mm spindle_position_mm body");
+  if (section->one_of("lever", "paper split") == "split") problem.lever = Lever::split;
+  defaults.lever = problem.lever;
+  defaults.overhang_mm = section->number("overhang_mm").value_or(0.0);
+  check_overhang(*section, defaults.overhang_mm, problem.lever);
+  defaults.spindle_position_mm = section->number("spindle_position_mm").value_or(0.0);
+  problem.bodies = read_bodies(*section);
+  try {
+    static_cast<void>(problem.machine());
+  } catch (const UsageError& error) {
+    section->fail("body", error.what());
+  }
+  return defaults;
+}
+
+void check_lever_is_given(const Section& root, const Problem& problem) {
+  const bool face =
+      std::any_of(problem.profiles.begin(), problem.profiles.end(),
+                  [](const ProfileEntry& entry) { return entry.profile.setup.kind == Kind::face; });
+  const std::optional<Section> machine = root.table("machine");
+  if (!face || (machine && machine->has("lever"))) return;
+  const std::string what = "missing; a face needs it; accepted: " + std::string(kLevers);
+  if (machine) machine->fail("lever", what);
+  root.fail("machine.lever", what);
+}
+
+LowBandOptions read_low_band(const Section& root) {
+  LowBandOptions options;
+  const std::optional<Section> section = root.table("low_band");
+  if (!section) return options;
+  section->accept("wavelet level boundary");
+  std::vector<std::string> wavelets;
+  for (int n = 1; n <= 19; ++n) wavelets.push_back("db" + std::to_string(n));
+  options.wavelet = section->one_of("wavelet", wavelets).value_or(options.wavelet);
+  options.level = section->integer("level", 0, kHighestLevel).value_or(options.level);
+  if (const auto name = section->one_of("boundary", kBoundaries))
+    options.boundary = boundary(*name);
+  return options;
+}
+
+void read_profile_entries(const Section& root, const MachineDefaults& machine,
+                          const PathRules& paths, Problem& problem) {
+  std::set<std::string> names;
+  for (const Section& section : root.tables("profile")) {
+    problem.profiles.push_back(read_profile_entry(section, machine, paths));
+    const std::string& name = problem.profiles.back().profile.name;
+    if (!names.insert(name).second)
+      section.fail("name", "'" + name + "' is used twice; accepted: a name of its own");
+  }
+  if (problem.profiles.empty()) root.fail("profile", "missing; accepted: at least one [[profile]]");
+}
+
+EffectOptions read_effect_options(const Section& section) {
+  return {section.text("body"), section.integer("degree", 0, kHighestDegree),
+          section.positive("span_mm")};
+}
+
+std::unique_ptr<Effect> made(const Section& section, const std::string& name,
+                             const EffectOptions& options, const Problem& problem) {
+  try {
+    return make_effect(name, options, problem.machine(), TravelRange{});
+  } catch (const UsageError& error) {
+    section.fail("", error.what());
+  }
+}
+
+std::string read_effect_name(const Section& section) {
+  return section.required("name", section.one_of("name", effect_names()),
+                          joined(effect_names(), " "));
+}
+
+std::vector<std::string> names_of(const std::vector<Parameter>& parameters) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : parameters) names.push_back(parameter.name);
+  return names;
+}
+
+std::vector<Prior> read_priors(const Section& effect, const std::vector<std::string>& parameters) {
+  std::vector<Prior> priors;
+  for (const Section& section : effect.tables("priors")) {
+    section.accept("parameter value standard_uncertainty");
+    Prior prior;
+    prior.parameter = section.required("parameter", section.one_of("parameter", parameters),
+                                       joined(parameters, " "));
+    prior.value = section.required("value", section.number("value"), "a number");
+    prior.standard_uncertainty = section.required(
+        "standard_uncertainty", section.positive("standard_uncertainty"), "a number above 0");
+    priors.push_back(prior);
+  }
+  return priors;
+}
+
+bool is_same_effect(const DeclaredEffect& a, const DeclaredEffect& b) {
+  return a.name == b.name &&
+         (!a.options.body || !b.options.body || a.options.body == b.options.body);
+}
+
+void read_effects(const Section& root, Problem& problem) {
+  for (const Section& section : root.tables("effect")) {
+    section.accept("name body degree span_mm priors");
+    DeclaredEffect effect;
+    effect.name = read_effect_name(section);
+    effect.options = read_effect_options(section);
+    effect.priors = read_priors(
+        section, names_of(made(section, effect.name, effect.options, problem)->parameters()));
+    for (const DeclaredEffect& other : problem.effects)
+      if (is_same_effect(effect, other))
+        section.fail("name", "'" + effect.name + "' is declared twice for the same body");
+    problem.effects.push_back(effect);
+  }
+  if (problem.effects.empty()) root.fail("effect", "missing; accepted: at least one [[effect]]");
+}
+
+std::optional<Runout> read_runout(const Section& root) {
+  const std::optional<Section> section = root.table("runout");
+  if (!section) return std::nullopt;
+  section->accept("r_um p_um diameter_mm standard_uncertainty_um");
+  Runout runout;
+  runout.r_um = section->required("r_um", section->number("r_um"), "a number");
+  runout.p_um = section->required("p_um", section->number("p_um"), "a number");
+  runout.diameter_mm =
+      section->required("diameter_mm", section->positive("diameter_mm"), "a number above 0");
+  runout.standard_uncertainty_um = section->required(
+      "standard_uncertainty_um", section->positive("standard_uncertainty_um"), "a number above 0");
+  return runout;
+}
+
+TraceOptions read_trace(const Section& root) {
+  TraceOptions options;
+  std::vector<std::string> all;
+  for (const std::string& name : effect_names())
+    if (!is_carriage_effect(name)) all.push_back(name);
+  options.candidates = all;
+  const std::optional<Section> section = root.table("trace");
+  if (!section) return options;
+  section->accept("candidates max_effects significance");
+  std::vector<std::string> accepted = all;
+  accepted.emplace_back("all");
+  const auto named = section->some_of("candidates", accepted);
+  if (named && std::find(named->begin(), named->end(), "all") == named->end())
+    options.candidates = *named;
+  options.max_effects =
+      section->integer("max_effects", 0, kHighestInteger).value_or(options.max_effects);
+  options.significance = section->positive("significance").value_or(options.significance);
+  if (!(options.significance < 1.0)) section->fail("significance", "must be less than 1");
+  return options;
+}
+
+/// The true value of a parameter, inside its bounds; one that is left out is 0, if that is
+/// possible.
+std::optional<double> read_true_value(const Section& section, const std::string& key,
+                                      const Parameter& parameter) {
+  const std::optional<double> value = section.number(key);
+  const double used = value.value_or(0.0);
+  if (!(used >= parameter.lower && used <= parameter.upper))
+    section.fail(key, std::string(value ? "out of range" : "missing") + "; accepted: from " +
+                          shortest(parameter.lower) + " to " + shortest(parameter.upper) + " " +
+                          parameter.unit);
+  return value;
+}
+
+/// `parameters = { "squareness.dbeta_xz" = 2.8e-6 }`, against the declared effects.
+std::map<std::string, double> read_true_parameters(const Section& truth, const Problem& problem) {
+  const std::optional<Section> section = truth.table("parameters");
+  if (!section) return {};
+  std::map<std::string, Parameter> known;
+  std::vector<std::string> accepted;
+  for (const DeclaredEffect& declared : problem.effects) {
+    const auto effect = make_effect(declared.name, declared.options, problem.machine(), {});
+    for (const Parameter& parameter : effect->parameters()) {
+      accepted.push_back(declared.name + "." + parameter.name);
+      known.emplace(accepted.back(), parameter);
+    }
+  }
+  section->accept(accepted);
+  std::map<std::string, double> values;
+  for (const std::string& key : section->keys())
+    values[key] = *read_true_value(*section, key, known.at(key));
+  return values;
+}
+
+/// A [[truth.effect]]: every key that is no option is a parameter of the effect.
+Truth::HiddenEffect read_hidden_effect(const Section& section, const Problem& problem) {
+  Truth::HiddenEffect hidden;
+  hidden.name = read_effect_name(section);
+  hidden.options = read_effect_options(section);
+  const auto effect = made(section, hidden.name, hidden.options, problem);
+  std::vector<std::string> accepted = names_of(effect->parameters());
+  for (const char* option : {"name", "body", "degree", "span_mm"}) accepted.emplace_back(option);
+  section.accept(accepted);
+  for (const Parameter& parameter : effect->parameters())
+    if (const auto value = read_true_value(section, parameter.name, parameter))
+      hidden.parameters[parameter.name] = *value;
+  return hidden;
+}
+
+std::optional<Truth> read_truth(const Section& root, const Problem& problem) {
+  const std::optional<Section> section = root.table("truth");
+  if (!section) return std::nullopt;
+  section->accept("seed noise_um noise_correlation_mm samples parameters effect");
+  Truth truth;
+  truth.seed = static_cast<std::uint64_t>(section->integer("seed", 0, kHighestInteger).value_or(1));
+  truth.noise_um = section->not_negative("noise_um").value_or(0.0);
+  truth.noise_correlation_mm = section->not_negative("noise_correlation_mm").value_or(0.0);
+  if (const auto samples = section->integer("samples", 2, 100'000'000))
+    truth.samples = static_cast<std::size_t>(*samples);
+  truth.parameters = read_true_parameters(*section, problem);
+  for (const Section& effect : section->tables("effect"))
+    truth.effects.push_back(read_hidden_effect(effect, problem));
+  return truth;
+}
+
+}  // namespace
+
+Problem read_problem(const std::filesystem::path& path,
+                     const std::optional<std::filesystem::path>& data_dir) {
+  const TomlValue tree = read_toml(path);
+  const std::string file = path.string();
+  const Section root(file, "", tree);
+  root.accept("title machine low_band profile effect runout trace truth");
+  Problem problem;
+  problem.path = path;
+  problem.title = root.text("title").value_or("");
+  const MachineDefaults machine = read_machine(root, problem);
+  problem.low_band = read_low_band(root);
+  read_profile_entries(root, machine, {path.parent_path(), data_dir}, problem);
+  check_lever_is_given(root, problem);
+  read_effects(root, problem);
+  problem.runout = read_runout(root);
+  problem.trace = read_trace(root);
+  problem.truth = read_truth(root, problem);
+  return problem;
+}
+
+std::vector<Profile> read_profiles(const Problem& problem) {
+  std::vector<Profile> profiles;
+  for (const ProfileEntry& entry : problem.profiles) {
+    profiles.push_back(entry.profile);
+    try {
+      read_profile(entry.source, profiles.back());
+    } catch (const DataError& error) {
+      throw DataError("profile '" + entry.profile.name + "': " + error.what());
+    }
+  }
+  return profiles;
+}
+
+}  // namespace slideway

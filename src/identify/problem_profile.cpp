@@ -1,0 +1,126 @@
+#include "problem_profile.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "slideway/base/units.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::string_view kKeys =
+    "name file kind quantity position_column value_column position_unit value_unit base_mm window "
+    "center_mm z_mm overhang_mm feed_mm_per_min spindle_rpm cut_direction cut_radius_mm start_s "
+    "traverse_mm_per_s free standard_uncertainty role";
+
+std::filesystem::path data_directory(const Section& section, const PathRules& paths) {
+  if (paths.data_dir) return std::filesystem::absolute(*paths.data_dir);
+  const char* variable = std::getenv("SLIDEWAY_DATA");
+  if (variable == nullptr || *variable == '\0')
+    section.fail("file",
+                 "needs the directory ${SLIDEWAY_DATA}, which is not set; accepted: --data DIR or "
+                 "the environment variable SLIDEWAY_DATA");
+  return std::filesystem::absolute(variable);
+}
+
+std::filesystem::path resolved(const Section& section, std::string file, const PathRules& paths) {
+  constexpr std::string_view kVariable = "${SLIDEWAY_DATA}";
+  if (const std::size_t at = file.find(kVariable); at != std::string::npos)
+    file.replace(at, kVariable.size(), data_directory(section, paths).string());
+  else if (file.find("${") != std::string::npos)
+    section.fail("file", "unknown variable in '" + file + "'; accepted: ${SLIDEWAY_DATA}");
+  return paths.base / file;
+}
+
+std::string checked_name(const Section& section) {
+  std::string name = section.required("name", section.text("name"), "a name of its own");
+  if (name.find_first_of("/\\") != std::string::npos)
+    section.fail("name", "'" + name + "' must not hold a slash: files are named after it");
+  return name;
+}
+
+void read_units(const Section& section, ProfileEntry& entry) {
+  constexpr std::string_view kPositionUnits = "m mm um nm inch s";
+  ProfileSource& source = entry.source;
+  entry.position_unit = section.required(
+      "position_unit", section.unit("position_unit", kPositionUnits, " for a position"),
+      kPositionUnits);
+  source.position_is_time = entry.position_unit == "s";
+  if (!source.position_is_time) source.position_unit = *length_unit(entry.position_unit);
+
+  const bool slope = entry.profile.setup.quantity == Quantity::slope;
+  const std::string_view units = slope ? kSlopeUnits : kLengthUnits;
+  entry.value_unit = section.required(
+      "value_unit", section.unit("value_unit", units, slope ? " for a slope" : " for a height"),
+      units);
+  source.value_unit = slope ? *slope_unit(entry.value_unit) : *length_unit(entry.value_unit);
+}
+
+void read_source(const Section& section, const PathRules& paths, ProfileEntry& entry) {
+  ProfileSource& source = entry.source;
+  entry.profile.file = section.required("file", section.text("file"), "path of a data file");
+  source.path = resolved(section, entry.profile.file, paths);
+  source.position_column = section.column("position_column").value_or("1");
+  source.value_column = section.column("value_column").value_or("2");
+  source.window = section.range("window");
+  read_units(section, entry);
+}
+
+void read_geometry(const Section& section, const MachineDefaults& machine, Setup& setup) {
+  if (section.one_of("kind", "face slide") == "slide") setup.kind = Kind::slide;
+  if (section.one_of("quantity", "height slope") == "slope") setup.quantity = Quantity::slope;
+  setup.base_mm = section.positive("base_mm");
+  if (setup.base_mm && setup.quantity != Quantity::slope)
+    section.fail("base_mm", "belongs to quantity = \"slope\" only");
+  setup.center_mm = section.number("center_mm").value_or(0.0);
+  setup.spindle_position_mm = machine.spindle_position_mm;
+  setup.z_mm = section.number("z_mm").value_or(0.0);
+  setup.overhang_mm = section.number("overhang_mm").value_or(machine.overhang_mm);
+  check_overhang(section, setup.overhang_mm, machine.lever);
+}
+
+void read_cut(const Section& section, bool position_is_time, Setup& setup) {
+  setup.feed_mm_per_min = section.positive("feed_mm_per_min");
+  if (position_is_time && !setup.feed_mm_per_min)
+    section.missing(
+        "feed_mm_per_min",
+        "a feed greater than 0, which position_unit = \"s\" needs to become a position");
+  setup.spindle_rpm = section.positive("spindle_rpm");
+  if (const auto direction = section.one_of("cut_direction", "inward outward"))
+    setup.cut_direction = *direction == "inward" ? CutDirection::inward : CutDirection::outward;
+  setup.cut_radius_mm = section.positive("cut_radius_mm");
+  setup.start_s = section.number("start_s").value_or(0.0);
+  setup.traverse_mm_per_s = section.positive("traverse_mm_per_s");
+}
+
+void read_treatment(const Section& section, ProfileEntry& entry) {
+  Profile& profile = entry.profile;
+  if (const auto free = section.some_of("free", words("offset tilt"))) {
+    profile.free_offset = std::find(free->begin(), free->end(), "offset") != free->end();
+    profile.free_tilt = std::find(free->begin(), free->end(), "tilt") != free->end();
+  }
+  if (const auto uncertainty = section.positive("standard_uncertainty"))
+    profile.standard_uncertainty = entry.source.value_unit(*uncertainty);
+  if (section.one_of("role", "fit holdout") == "holdout") profile.role = Role::holdout;
+}
+
+}  // namespace
+
+void check_overhang(const Section& section, double overhang_mm, Lever lever) {
+  if (overhang_mm != 0.0 && lever != Lever::split && section.has("overhang_mm"))
+    section.fail("overhang_mm", "has no meaning here; accepted: only with lever = \"split\"");
+}
+
+ProfileEntry read_profile_entry(const Section& section, const MachineDefaults& machine,
+                                const PathRules& paths) {
+  section.accept(kKeys);
+  ProfileEntry entry;
+  entry.profile.name = checked_name(section);
+  read_geometry(section, machine, entry.profile.setup);
+  read_source(section, paths, entry);
+  read_cut(section, entry.source.position_is_time, entry.profile.setup);
+  read_treatment(section, entry);
+  return entry;
+}
+
+}  // namespace slideway

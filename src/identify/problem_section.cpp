@@ -1,0 +1,202 @@
+#include "problem_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+const TomlValue::Table kNoEntries;
+
+bool is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
+
+bool has_control_character(std::string_view text) {
+  return std::any_of(text.begin(), text.end(), is_control);
+}
+
+std::optional<double> as_number(const TomlValue& value) {
+  if (const auto* number = std::get_if<double>(&value.data)) return *number;
+  if (const auto* whole = std::get_if<std::int64_t>(&value.data))
+    return static_cast<double>(*whole);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string> words(std::string_view list) {
+  std::istringstream stream{std::string(list)};
+  std::vector<std::string> result;
+  for (std::string word; stream >> word;) result.push_back(word);
+  return result;
+}
+
+Section::Section(const std::string& file, std::string name, const TomlValue& value)
+    : file_(&file),
+      name_(std::move(name)),
+      line_(value.line),
+      table_(std::get_if<TomlValue::Table>(&value.data)) {
+  if (table_ == nullptr) {
+    table_ = &kNoEntries;
+    fail("", "must be a table, [" + name_ + "]");
+  }
+}
+
+void Section::accept(std::span<const std::string> keys) const {
+  for (const TomlEntry& entry : *table_)
+    if (std::find(keys.begin(), keys.end(), entry.key) == keys.end())
+      fail(entry.key,
+           "unknown key" + did_you_mean(entry.key, keys) + "; accepted: " + joined(keys, " "));
+}
+
+std::vector<std::string> Section::keys() const {
+  std::vector<std::string> result;
+  for (const TomlEntry& entry : *table_) result.push_back(entry.key);
+  return result;
+}
+
+const TomlEntry* Section::find(std::string_view key) const {
+  const auto at = std::find_if(table_->begin(), table_->end(),
+                               [&](const TomlEntry& entry) { return entry.key == key; });
+  return at == table_->end() ? nullptr : &*at;
+}
+
+std::optional<double> Section::number(std::string_view key) const {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const std::optional<double> value = as_number(entry->value);
+  if (!value || !std::isfinite(*value)) fail(key, "must be a finite number");
+  return value;
+}
+
+std::optional<double> Section::positive(std::string_view key) const {
+  const std::optional<double> value = number(key);
+  if (value && !(*value > 0.0)) fail(key, "must be greater than 0, not " + shortest(*value));
+  return value;
+}
+
+std::optional<double> Section::not_negative(std::string_view key) const {
+  const std::optional<double> value = number(key);
+  if (value && !(*value >= 0.0)) fail(key, "must be 0 or greater, not " + shortest(*value));
+  return value;
+}
+
+std::optional<int> Section::integer(std::string_view key, int lowest, int highest) const {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const auto* value = std::get_if<std::int64_t>(&entry->value.data);
+  if (value == nullptr || *value < lowest || *value > highest)
+    fail(key, "must be a whole number from " + std::to_string(lowest) + " to " +
+                  std::to_string(highest) +
+                  (value == nullptr ? "" : ", not " + std::to_string(*value)));
+  return static_cast<int>(*value);
+}
+
+std::optional<std::string> Section::text(std::string_view key) const {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const auto* value = std::get_if<std::string>(&entry->value.data);
+  if (value == nullptr || trimmed(*value).empty() || has_control_character(*value))
+    fail(key, "must be a text on one line, \"...\"");
+  return *value;
+}
+
+std::optional<std::string> Section::column(std::string_view key) const {
+  const TomlEntry* entry = find(key);
+  if (entry != nullptr && std::holds_alternative<std::int64_t>(entry->value.data))
+    return std::to_string(*integer(key, 1, std::numeric_limits<int>::max()));
+  return text(key);
+}
+
+std::optional<std::pair<double, double>> Section::range(std::string_view key) const {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const auto* array = std::get_if<TomlValue::Array>(&entry->value.data);
+  const bool two = array != nullptr && array->size() == 2;
+  const std::optional<double> low = two ? as_number((*array)[0]) : std::nullopt;
+  const std::optional<double> high = two ? as_number((*array)[1]) : std::nullopt;
+  if (!low || !high || !std::isfinite(*low) || !std::isfinite(*high) || !(*low < *high))
+    fail(key, "must be two finite numbers, the smaller one first: [0.0, 10.0]");
+  return std::pair(*low, *high);
+}
+
+void Section::check_word(std::string_view key, const std::string& word,
+                         std::span<const std::string> accepted, std::string_view where) const {
+  if (std::find(accepted.begin(), accepted.end(), word) != accepted.end()) return;
+  fail(key, "\"" + word + "\" is not accepted" + std::string(where) + did_you_mean(word, accepted) +
+                "; accepted: " + joined(accepted, " "));
+}
+
+std::optional<std::string> Section::one_of(std::string_view key,
+                                           std::span<const std::string> accepted,
+                                           std::string_view where) const {
+  std::optional<std::string> value = text(key);
+  if (value) check_word(key, *value, accepted, where);
+  return value;
+}
+
+std::optional<std::string> Section::unit(std::string_view key, std::string_view accepted,
+                                         std::string_view where) const {
+  std::optional<std::string> value = text(key);
+  if (!value) return value;
+  if (*value == "\u00b5m" || *value == "\u03bcm") value = "um";
+  check_word(key, *value, words(accepted), where);
+  return value;
+}
+
+std::optional<std::vector<std::string>> Section::some_of(
+    std::string_view key, std::span<const std::string> accepted) const {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const auto* array = std::get_if<TomlValue::Array>(&entry->value.data);
+  if (array == nullptr) fail(key, "must be a list of texts; accepted: " + joined(accepted, " "));
+  std::vector<std::string> result;
+  for (const TomlValue& element : *array) {
+    const auto* word = std::get_if<std::string>(&element.data);
+    if (word == nullptr) fail(key, "must be a list of texts; accepted: " + joined(accepted, " "));
+    check_word(key, *word, accepted, "");
+    result.push_back(*word);
+  }
+  return result;
+}
+
+std::optional<Section> Section::table(std::string_view key) const {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  return Section(*file_, called(key), entry->value);
+}
+
+std::vector<Section> Section::tables(std::string_view key) const {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return {};
+  const auto* array = std::get_if<TomlValue::Array>(&entry->value.data);
+  if (array == nullptr) fail(key, "must be a list of tables, [[" + called(key) + "]]");
+  std::vector<Section> result;
+  for (const TomlValue& element : *array) result.emplace_back(*file_, called(key), element);
+  return result;
+}
+
+std::string Section::called(std::string_view key) const {
+  if (name_.empty() || key.empty()) return name_ + std::string(key);
+  return name_ + "." + std::string(key);
+}
+
+void Section::missing(std::string_view key, std::string_view accepted) const {
+  fail(key, "missing; accepted: " + std::string(accepted));
+}
+
+void Section::fail(std::string_view key, const std::string& what) const {
+  const TomlEntry* entry = find(key);
+  // The root's own line is no place to send anybody to.
+  const int line = entry != nullptr ? entry->line : name_.empty() ? 0 : line_;
+  std::string message =
+      *file_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " + called(key) + ": " + what;
+  std::replace_if(message.begin(), message.end(), is_control, '?');  // a quoted key may hold any
+  throw UsageError(message);
+}
+
+}  // namespace slideway

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "problem_toml.hpp"
+
+namespace slideway {
+
+/// The words of a blank-separated list.
+std::vector<std::string> words(std::string_view list);
+
+/// One table of the problem file, read key by key. Everything it refuses is a UsageError
+/// "file:line: section.key: what is wrong; accepted: ...".
+class Section {
+ public:
+  /// @param name  how messages call it: "profile", "machine.body"; empty for the root
+  Section(const std::string& file, std::string name, const TomlValue& value);
+
+  /// Refuses every key that is not listed.
+  void accept(std::span<const std::string> keys) const;
+  void accept(std::string_view keys) const { accept(words(keys)); }
+
+  [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
+  [[nodiscard]] std::vector<std::string> keys() const;
+
+  /// Values by key; nothing if the key is not there.
+  [[nodiscard]] std::optional<double> number(std::string_view key) const;  // finite
+  [[nodiscard]] std::optional<double> positive(std::string_view key) const;
+  [[nodiscard]] std::optional<double> not_negative(std::string_view key) const;
+  [[nodiscard]] std::optional<int> integer(std::string_view key, int lowest, int highest) const;
+  [[nodiscard]] std::optional<std::string> text(std::string_view key) const;  // one line, not empty
+  [[nodiscard]] std::optional<std::string> column(std::string_view key) const;  // name or number
+  [[nodiscard]] std::optional<std::pair<double, double>> range(std::string_view key) const;
+  /// A text that must be one of `accepted`; `where` ends the sentence: " for a slope".
+  [[nodiscard]] std::optional<std::string> one_of(std::string_view key,
+                                                  std::span<const std::string> accepted,
+                                                  std::string_view where = "") const;
+  [[nodiscard]] std::optional<std::string> one_of(std::string_view key, std::string_view accepted,
+                                                  std::string_view where = "") const {
+    return one_of(key, words(accepted), where);
+  }
+  /// A unit: as one_of(), and "µm" (with either micro sign) is "um".
+  [[nodiscard]] std::optional<std::string> unit(std::string_view key, std::string_view accepted,
+                                                std::string_view where) const;
+  /// A list of such texts.
+  [[nodiscard]] std::optional<std::vector<std::string>> some_of(
+      std::string_view key, std::span<const std::string> accepted) const;
+  [[nodiscard]] std::optional<Section> table(std::string_view key) const;
+  [[nodiscard]] std::vector<Section> tables(std::string_view key) const;  // empty if not there
+
+  /// The value of a key that has to be there.
+  template <typename T>
+  [[nodiscard]] T required(std::string_view key, std::optional<T> value,
+                           std::string_view accepted) const {
+    if (!value) missing(key, accepted);
+    return *std::move(value);
+  }
+
+  [[noreturn]] void missing(std::string_view key, std::string_view accepted) const;
+  [[noreturn]] void fail(std::string_view key, const std::string& what) const;
+
+ private:
+  [[nodiscard]] const TomlEntry* find(std::string_view key) const;
+  [[nodiscard]] std::string called(std::string_view key) const;
+  void check_word(std::string_view key, const std::string& word,
+                  std::span<const std::string> accepted, std::string_view where) const;
+
+  const std::string* file_;
+  std::string name_;
+  int line_ = 0;
+  const TomlValue::Table* table_;
+};
+
+}  // namespace slideway

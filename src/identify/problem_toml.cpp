@@ -1,0 +1,90 @@
+#include "problem_toml.hpp"
+
+#include <algorithm>
+#include <locale>
+#include <sstream>
+
+#include <toml++/toml.h>
+
+#include "slideway/base/error.hpp"
+#include "slideway/base/file.hpp"
+#include "slideway/base/units.hpp"
+#include "slideway/identify/problem.hpp"
+
+namespace slideway {
+namespace {
+
+int line_of(const toml::source_region& region) { return static_cast<int>(region.begin.line); }
+
+TomlValue converted(const toml::node& node) {
+  TomlValue value{line_of(node.source()), {}};
+  if (const auto* table = node.as_table()) {
+    TomlValue::Table entries;
+    for (const auto& [key, child] : *table)
+      entries.push_back({std::string(key.str()), line_of(key.source()), converted(child)});
+    value.data = std::move(entries);
+  } else if (const auto* array = node.as_array()) {
+    TomlValue::Array elements;
+    for (const toml::node& child : *array) elements.push_back(converted(child));
+    value.data = std::move(elements);
+  } else if (const auto* text = node.as_string()) {
+    value.data = text->get();
+  } else if (const auto* integer = node.as_integer()) {
+    value.data = integer->get();
+  } else if (const auto* number = node.as_floating_point()) {
+    value.data = number->get();
+  } else if (const auto* flag = node.as_boolean()) {
+    value.data = flag->get();
+  }
+  return value;
+}
+
+toml::table parsed(const std::filesystem::path& path) {
+  try {
+    const FileBytes bytes(path);
+    return toml::parse(bytes.text(), path.string());
+  } catch (const DataError& error) {
+    throw UsageError(error.what());
+  } catch (const toml::parse_error& error) {
+    std::string what(error.description());
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    throw UsageError(path.string() + ":" + std::to_string(line_of(error.source())) +
+                     ": no valid TOML: " + what);
+  }
+}
+
+void point_to_simulation(toml::table& table, const ProfileEntry& entry, const std::string& file) {
+  const bool slope = entry.profile.setup.quantity == Quantity::slope;
+  const std::string value_unit = slope ? "urad" : "um";
+  table.insert_or_assign("file", file);
+  table.insert_or_assign("position_column", "x_mm");
+  table.insert_or_assign("position_unit", "mm");
+  table.insert_or_assign("value_column", slope ? "slope_urad" : "z_um");
+  table.insert_or_assign("value_unit", value_unit);
+  table.erase("window");
+  if (entry.profile.standard_uncertainty && entry.value_unit != value_unit)
+    table.insert_or_assign("standard_uncertainty",
+                           *entry.profile.standard_uncertainty * (slope ? 1e6 : 1e3));
+}
+
+}  // namespace
+
+TomlValue read_toml(const std::filesystem::path& path) { return converted(parsed(path)); }
+
+std::string simulated_problem_text(const Problem& problem, const std::vector<std::string>& files) {
+  toml::table root = parsed(problem.path);
+  root.erase("truth");
+  toml::array* profiles = root["profile"].as_array();
+  if (profiles == nullptr || profiles->size() != files.size() ||
+      problem.profiles.size() != files.size())
+    throw UsageError(problem.path.string() + ": changed while it was being simulated");
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (toml::table* table = profiles->get(i)->as_table())
+      point_to_simulation(*table, problem.profiles[i], files[i]);
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << root << '\n';
+  return text.str();
+}
+
+}  // namespace slideway

@@ -1,0 +1,152 @@
+#include "slideway/identify/simulate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/base/error.hpp"
+#include "slideway/base/file.hpp"
+#include "slideway/base/random.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/model.hpp"
+
+namespace slideway {
+namespace {
+
+void set_ends(Profile& profile) {
+  Setup& setup = profile.setup;
+  setup.first_mm = profile.positions.front();
+  setup.last_mm = profile.positions.back();
+  if (setup.kind == Kind::face && !setup.cut_radius_mm)
+    setup.cut_radius_mm = std::max(std::abs(setup.first_mm - setup.center_mm),
+                                   std::abs(setup.last_mm - setup.center_mm));
+}
+
+/// Positions of a profile whose file is not there: its window, else the face it lies on.
+std::vector<double> made_positions(const ProfileEntry& entry, std::size_t samples) {
+  const Setup& setup = entry.profile.setup;
+  double first = 0.0, last = 0.0;
+  if (entry.source.window) {
+    const double scale = entry.source.position_is_time ? *setup.feed_mm_per_min / kMinute : 1.0;
+    first = entry.source.position_unit(entry.source.window->first) * scale;
+    last = entry.source.position_unit(entry.source.window->second) * scale;
+  } else if (setup.kind == Kind::face && setup.cut_radius_mm) {
+    first = setup.center_mm > 0.0 ? setup.center_mm - *setup.cut_radius_mm : setup.center_mm;
+    last = setup.center_mm + *setup.cut_radius_mm;
+  } else {
+    throw UsageError("profile '" + entry.profile.name +
+                     "': nothing tells the positions to simulate; accepted: an existing file, "
+                     "window, or cut_radius_mm of a face");
+  }
+  std::vector<double> positions(samples);
+  for (std::size_t i = 0; i < samples; ++i)
+    positions[i] =
+        first + (last - first) * static_cast<double>(i) / static_cast<double>(samples - 1);
+  return positions;
+}
+
+std::vector<Profile> empty_profiles(const Problem& problem) {
+  std::vector<Profile> profiles;
+  for (const ProfileEntry& entry : problem.profiles) {
+    Profile profile = entry.profile;
+    if (std::filesystem::exists(entry.source.path)) {
+      read_profile(entry.source, profile);
+    } else {
+      profile.positions = made_positions(entry, problem.truth->samples);
+      set_ends(profile);
+    }
+    std::fill(profile.values.begin(), profile.values.end(), 0.0);
+    profile.values.resize(profile.positions.size(), 0.0);
+    profiles.push_back(std::move(profile));
+  }
+  return profiles;
+}
+
+/// Adds an effect with given parameter values (0 where none is) to every profile.
+void add_effect(const Model& model, const ModelTerm& term,
+                const std::map<std::string, double>& parameters, std::vector<Profile>& profiles) {
+  const std::vector<Parameter>& known = term.effect->parameters();
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(known.size()));
+  for (std::size_t p = 0; p < known.size(); ++p) {
+    const auto given = parameters.find(known[p].name);
+    if (given != parameters.end()) values[static_cast<Eigen::Index>(p)] = given->second;
+  }
+  for (const Shape& shape : term.effect->shapes())
+    if (!parameters.contains(known[shape.parameter].name))
+      throw UsageError("truth: effect '" + term.name + "' needs " + known[shape.parameter].name);
+  const Eigen::VectorXd inner = term.effect->from_parameters(values);
+  const Eigen::VectorXd amplitudes = inner.head(term.effect->amplitudes());
+  const std::vector<double> shape(inner.data() + amplitudes.size(), inner.data() + inner.size());
+  for (Profile& profile : profiles) {
+    const Eigen::VectorXd signal = effect_signal(model, term, profile, amplitudes, shape);
+    for (std::size_t i = 0; i < profile.values.size(); ++i) profile.values[i] += signal[i];
+  }
+}
+
+/// White noise, or noise with autocorrelation exp(-|Δs| / length), exact for any spacing.
+void add_noise(const Truth& truth, Profile& profile) {
+  if (truth.noise_um <= 0.0) return;
+  RandomStream random(truth.seed, profile.name);
+  const double size = profile.setup.quantity == Quantity::height ? truth.noise_um * kMicrometre
+                                                                 : truth.noise_um * 1e-6;
+  double state = random.normal();
+  for (std::size_t i = 0; i < profile.values.size(); ++i) {
+    if (i > 0) {
+      const double gap = profile.positions[i] - profile.positions[i - 1];
+      const double kept =
+          truth.noise_correlation_mm > 0.0 ? std::exp(-gap / truth.noise_correlation_mm) : 0.0;
+      state = kept * state + std::sqrt(1.0 - kept * kept) * random.normal();
+    }
+    profile.values[i] += size * state;
+  }
+}
+
+std::map<std::string, double> parameters_of(const Truth& truth, const std::string& effect) {
+  std::map<std::string, double> out;
+  for (const auto& [name, value] : truth.parameters)
+    if (name.starts_with(effect + ".")) out[name.substr(effect.size() + 1)] = value;
+  return out;
+}
+
+}  // namespace
+
+std::vector<Profile> simulate(const Problem& problem) {
+  if (!problem.truth)
+    throw UsageError(problem.path.string() +
+                     ": no [truth]; simulate needs the parameters to simulate");
+  std::vector<Profile> profiles = empty_profiles(problem);
+  Problem raw = problem;  // effects and clocks are wanted here, not a low band
+  raw.low_band.level = 0;
+  const std::vector<Profile> frame = profiles;
+  Model model = build_model(raw, frame);
+  for (const ModelTerm& term : model.terms)
+    add_effect(model, term, parameters_of(*problem.truth, term.name), profiles);
+  for (const Truth::HiddenEffect& hidden : problem.truth->effects) {
+    append_term(model, {hidden.name, hidden.options, {}}, model.range);
+    add_effect(model, model.terms.back(), hidden.parameters, profiles);
+  }
+  for (Profile& profile : profiles) add_noise(*problem.truth, profile);
+  return profiles;
+}
+
+void write_simulation(const Problem& problem, const std::filesystem::path& directory) {
+  const std::vector<Profile> profiles = simulate(problem);
+  std::filesystem::create_directories(directory);
+  std::vector<std::string> files;
+  for (const Profile& profile : profiles) {
+    const bool slope = profile.setup.quantity == Quantity::slope;
+    std::string text = slope ? "x_mm,slope_urad\n" : "x_mm,z_um\n";
+    text.reserve(40 * profile.values.size());
+    for (std::size_t i = 0; i < profile.values.size(); ++i) {
+      text += shortest(profile.positions[i]);
+      text += ',';
+      text += significant(slope ? profile.values[i] * 1e6 : profile.values[i] / kMicrometre, 12);
+      text += '\n';
+    }
+    files.push_back(profile.name + ".csv");
+    write_file(directory / files.back(), text);
+  }
+  write_file(directory / "problem.toml", simulated_problem_text(problem, files));
+}
+
+}  // namespace slideway

@@ -1,0 +1,84 @@
+#include "slideway/identify/uncertainty.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+
+#include "residual.hpp"
+
+namespace slideway {
+namespace {
+
+Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Eigen::MatrixXd& columns) {
+  constexpr double kStep = 1e-3;  // of atanh π and ln σ
+  Uncertainty::NoiseEffect out{noise.covariance, {}};
+  const Eigen::VectorXd at = noise.parameters();
+  const auto gram = [&](Eigen::Index j, double step) {
+    Eigen::VectorXd moved = at;
+    moved[j] += step;
+    const Eigen::MatrixXd z = coloured(noise.at(moved), columns);
+    return Eigen::MatrixXd(z.transpose() * z);
+  };
+  for (Eigen::Index j = 0; j < at.size(); ++j)
+    out.derivatives.emplace_back((gram(j, kStep) - gram(j, -kStep)) / (2.0 * kStep));
+  return out;
+}
+
+}  // namespace
+
+Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
+  const Eigen::RowVectorXd c = row * basis;
+  const double variance = (c * covariance * c.transpose()).value();
+  Spread spread{std::sqrt(std::max(variance, 0.0)), std::nullopt};
+  double spread_of_variance = 0.0;
+  for (const NoiseEffect& effect : noise) {
+    Eigen::VectorXd gradient(effect.derivatives.size());
+    for (std::size_t j = 0; j < effect.derivatives.size(); ++j)
+      gradient[j] = (c * effect.derivatives[j] * c.transpose()).value();
+    spread_of_variance += gradient.dot(effect.covariance * gradient);
+  }
+  if (spread_of_variance > 0.0)
+    spread.degrees_of_freedom = std::max(1.0, 2.0 * variance * variance / spread_of_variance);
+  return spread;
+}
+
+Uncertainty assess(const Linearisation& linear, const std::vector<double>& weights,
+                   const std::vector<Noise>& noise, const Eigen::MatrixXd& basis) {
+  Uncertainty out;
+  out.basis = basis;
+  const Eigen::MatrixXd priors = linear.prior_rows * basis;
+  out.covariance = priors.transpose() * priors;
+  std::vector<Eigen::MatrixXd> crosses, gains, own;
+  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+    const Observation& observation = *linear.observations[i];
+    const Eigen::MatrixXd columns = linear.columns[i] * basis;
+    Eigen::MatrixXd z = columns / (weights[i] * weights[i]);
+    project_out(nuisance_basis(observation), z);
+    const Eigen::MatrixXd coloured_z = coloured(noise[i], z);
+    out.covariance += coloured_z.transpose() * coloured_z;
+    if (!noise[i].declared && noise[i].covariance.size() > 0)
+      out.noise.push_back(noise_effect(noise[i], z));
+    const Eigen::MatrixXd& n = observation.nuisances;
+    Eigen::MatrixXd k(n.rows(), n.cols());
+    if (n.cols() > 0) k = n * (n.transpose() * n).inverse();
+    const Eigen::MatrixXd coloured_k = coloured(noise[i], k);
+    crosses.emplace_back(coloured_k.transpose() * coloured_z);
+    gains.emplace_back(k.transpose() * columns);
+    own.emplace_back(coloured_k.transpose() * coloured_k);
+  }
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    const Eigen::MatrixXd cross = crosses[i] * gains[i].transpose();
+    out.nuisance_covariances.emplace_back(own[i] - cross - cross.transpose() +
+                                          gains[i] * out.covariance * gains[i].transpose());
+  }
+  return out;
+}
+
+double coverage_factor(const std::optional<double>& degrees_of_freedom) {
+  constexpr double kOutside = 0.5 * (1.0 - 0.954499736103642);  // beyond two standard deviations
+  if (!degrees_of_freedom || *degrees_of_freedom > 1e6) return 2.0;
+  return quantile(complement(boost::math::students_t(*degrees_of_freedom), kOutside));
+}
+
+}  // namespace slideway

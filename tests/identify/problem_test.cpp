@@ -1,0 +1,436 @@
+#include "slideway/identify/problem.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "slideway/base/error.hpp"
+#include "slideway/effects/catalogue.hpp"
+
+namespace slideway {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kMachine = "[machine]\nlever = \"paper\"\n";
+constexpr const char* kEffect = "[[effect]]\nname = \"squareness\"\n";
+
+std::string profile(const std::string& more = "", const std::string& name = "feed2") {
+  return "[[profile]]\nname = \"" + name +
+         "\"\nfile = \"feed2.csv\"\nposition_unit = \"mm\"\nvalue_unit = \"um\"\n" + more + "\n";
+}
+
+class ProblemFile : public ::testing::Test {
+ protected:
+  ProblemFile()
+      : directory_(std::filesystem::path(::testing::TempDir()) /
+                   ::testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    std::filesystem::create_directories(directory_);
+  }
+  ~ProblemFile() override { std::filesystem::remove_all(directory_); }
+
+  std::filesystem::path write(const std::string& text, const std::string& name = "problem.toml") {
+    std::ofstream(directory_ / name, std::ios::binary) << text;
+    return directory_ / name;
+  }
+  Problem read(const std::string& text) { return read_problem(write(text)); }
+
+  /// The message with which a text is refused, from the line number on; "" if it is accepted.
+  std::string refusal(const std::string& text) {
+    try {
+      read(text);
+    } catch (const UsageError& error) {
+      const std::string what = error.what();
+      EXPECT_THAT(what, AllOf(::testing::StartsWith((directory_ / "problem.toml").string()),
+                              Not(HasSubstr("\n"))));
+      return what.substr((directory_ / "problem.toml").string().size());
+    }
+    return "";
+  }
+  /// The same for a complete problem with these lines in its profile (the first is line 8) ...
+  std::string profile_refusal(const std::string& lines) {
+    return refusal(kMachine + profile("#\n" + lines) + kEffect);
+  }
+  /// ... or behind everything.
+  std::string refusal_behind(const std::string& lines) {
+    return refusal(kMachine + profile() + kEffect + lines);
+  }
+
+  std::filesystem::path directory_;
+};
+
+// The example of the interface document: every key of it, with values that differ from the
+// defaults.
+constexpr const char* kEverything = R"(
+title = "Face turned at two feeds"
+[machine]
+lever = "split"
+overhang_mm = 40.0
+spindle_position_mm = 5.0
+[[machine.body]]
+name = "x_carriage"
+lower = 0
+axis = "x"
+[[machine.body]]
+name = "z_carriage"
+lower = 1
+axis = "z"
+[low_band]
+wavelet = "db4"
+level = 3
+boundary = "periodic"
+[[profile]]
+name = "feed2"
+file = "feed2.csv"
+kind = "face"
+quantity = "height"
+position_column = "x_mm"
+value_column = 3
+position_unit = "mm"
+value_unit = "µm"
+window = [0.0, 10.0]
+center_mm = 1.0
+z_mm = 2.0
+overhang_mm = 50.0
+feed_mm_per_min = 2
+spindle_rpm = 110.0
+cut_direction = "inward"
+cut_radius_mm = 10.0
+start_s = 3.0
+traverse_mm_per_s = 0.5
+free = ["offset"]
+standard_uncertainty = 0.01
+role = "holdout"
+[[profile]]
+name = "level"
+file = "level.csv"
+kind = "slide"
+quantity = "slope"
+position_unit = "m"
+value_unit = "arcsec"
+base_mm = 100.0
+standard_uncertainty = 0.5
+[[effect]]
+name = "squareness"
+[[effect]]
+name = "straightness"
+body = "x_carriage"
+degree = 5
+priors = [{ parameter = "b2", value = 0.0, standard_uncertainty = 1e-8 }]
+[runout]
+r_um = 0.3
+p_um = 2.5
+diameter_mm = 1000.0
+standard_uncertainty_um = 0.1
+[trace]
+candidates = ["all"]
+max_effects = 2
+significance = 0.05
+[truth]
+seed = 7
+noise_um = 0.01
+noise_correlation_mm = 0.1
+samples = 500
+parameters = { "squareness.dbeta_xz" = 2.8e-6, "straightness.b2" = 2.29e-8 }
+[[truth.effect]]
+name = "thermal_drift"
+amplitude_um = 0.4
+time_constant_s = 120.0
+)";
+
+TEST_F(ProblemFile, GivesEveryKeyOfAProfile) {
+  const Problem problem = read(kEverything);
+  ASSERT_EQ(problem.profiles.size(), 2u);
+  const ProfileEntry& entry = problem.profiles[0];
+  const slideway::Setup& setup = entry.profile.setup;
+  EXPECT_EQ(entry.profile.name, "feed2");
+  EXPECT_EQ(entry.profile.file, "feed2.csv");
+  EXPECT_EQ(entry.source.path, directory_ / "feed2.csv");
+  EXPECT_EQ(entry.source.position_column, "x_mm");
+  EXPECT_EQ(entry.source.value_column, "3");
+  EXPECT_EQ(entry.source.window, std::pair(0.0, 10.0));
+  EXPECT_EQ(entry.value_unit, "um");
+  EXPECT_EQ(entry.source.value_unit(1.0), 1e-3);
+  EXPECT_EQ(setup.center_mm, 1.0);
+  EXPECT_EQ(setup.z_mm, 2.0);
+  EXPECT_EQ(setup.overhang_mm, 50.0);
+  EXPECT_EQ(setup.spindle_position_mm, 5.0);
+  EXPECT_EQ(setup.feed_mm_per_min, 2.0);
+  EXPECT_EQ(setup.spindle_rpm, 110.0);
+  EXPECT_EQ(setup.cut_direction, CutDirection::inward);
+  EXPECT_EQ(setup.cut_radius_mm, 10.0);
+  EXPECT_EQ(setup.start_s, 3.0);
+  EXPECT_EQ(setup.traverse_mm_per_s, 0.5);
+  EXPECT_TRUE(entry.profile.free_offset);
+  EXPECT_FALSE(entry.profile.free_tilt);
+  EXPECT_EQ(entry.profile.standard_uncertainty, 1e-5);  // mm
+  EXPECT_EQ(entry.profile.role, Role::holdout);
+}
+
+TEST_F(ProblemFile, TakesASlopeReadingInItsOwnUnits) {
+  const Problem problem = read(kEverything);
+  const ProfileEntry& entry = problem.profiles[1];
+  EXPECT_EQ(entry.profile.setup.kind, Kind::slide);
+  EXPECT_EQ(entry.profile.setup.quantity, Quantity::slope);
+  EXPECT_EQ(entry.profile.setup.base_mm, 100.0);
+  EXPECT_EQ(entry.profile.setup.overhang_mm, 40.0);
+  EXPECT_EQ(entry.source.position_unit(1.0), 1000.0);
+  // One arc second is pi / 648000 rad; two roundings are allowed for.
+  EXPECT_NEAR(*entry.profile.standard_uncertainty, 0.5 * 3.14159265358979323846 / 648000.0, 1e-21);
+}
+
+TEST_F(ProblemFile, GivesMachineModelRunoutTraceAndTruth) {
+  const Problem problem = read(kEverything);
+  EXPECT_EQ(problem.title, "Face turned at two feeds");
+  EXPECT_EQ(problem.lever, Lever::split);
+  ASSERT_EQ(problem.bodies.size(), 2u);
+  EXPECT_EQ(problem.bodies[1].lower, 1);
+  EXPECT_EQ(problem.bodies[1].axis, Axis::z);
+  EXPECT_EQ(problem.low_band.wavelet, "db4");
+  EXPECT_EQ(problem.low_band.level, 3);
+  EXPECT_EQ(problem.low_band.boundary, Boundary::periodic);
+  ASSERT_EQ(problem.effects.size(), 2u);
+  EXPECT_EQ(problem.effects[1].options.degree, 5);
+  ASSERT_EQ(problem.effects[1].priors.size(), 1u);
+  EXPECT_EQ(problem.effects[1].priors[0].standard_uncertainty, 1e-8);
+  ASSERT_TRUE(problem.runout);
+  EXPECT_EQ(problem.runout->diameter_mm, 1000.0);
+  EXPECT_EQ(problem.trace.candidates.size(), effect_names().size() - 3);  // without the carriage's
+  EXPECT_EQ(problem.trace.max_effects, 2);
+  ASSERT_TRUE(problem.truth);
+  EXPECT_EQ(problem.truth->seed, 7u);
+  EXPECT_EQ(problem.truth->samples, 500u);
+  EXPECT_EQ(problem.truth->parameters.at("straightness.b2"), 2.29e-8);
+  ASSERT_EQ(problem.truth->effects.size(), 1u);
+  EXPECT_EQ(problem.truth->effects[0].parameters.at("time_constant_s"), 120.0);
+}
+
+TEST_F(ProblemFile, HasTheDefaultsOfTheInterface) {
+  const Problem problem = read(kMachine + profile() + kEffect);
+  const ProfileEntry& entry = problem.profiles[0];
+  EXPECT_EQ(problem.low_band.wavelet, "db1");
+  EXPECT_EQ(problem.low_band.level, 5);
+  EXPECT_EQ(problem.low_band.boundary, Boundary::symmetric);
+  ASSERT_EQ(problem.bodies.size(), 2u);
+  EXPECT_EQ(problem.bodies[0].name, "x_carriage");
+  EXPECT_EQ(entry.profile.setup.kind, Kind::face);
+  EXPECT_EQ(entry.profile.setup.quantity, Quantity::height);
+  EXPECT_EQ(entry.source.position_column, "1");
+  EXPECT_EQ(entry.source.value_column, "2");
+  EXPECT_TRUE(entry.profile.free_offset && entry.profile.free_tilt);
+  EXPECT_EQ(entry.profile.role, Role::fit);
+  EXPECT_FALSE(entry.profile.standard_uncertainty || problem.runout || problem.truth);
+}
+
+TEST_F(ProblemFile, TakesBothMicroSigns) {
+  for (const char* unit : {"\u00b5m", "\u03bcm"}) {
+    const Problem problem = read(std::string(kMachine) +
+                                 "[[profile]]\nname = \"a\"\nfile = \"a.csv\"\nposition_unit = "
+                                 "\"mm\"\nvalue_unit = \"" +
+                                 unit + "\"\n" + kEffect);
+    EXPECT_EQ(problem.profiles[0].source.value_unit(1.0), 1e-3);
+  }
+}
+
+TEST_F(ProblemFile, NamesLineKeyAndNearestKeyOfAMistypedOne) {
+  EXPECT_THAT(profile_refusal("fede_mm_per_min = 2.0"),
+              AllOf(HasSubstr(":9: profile.fede_mm_per_min: unknown key (did you mean "
+                              "'feed_mm_per_min'?); accepted: name file"),
+                    EndsWith("standard_uncertainty role")));
+  EXPECT_THAT(refusal_behind("[low_bend]\nlevel = 1\n"),
+              HasSubstr("low_bend: unknown key (did you mean 'low_band'?)"));
+}
+
+TEST_F(ProblemFile, RefusesAMissingUnit) {
+  EXPECT_THAT(
+      refusal(std::string(kMachine) +
+              "[[profile]]\nname = \"a\"\nfile = \"a.csv\"\nposition_unit = \"mm\"\n" + kEffect),
+      EndsWith(":3: profile.value_unit: missing; accepted: m mm um nm inch"));
+  EXPECT_THAT(
+      refusal(std::string(kMachine) +
+              "[[profile]]\nname = \"a\"\nfile = \"a.csv\"\nvalue_unit = \"mm\"\n" + kEffect),
+      EndsWith(":3: profile.position_unit: missing; accepted: m mm um nm inch s"));
+}
+
+TEST_F(ProblemFile, RefusesAUnitOfTheWrongKind) {
+  EXPECT_THAT(profile_refusal("quantity = \"slope\""),
+              HasSubstr(":7: profile.value_unit: \"um\" is not accepted for a slope"));
+}
+
+TEST_F(ProblemFile, NeedsALeverAsSoonAsThereIsAFace) {
+  EXPECT_THAT(refusal(profile() + kEffect),
+              AllOf(HasSubstr("machine.lever: missing; a face needs it; accepted: \"paper\""),
+                    HasSubstr("\"split\"")));
+  EXPECT_EQ(refusal(profile("kind = \"slide\"") + kEffect), "");
+}
+
+TEST_F(ProblemFile, AllowsAnOverhangWithTheSplitLeverOnly) {
+  EXPECT_THAT(profile_refusal("overhang_mm = 10.0"), HasSubstr("only with lever = \"split\""));
+  EXPECT_EQ(profile_refusal("overhang_mm = 0.0"), "");
+  EXPECT_THAT(refusal("[machine]\nlever = \"paper\"\noverhang_mm = 3.0\n" + profile() + kEffect),
+              HasSubstr(":3: machine.overhang_mm: "));
+}
+
+TEST_F(ProblemFile, TakesTimeForAPositionOnlyWithAFeed) {
+  const std::string timed =
+      "[[profile]]\nname = \"a\"\nfile = \"a.csv\"\nposition_unit = \"s\"\nvalue_unit = \"um\"\n";
+  EXPECT_THAT(refusal(kMachine + timed + kEffect), HasSubstr("profile.feed_mm_per_min: missing"));
+  const Problem problem = read(kMachine + timed + "feed_mm_per_min = 2.0\n" + kEffect);
+  EXPECT_TRUE(problem.profiles[0].source.position_is_time);
+}
+
+TEST_F(ProblemFile, RefusesWrongTypes) {
+  EXPECT_THAT(profile_refusal("z_mm = \"2\""), HasSubstr(":9: profile.z_mm: must be a finite"));
+  EXPECT_THAT(profile_refusal("role = 1"), HasSubstr("profile.role: must be a text"));
+  EXPECT_THAT(profile_refusal("free = \"offset\""), HasSubstr("profile.free: must be a list"));
+  EXPECT_THAT(profile_refusal("start_s = 1979-05-27"), HasSubstr("must be a finite number"));
+  EXPECT_THAT(profile_refusal("value_column = 0"), HasSubstr("whole number from 1"));
+  EXPECT_THAT(refusal_behind("[low_band]\nlevel = 5.0\n"), HasSubstr("must be a whole number"));
+  EXPECT_THAT(refusal("low_band = 5\n" + profile() + kEffect), HasSubstr("must be a table"));
+  EXPECT_THAT(refusal("effect = 5\n" + (kMachine + profile())), HasSubstr("list of tables"));
+}
+
+TEST_F(ProblemFile, RefusesNumbersOutOfRange) {
+  for (const char* line :
+       {"feed_mm_per_min = 0.0", "feed_mm_per_min = -2", "spindle_rpm = 0", "cut_radius_mm = 0",
+        "traverse_mm_per_s = -1.0", "standard_uncertainty = 0.0", "z_mm = nan", "z_mm = inf",
+        "window = [1.0, 1.0]", "window = [2.0, 1.0]", "window = [1.0]", "window = [0.0, inf]"}) {
+    EXPECT_THAT(profile_refusal(line), HasSubstr(":9: profile.")) << line;
+  }
+  EXPECT_THAT(profile_refusal("base_mm = 10.0"), HasSubstr("slope"));
+  for (const char* lines :
+       {"[low_band]\nlevel = -1", "[low_band]\nlevel = 31", "[low_band]\nwavelet = \"db20\"",
+        "[low_band]\nboundary = \"mirror\"", "[trace]\nsignificance = 0.0",
+        "[trace]\nsignificance = 1.0", "[truth]\nnoise_um = -1.0"}) {
+    EXPECT_NE(refusal_behind(lines), "") << lines;
+  }
+}
+
+TEST_F(ProblemFile, RefusesTheSameNameTwice) {
+  EXPECT_THAT(refusal(kMachine + profile() + profile() + kEffect), HasSubstr("'feed2' is used"));
+  EXPECT_THAT(refusal_behind(kEffect), HasSubstr("'squareness' is declared twice"));
+}
+
+TEST_F(ProblemFile, NeedsAProfileAndAnEffect) {
+  EXPECT_THAT(refusal(std::string(kMachine) + kEffect), HasSubstr("at least one [[profile]]"));
+  EXPECT_THAT(refusal(kMachine + profile()), HasSubstr("at least one [[effect]]"));
+  EXPECT_NE(refusal(""), "");
+}
+
+TEST_F(ProblemFile, HoldsEffectsAgainstTheCatalogue) {
+  EXPECT_THAT(refusal_behind("[[effect]]\nname = \"straightnes\"\n"),
+              HasSubstr("did you mean 'straightness'?"));
+  EXPECT_THAT(refusal_behind("[[effect]]\nname = \"straightness\"\n"), HasSubstr("degree"));
+  EXPECT_THAT(refusal_behind("[[effect]]\nname = \"straightness\"\ndegree = -1\n"),
+              HasSubstr("effect.degree"));
+  EXPECT_THAT(
+      refusal_behind("[[effect]]\nname = \"straightness\"\nbody = \"y_carriage\"\ndegree = 2\n"),
+      HasSubstr("x_carriage"));
+}
+
+TEST_F(ProblemFile, HoldsPriorsAgainstTheParametersOfTheirEffect) {
+  const std::string effect = "[[effect]]\nname = \"straightness\"\ndegree = 2\npriors = ";
+  EXPECT_THAT(refusal_behind(effect +
+                             "[{ parameter = \"b7\", value = 0.0, standard_uncertainty = 1.0 }]\n"),
+              HasSubstr("effect.priors.parameter: \"b7\" is not accepted"));
+  EXPECT_THAT(refusal_behind(effect +
+                             "[{ parameter = \"b2\", value = 0.0, standard_uncertainty = 0.0 }]\n"),
+              HasSubstr("effect.priors.standard_uncertainty"));
+  EXPECT_THAT(refusal_behind(effect + "[{ parameter = \"b2\", value = 0.0 }]\n"),
+              HasSubstr("missing"));
+}
+
+TEST_F(ProblemFile, HoldsTheTruthAgainstTheModelAndTheCatalogue) {
+  EXPECT_THAT(refusal_behind("[truth]\nparameters = { \"squareness.dbeta\" = 1e-6 }\n"),
+              HasSubstr("truth.parameters.squareness.dbeta: unknown key"));
+  const std::string hidden = "[[truth.effect]]\nname = \"thermal_drift\"\namplitude_um = 0.4\n";
+  EXPECT_THAT(refusal_behind(hidden + "time_konstant_s = 9.0\n"),
+              HasSubstr("did you mean 'time_constant_s'?"));
+  EXPECT_THAT(refusal_behind(hidden + "time_constant_s = -9.0\n"), HasSubstr("out of range"));
+}
+
+TEST_F(ProblemFile, ChecksTheNamesOfTraceCandidates) {
+  EXPECT_THAT(refusal_behind("[trace]\ncandidates = [\"thermal_drft\"]\n"),
+              HasSubstr("did you mean 'thermal_drift'?"));
+  const Problem problem =
+      read(kMachine + profile() + kEffect + "[trace]\ncandidates = [\"cup\", \"step\"]\n");
+  EXPECT_THAT(problem.trace.candidates, ElementsAre("cup", "step"));
+}
+
+TEST_F(ProblemFile, RefusesAMachineThatIsNoTree) {
+  EXPECT_THAT(refusal("[machine]\nlever = \"paper\"\n[[machine.body]]\nname = \"x\"\nlower = 1\n"
+                      "axis = \"x\"\n" +
+                      profile() + kEffect),
+              HasSubstr("machine.body: "));
+}
+
+TEST_F(ProblemFile, SaysInWhichLineItIsNoToml) {
+  EXPECT_THAT(refusal("title = \"a\"\nlever = = 2\n"), HasSubstr(":2: no valid TOML: "));
+  EXPECT_THAT(refusal("title = \"a\"\ntitle = \"b\"\n"), HasSubstr("no valid TOML: "));
+}
+
+TEST_F(ProblemFile, IsAUsageErrorWhenThereIsNoneOrADirectory) {
+  EXPECT_THROW(read_problem(directory_ / "nothing.toml"), UsageError);
+  EXPECT_THROW(read_problem(directory_), UsageError);
+}
+
+TEST_F(ProblemFile, FindsTheDataDirectory) {
+  const std::string text = std::string(kMachine) +
+                           "[[profile]]\nname = \"a\"\nfile = \"${SLIDEWAY_DATA}/a.csv\"\n"
+                           "position_unit = \"mm\"\nvalue_unit = \"um\"\n" +
+                           kEffect;
+  const char* before = std::getenv("SLIDEWAY_DATA");
+  const std::string kept = before != nullptr ? before : "";
+  unsetenv("SLIDEWAY_DATA");
+  EXPECT_THAT(refusal(text), AllOf(HasSubstr("SLIDEWAY_DATA"), HasSubstr("--data DIR")));
+  setenv("SLIDEWAY_DATA", "/environment", 1);
+  EXPECT_EQ(read(text).profiles[0].source.path, "/environment/a.csv");
+  EXPECT_EQ(read_problem(directory_ / "problem.toml", "/option").profiles[0].source.path,
+            "/option/a.csv");
+  unsetenv("SLIDEWAY_DATA");
+  if (before != nullptr) setenv("SLIDEWAY_DATA", kept.c_str(), 1);
+}
+
+TEST_F(ProblemFile, NamesTheProfileWhoseDataAreBad) {
+  const Problem problem = read(kMachine + profile() + kEffect);
+  try {
+    read_profiles(problem);
+    FAIL() << "a missing file was read";
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("profile 'feed2': "), HasSubstr("feed2.csv")));
+  }
+}
+
+TEST_F(ProblemFile, OfASimulationDiffersInTruthAndProfilesOnly) {
+  const Problem problem = read(kEverything);
+  const std::string text = simulated_problem_text(problem, {"feed2.csv", "level.csv"});
+  EXPECT_EQ(text, simulated_problem_text(problem, {"feed2.csv", "level.csv"}));
+  EXPECT_THAT(text, Not(HasSubstr("truth")));
+  const Problem again = read_problem(write(text, "again.toml"));
+  EXPECT_FALSE(again.truth);
+  EXPECT_EQ(again.title, problem.title);
+  EXPECT_EQ(again.runout->p_um, 2.5);
+  EXPECT_EQ(again.effects[1].priors[0].standard_uncertainty, 1e-8);
+  const ProfileEntry& face = again.profiles[0];
+  EXPECT_EQ(face.source.position_column, "x_mm");
+  EXPECT_EQ(face.source.value_column, "z_um");
+  EXPECT_FALSE(face.source.window);
+  EXPECT_EQ(face.profile.standard_uncertainty, 1e-5);
+  EXPECT_EQ(face.profile.setup.feed_mm_per_min, 2.0);
+  const ProfileEntry& level = again.profiles[1];
+  EXPECT_EQ(level.source.value_column, "slope_urad");
+  EXPECT_EQ(level.value_unit, "urad");
+  EXPECT_EQ(level.profile.setup.base_mm, 100.0);
+  // Two conversions between arcsec, rad and urad: a few roundings.
+  EXPECT_NEAR(*level.profile.standard_uncertainty,
+              *problem.profiles[1].profile.standard_uncertainty, 1e-20);
+}
+
+}  // namespace
+}  // namespace slideway
