@@ -1,0 +1,214 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "slideway/report/report.hpp"
+
+namespace slideway {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <typename T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+template <typename Range, typename Function>
+Json array_of(const Range& range, Function&& to_json) {
+  Json array = Json::array();
+  for (const auto& item : range) array.push_back(to_json(item));
+  return array;
+}
+
+Json combination(const Combination& terms) {
+  Json object = Json::object();
+  for (const auto& [name, coefficient] : terms) object[name] = coefficient;
+  return object;
+}
+
+Json input(const InputSummary& in) {
+  Json json = {{"name", in.name},
+               {"file", in.file},
+               {"sha256", in.sha256},
+               {"kind", in.kind},
+               {"quantity", in.quantity},
+               {"role", in.role},
+               {"samples", in.samples},
+               {"missing", in.missing},
+               {"position_min_mm", in.position_min_mm},
+               {"position_max_mm", in.position_max_mm},
+               {"rms_um", or_null(in.rms_um)},
+               {"pv_um", or_null(in.pv_um)},
+               {"rms_urad", or_null(in.rms_urad)},
+               {"pv_urad", or_null(in.pv_urad)}};
+  json["notes"] = in.notes;
+  return json;
+}
+
+Json ranking_entry(const Ranking& entry) {
+  const Json running = {{"samples", entry.running.samples},
+                        {"raw", entry.running.raw},
+                        {"low_band", entry.running.low_band}};
+  return {{"effect", entry.effect},
+          {"profile", entry.profile},
+          {"raw", entry.raw},
+          {"low_band", entry.low_band},
+          {"lag_mm", entry.lag_mm},
+          {"lag_coefficient", entry.lag_coefficient},
+          {"effective_observations", entry.effective_observations},
+          {"p_value", entry.p_value},
+          {"running", running}};
+}
+
+Json candidate_correlation(const CandidateCorrelation& pair) {
+  return {
+      {"a", pair.a}, {"b", pair.b}, {"profile", pair.profile}, {"coefficient", pair.coefficient}};
+}
+
+Json parameter(const FittedParameter& p) {
+  const auto determined = [&p](const std::optional<double>& value) {
+    return p.identifiable ? or_null(value) : Json(nullptr);
+  };
+  return {{"name", p.name},
+          {"symbol", p.symbol},
+          {"standard_name", p.standard_name},
+          {"value", determined(p.value)},
+          {"unit", p.unit},
+          {"standard_uncertainty", determined(p.standard_uncertainty)},
+          {"expanded_uncertainty", determined(p.expanded_uncertainty)},
+          {"coverage_factor", p.coverage_factor},
+          {"degrees_of_freedom", or_null(p.degrees_of_freedom)},
+          {"identifiable", p.identifiable},
+          {"at_bound", p.at_bound}};
+}
+
+Json identifiability(const Identifiability& what) {
+  const auto direction = [](const UndeterminedDirection& d) {
+    return Json{{"combination", combination(d.combination)}, {"advice", d.advice}};
+  };
+  const auto determined = [](const DeterminedCombination& d) {
+    return Json{{"combination", combination(d.combination)},
+                {"value", d.value},
+                {"unit", d.unit},
+                {"standard_uncertainty", d.standard_uncertainty},
+                {"expanded_uncertainty", d.expanded_uncertainty}};
+  };
+  return {{"parameters", what.parameters},
+          {"rank", what.rank},
+          {"condition", what.condition},
+          {"unidentifiable", array_of(what.unidentifiable, direction)},
+          {"determined", array_of(what.determined, determined)}};
+}
+
+Json noise(const NoiseSummary& n) {
+  return {{"profile", n.profile},
+          {"scaling", n.scaling},
+          {"order", n.order},
+          {"standard_deviation_um", or_null(n.standard_deviation_um)},
+          {"standard_deviation_urad", or_null(n.standard_deviation_urad)},
+          {"correlation_mm", n.correlation_mm},
+          {"effective_observations", n.effective_observations},
+          {"ljung_box_p", n.ljung_box_p}};
+}
+
+Json contribution(const Contribution& c, const Result& result) {
+  const auto of_profile = [&c](const InputSummary& in) { return in.name == c.profile; };
+  const auto in = std::find_if(result.inputs.begin(), result.inputs.end(), of_profile);
+  const bool slope = in != result.inputs.end() && in->quantity == "slope";
+  return {{"effect", c.effect},
+          {"profile", c.profile},
+          {slope ? "rms_urad" : "rms_um", c.rms_um},
+          {"share", c.share}};
+}
+
+Json residual(const ResidualSummary& r) {
+  const std::string unit = r.unit == "urad" ? "urad" : "um";
+  return {
+      {"profile", r.profile}, {"role", r.role}, {"rms_" + unit, r.rms_um}, {"pv_" + unit, r.pv_um}};
+}
+
+Json fit_json(const FitResult& fit, const Result& result) {
+  const auto share = [&result](const Contribution& c) { return contribution(c, result); };
+  const auto correlation = [](const auto& entry) {
+    return Json::array({std::get<0>(entry), std::get<1>(entry), std::get<2>(entry)});
+  };
+  return {{"converged", fit.converged},
+          {"message", fit.message},
+          {"rms_um", or_null(fit.rms_um)},
+          {"observations", fit.observations},
+          {"effective_observations", fit.effective_observations},
+          {"chi_square", fit.chi_square},
+          {"degrees_of_freedom", fit.degrees_of_freedom},
+          {"parameters", array_of(fit.parameters, parameter)},
+          {"nuisances", array_of(fit.nuisances, parameter)},
+          {"correlations", array_of(fit.correlations, correlation)},
+          {"identifiability", identifiability(fit.identifiability)},
+          {"noise", array_of(fit.noise, noise)},
+          {"contributions", array_of(fit.contributions, share)},
+          {"residuals", array_of(fit.residuals, residual)},
+          {"neglected_um", or_null(fit.neglected_um)},
+          {"notes", fit.notes}};
+}
+
+Json squareness(const SquarenessCheck& check) {
+  return {{"fit_rad", or_null(check.fit_rad)},
+          {"fit_U_rad", or_null(check.fit_U_rad)},
+          {"indirect_rad", or_null(check.indirect_rad)},
+          {"indirect_U_rad", or_null(check.indirect_U_rad)},
+          {"En", or_null(check.En)},
+          {"verdict", check.verdict},
+          {"reason", check.reason},
+          {"travel_mm", or_null(check.travel_mm)},
+          {"fit_amplitude_um", or_null(check.fit_amplitude_um)},
+          {"indirect_amplitude_um", or_null(check.indirect_amplitude_um)}};
+}
+
+Json crosscheck(const Result& result) {
+  if (result.squareness) return {{"squareness", squareness(*result.squareness)}};
+  if (!result.fit) return {{"squareness", nullptr}};
+  SquarenessCheck none;
+  none.reason = "this command makes no cross-check";
+  return {{"squareness", squareness(none)}};
+}
+
+/// nlohmann writes what is not finite as null, which would pass for "not determined".
+void require_finite(const Json& json, const std::string& path) {
+  if (json.is_number_float() && !std::isfinite(json.get<double>()))
+    throw std::logic_error("report: " + path + " is not a finite number");
+  if (json.is_object())
+    for (const auto& [key, value] : json.items())
+      require_finite(value, path.empty() ? key : path + "." + key);
+  if (json.is_array())
+    for (std::size_t i = 0; i < json.size(); ++i)
+      require_finite(json[i], path + "[" + std::to_string(i) + "]");
+}
+
+}  // namespace
+
+std::string json_report(const Result& result) {
+  const RankingResult ranking = result.ranking.value_or(RankingResult{});
+  Json report = {{"schema", "slideway.report/1"},
+                 {"version", result.version},
+                 {"title", result.title},
+                 {"inputs", array_of(result.inputs, input)}};
+  report["low_band"] = {{"wavelet", result.wavelet},
+                        {"level", result.level},
+                        {"boundary", result.boundary},
+                        {"values", result.low_band_values}};
+  report["ranking"] = array_of(ranking.entries, ranking_entry);
+  report["candidate_correlations"] = array_of(ranking.among_candidates, candidate_correlation);
+  report["ranking_notes"] = ranking.notes;
+  report["dominant"] = {{"by_correlation", or_null(result.dominant.by_correlation)},
+                        {"by_fit", or_null(result.dominant.by_fit)},
+                        {"agree", or_null(result.dominant.agree)}};
+  report["fit"] = result.fit ? fit_json(*result.fit, result) : Json(nullptr);
+  report["crosscheck"] = crosscheck(result);
+  report["trace"] = nullptr;
+  require_finite(report, "");
+  // A file name need not be UTF-8.
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace slideway

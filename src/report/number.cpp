@@ -1,0 +1,84 @@
+#include "slideway/report/number.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr int kDoubleDigits = 15;  // decimal digits every double carries
+
+std::string in_format(double value, std::chars_format format, int precision) {
+  std::array<char, 800> buffer{};  // the longest double in fixed form has 309 + 1 + 326 characters
+  const auto end =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format, precision).ptr;
+  return {buffer.data(), end};
+}
+
+/// Exponent the number has once it is rounded to that many digits behind the leading one.
+int exponent_of(double value, int precision) {
+  const std::string text = in_format(value, std::chars_format::scientific, precision);
+  const char* first = text.data() + text.find('e') + 1;
+  if (*first == '+') ++first;
+  int exponent = 0;
+  std::from_chars(first, text.data() + text.size(), exponent);
+  return exponent;
+}
+
+/// Rounded to a multiple of 10^place, plain decimals, never "-0".
+std::string at_place(double value, int place) {
+  if (place > 0) {
+    const double unit = std::pow(10.0, place);
+    value = std::nearbyint(value / unit) * unit;
+  }
+  std::string text = in_format(value, std::chars_format::fixed, std::max(0, -place));
+  if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
+  return text;
+}
+
+double scaled(double value, int exponent) {  // powers up to 1e22 are exact, so one rounding only
+  return exponent > 0 ? value / std::pow(10.0, exponent) : value * std::pow(10.0, -exponent);
+}
+
+std::string joined_pair(const RoundedPair& pair) { return pair.value + " ± " + pair.uncertainty; }
+
+}  // namespace
+
+RoundedPair rounded(double value, double uncertainty) {
+  if (!std::isfinite(value) || !std::isfinite(uncertainty) || uncertainty < 0.0)
+    throw std::logic_error(
+        "rounded: value and uncertainty must be finite, uncertainty not below 0");
+  if (uncertainty == 0.0) return {shortest(value), "0"};
+  const int place = exponent_of(uncertainty, 1) - 1;
+  const int leading = value == 0.0 ? place : exponent_of(value, 0);
+  if (std::abs(leading - place) > kDoubleDigits)
+    return {in_format(value, std::chars_format::scientific, kDoubleDigits - 1),
+            in_format(uncertainty, std::chars_format::scientific, 1)};
+  return {at_place(value, place), at_place(uncertainty, place)};
+}
+
+std::string fixed_point(double value, int decimals) {
+  if (!std::isfinite(value)) throw std::logic_error("fixed_point: the value is not finite");
+  return at_place(value, -decimals);
+}
+
+std::string with_uncertainty(double value, double uncertainty) {
+  const RoundedPair plain = rounded(value, uncertainty);
+  const double magnitude = std::max(std::abs(value), uncertainty);
+  if (magnitude == 0.0 || uncertainty == 0.0 || (magnitude >= 1e-3 && magnitude <= 1e5))
+    return joined_pair(plain);
+  if (plain.value.find('e') != std::string::npos) return joined_pair(plain);
+
+  const int place = exponent_of(uncertainty, 1) - 1;
+  const int exponent = exponent_of(magnitude, std::max(1, exponent_of(magnitude, 0) - place));
+  const std::string power = in_format(std::pow(10.0, exponent), std::chars_format::scientific, 0);
+  return "(" + joined_pair(rounded(scaled(value, exponent), scaled(uncertainty, exponent))) + ")" +
+         power.substr(1);
+}
+
+}  // namespace slideway

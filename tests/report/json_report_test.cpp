@@ -1,0 +1,146 @@
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "report/sample_result.hpp"
+#include "slideway/report/report.hpp"
+
+namespace slideway {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// The example of the contract for schema slideway.report/1, up to the cross-check.
+const Json kContract = Json::parse(R"({
+  "schema": "slideway.report/1", "version": "0.1.0", "title": "...",
+  "inputs": [{ "name": "feed2", "file": "feed2.csv", "sha256": "...", "kind": "face",
+               "quantity": "height", "samples": 20000, "missing": 0, "position_min_mm": 0.0,
+               "position_max_mm": 10.0, "rms_um": 0.5, "pv_um": 2.0 }],
+  "low_band": { "wavelet": "db1", "level": 5, "boundary": "symmetric", "values": 1250 },
+  "ranking": [{ "effect": "squareness", "profile": "feed2", "raw": 0.83, "low_band": 0.99 }],
+  "dominant": { "by_correlation": "squareness", "by_fit": "squareness", "agree": true },
+  "fit": { "converged": true, "rms_um": 0.1, "observations": 1250, "effective_observations": 140.0,
+    "parameters": [{ "name": "squareness.dbeta_xz", "symbol": "Δβxz", "value": 2.8e-6,
+                     "unit": "rad", "standard_uncertainty": 1e-8, "expanded_uncertainty": 2e-8,
+                     "coverage_factor": 2.0, "identifiable": true }],
+    "correlations": [["straightness.b2", "straightness.b3", -0.97]],
+    "identifiability": { "parameters": 8, "rank": 7, "condition": 120.0,
+      "unidentifiable": [{ "combination": { "vertical_straightness.c1": 0.707 },
+                           "advice": "..." }] } },
+  "crosscheck": { "squareness": { "fit_rad": 2.8e-6, "fit_U_rad": 2e-8, "indirect_rad": 2.8e-6,
+                                  "indirect_U_rad": 2e-7, "En": 0.1, "verdict": "consistent" } }
+})");
+
+Json report_of(const Result& result) { return Json::parse(json_report(result)); }
+
+/// Every key of `wanted` is in `given` with a value of the same type; lists by their first entry.
+void expect_like(const Json& wanted, const Json& given, const std::string& path) {
+  ASSERT_EQ(wanted.type_name(), std::string(given.type_name())) << path;
+  ASSERT_EQ(wanted.is_number_float(), given.is_number_float()) << path;
+  if (wanted.is_object())
+    for (const auto& [key, value] : wanted.items()) {
+      ASSERT_TRUE(given.contains(key)) << path << "." << key;
+      expect_like(value, given[key], path + "." + key);
+    }
+  if (wanted.is_array() && !wanted.empty()) {
+    ASSERT_FALSE(given.empty()) << path;
+    expect_like(wanted[0], given[0], path + "[0]");
+  }
+}
+
+TEST(JsonReport, HasEveryKeyOfTheContractWithItsType) {
+  expect_like(kContract, report_of(sample_result()), "report");
+}
+
+TEST(JsonReport, KeepsTheOrderOfTheContract) {
+  std::vector<std::string> keys;
+  const Json report = report_of(sample_result());
+  for (const auto& [key, value] : report.items())
+    if (kContract.contains(key) || key == "trace") keys.push_back(key);
+  EXPECT_THAT(keys, ElementsAre("schema", "version", "title", "inputs", "low_band", "ranking",
+                                "dominant", "fit", "crosscheck", "trace"));
+  EXPECT_TRUE(report["trace"].is_null());
+}
+
+TEST(JsonReport, CarriesTheValuesUnchanged) {
+  const Json report = report_of(sample_result());
+  EXPECT_EQ(report["ranking"][0]["low_band"], 0.99);
+  EXPECT_EQ(report["ranking"][0]["running"]["samples"], Json({10, 20}));
+  EXPECT_EQ(report["candidate_correlations"][1]["coefficient"], 0.97);
+  EXPECT_EQ(report["fit"]["parameters"][0]["value"], 2.8e-6);
+  EXPECT_EQ(report["fit"]["correlations"][0],
+            Json::array({"straightness.b2", "straightness.b3", -0.97}));
+  EXPECT_EQ(report["fit"]["identifiability"]["determined"][0]["value"], 2.5e-6);
+  EXPECT_EQ(report["fit"]["noise"][1]["standard_deviation_urad"], 1.5);
+  EXPECT_EQ(report["fit"]["contributions"][0]["rms_um"], 0.4);
+  EXPECT_EQ(report["fit"]["contributions"][1]["rms_urad"], 1.25);
+  EXPECT_EQ(report["fit"]["residuals"][1]["rms_urad"], 1.5);
+  EXPECT_EQ(report["crosscheck"]["squareness"]["travel_mm"], 600.0);
+}
+
+TEST(JsonReport, WritesNullForWhatCouldNotBeDetermined) {
+  const Json report = report_of(sample_result());
+  EXPECT_TRUE(report["inputs"][1]["rms_um"].is_null());
+  EXPECT_TRUE(report["fit"]["noise"][1]["standard_deviation_um"].is_null());
+  for (const char* key : {"value", "standard_uncertainty", "expanded_uncertainty"})
+    EXPECT_TRUE(report["fit"]["parameters"][2][key].is_null()) << key;
+}
+
+TEST(JsonReport, HasAllTopKeysWhereOnlyARankingWasAskedFor) {
+  Result result = sample_result();
+  result.fit.reset();
+  result.squareness.reset();
+  result.dominant = {"squareness", std::nullopt, std::nullopt};
+  const Json report = report_of(result);
+  EXPECT_TRUE(report["fit"].is_null());
+  EXPECT_TRUE(report["crosscheck"]["squareness"].is_null());
+  EXPECT_TRUE(report["dominant"]["by_fit"].is_null());
+  EXPECT_TRUE(report["dominant"]["agree"].is_null());
+}
+
+TEST(JsonReport, SaysWhyThereIsNoCrossCheckWhereOnlyAFitWasAskedFor) {
+  Result result = sample_result();
+  result.ranking.reset();
+  result.squareness.reset();
+  const Json report = report_of(result);
+  EXPECT_EQ(report["ranking"], Json::array());
+  const Json& check = report["crosscheck"]["squareness"];
+  EXPECT_EQ(check["verdict"], "not_available");
+  EXPECT_NE(check["reason"], "");
+  EXPECT_TRUE(check["En"].is_null());
+}
+
+TEST(JsonReport, RefusesANumberThatIsNotFiniteAndNamesIt) {
+  Result result = sample_result();
+  result.fit->parameters[1].value = std::numeric_limits<double>::quiet_NaN();
+  try {
+    json_report(result);
+    FAIL() << "accepted a NaN";
+  } catch (const std::logic_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("fit.parameters[1].value"));
+  }
+  result = sample_result();
+  result.ranking->entries[0].running.raw[1] = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(json_report(result), std::logic_error);
+}
+
+TEST(JsonReport, IsTheSameTextEveryTimeAndEndsWithANewline) {
+  const std::string text = json_report(sample_result());
+  EXPECT_EQ(text, json_report(sample_result()));
+  EXPECT_EQ(text.back(), '\n');
+  EXPECT_EQ(text.substr(0, 15), "{\n  \"schema\": \"");
+}
+
+TEST(JsonReport, StaysValidWhereAFileNameIsNotUtf8) {
+  Result result = sample_result();
+  result.inputs[0].file =
+      "fl\xE4"
+      "che.csv";
+  EXPECT_NO_THROW(report_of(result));
+}
+
+}  // namespace
+}  // namespace slideway

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "slideway/identify/result.hpp"
+
+namespace slideway {
+
+/// What users see as one character; enough for Latin, Greek and the mathematical signs.
+inline std::size_t columns_of(const std::string& line) {
+  std::size_t count = 0;
+  for (const char c : line) count += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+  return count;
+}
+
+inline FittedParameter fitted(const std::string& name, const std::string& symbol,
+                              const std::string& unit, double value, double u) {
+  FittedParameter p;
+  p.name = name;
+  p.symbol = symbol;
+  p.unit = unit;
+  p.value = value;
+  p.standard_uncertainty = u;
+  p.expanded_uncertainty = 2.0 * u;
+  return p;
+}
+
+inline std::vector<InputSummary> sample_inputs() {
+  InputSummary face;
+  face.name = "feed2";
+  face.file = "feed2.csv";
+  face.sha256 = std::string(64, 'a');
+  face.kind = "face";
+  face.quantity = "height";
+  face.role = "fit";
+  face.samples = 20000;
+  face.missing = 1;
+  face.position_max_mm = 10.0;
+  face.rms_um = 0.5;
+  face.pv_um = 2.0;
+  face.notes = {"positions brought to a uniform grid for the wavelet: largest shift 0.2 µm"};
+  InputSummary level = face;
+  level.name = "the_level_on_the_front_way_third_run_of_three";
+  level.kind = "slide";
+  level.quantity = "slope";
+  level.role = "holdout";
+  level.rms_um = level.pv_um = std::nullopt;
+  level.rms_urad = 4.25;
+  level.pv_urad = 12.5;
+  return {face, level};
+}
+
+inline RankingResult sample_ranking() {
+  Ranking squareness{"squareness", "feed2", 0.83, 0.99, 0.5, 0.991, 12.5, 1e-9, {}};
+  squareness.running = {{10, 20}, {0.5, 0.83}, {0.9, 0.99}};
+  Ranking straightness{
+      "vertical_straightness", sample_inputs()[1].name, -0.6, -0.97, -1.5, -0.98, 12.5, 0.02, {}};
+  return {{squareness, straightness},
+          {{"squareness", "straightness", "feed2", -0.2},
+           {"squareness", "vertical_straightness", "feed2", 0.97}},
+          {"constant profiles were passed over"}};
+}
+
+inline Identifiability sample_identifiability() {
+  Identifiability what;
+  what.parameters = 3;
+  what.rank = 2;
+  what.condition = 120.0;
+  what.unidentifiable = {
+      {{{"vertical_straightness.c1", std::sqrt(0.5)}, {"squareness.tilt", -std::sqrt(0.5)}},
+       "Measure a reference straightedge along Z, or the run-out of Eq. (21)."}};
+  what.determined = {
+      {{{"vertical_straightness.c1", 1.0}, {"squareness.tilt", 1.0}}, 2.5e-6, 1e-8, 2e-8, "rad"}};
+  return what;
+}
+
+inline FitResult sample_fit() {
+  FitResult fit;
+  fit.converged = true;
+  fit.rms_um = 0.1;
+  fit.observations = 1250;
+  fit.effective_observations = 140.0;
+  fit.parameters = {fitted("squareness.dbeta_xz", "Δβxz", "rad", 2.8e-6, 1.1e-9),
+                    fitted("straightness.b2", "b_2", "mm^-1", -2.29e-8, 1e-10),
+                    // A solver's leftovers: whatever stands here must not be shown.
+                    fitted("vertical_straightness.c1", "c_1", "", 777.5, 1e5)};
+  fit.parameters[0].standard_name = "squareness of X to Z, E_B(0X)Z";
+  fit.parameters[0].degrees_of_freedom = 130.0;
+  fit.parameters[2].identifiable = false;
+  fit.nuisances = {fitted("feed2.offset", "", "um", 0.0125, 0.003)};
+  fit.nuisances[0].at_bound = true;
+  fit.correlations = {{"straightness.b2", "straightness.b3", -0.97}};
+  fit.identifiability = sample_identifiability();
+  fit.noise = {{"feed2", "estimated: the declared uncertainty is too small", 2, 0.012, std::nullopt,
+                0.31, 140.0, 0.42},
+               {sample_inputs()[1].name, "declared", 0, std::nullopt, 1.5, 0.0, 20.0, 0.5}};
+  fit.contributions = {{"squareness", "feed2", 0.4, 0.9},
+                       {"straightness", sample_inputs()[1].name, 1.25, 0.1}};
+  fit.residuals = {{"feed2", "fit", 0.1, 0.45, "um"},
+                   {sample_inputs()[1].name, "holdout", 1.5, 4.0, "urad"}};
+  fit.chi_square = 131.0;
+  fit.degrees_of_freedom = 133.0;
+  fit.neglected_um = 1.25e-9;
+  fit.notes = {"uncertainties hold for correlated residuals: AR(2) noise, whitened before the fit"};
+  return fit;
+}
+
+/// An identification with every field of Result in use.
+inline Result sample_result() {
+  Result result;
+  result.title = "Face turned at two feeds";
+  result.version = "0.1.0";
+  result.inputs = sample_inputs();
+  result.wavelet = "db1";
+  result.boundary = "symmetric";
+  result.level = 5;
+  result.low_band_values = 1250;
+  result.ranking = sample_ranking();
+  result.dominant = {"squareness", "squareness", true};
+  result.fit = sample_fit();
+  SquarenessCheck check{2.8e-6, 2.2e-9, 2.75e-6, 2e-7, 0.25, "consistent", "", 600.0, 1.68, 1.65};
+  result.squareness = check;
+  return result;
+}
+
+}  // namespace slideway
