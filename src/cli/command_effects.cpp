@@ -1,0 +1,139 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "report_command.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
+
+namespace slideway {
+namespace {
+
+/// An effect to look at: on the paper's lathe, with what it can not do without.
+std::unique_ptr<Effect> sample(const std::string& name) {
+  const Machine machine(Machine::paper_lathe(), Lever::paper);
+  const std::vector<EffectOptions> attempts{
+      {}, {std::nullopt, 3, std::nullopt}, {std::nullopt, std::nullopt, 1000.0}};
+  for (std::size_t i = 0; i + 1 < attempts.size(); ++i) {
+    try {
+      return make_effect(name, attempts[i], machine, TravelRange{});
+    } catch (const UsageError&) {  // it needs an option: the next attempt has another
+    }
+  }
+  return make_effect(name, attempts.back(), machine, TravelRange{});
+}
+
+std::string with_unit(const Parameter& parameter) {
+  return parameter.unit.empty() ? parameter.name : parameter.name + " (" + parameter.unit + ")";
+}
+
+std::string parameter_list(const Effect& effect) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : effect.parameters()) names.push_back(with_unit(parameter));
+  return joined(names);
+}
+
+std::string line_of(const std::string& name) {
+  const auto effect = sample(name);
+  const Description& about = effect->description();
+  return name + "\n  clock " + std::string(symbol(about.clock)) + "   " + about.formula +
+         "\n  parameters: " + parameter_list(*effect) + "\n";
+}
+
+std::string entry_of(const std::string& name) {
+  const auto effect = sample(name);
+  const Description& about = effect->description();
+  const std::vector<std::pair<std::string, std::string>> lines{
+      {"standard name", about.standard_name},
+      {"formula", about.formula},
+      {"source", about.source},
+      {"cause", about.cause},
+      {"typical", about.typical},
+      {"clock", std::string(symbol(about.clock))},
+      {"parameters", parameter_list(*effect)},
+      {"confounded with", about.confounded_with},
+      {"separated by", about.separated_by}};
+  std::string text = name + "\n";
+  for (const auto& [label, value] : lines) {
+    if (value.empty()) continue;
+    text += "  " + label + ":" + std::string(17 - label.size(), ' ') + value + "\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json bound(double value) {
+  if (std::isfinite(value)) return value;
+  return nullptr;
+}
+
+nlohmann::ordered_json json_of(const std::string& name) {
+  const auto effect = sample(name);
+  const Description& about = effect->description();
+  nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
+  for (const Parameter& parameter : effect->parameters())
+    parameters.push_back({{"name", parameter.name},
+                          {"symbol", parameter.symbol},
+                          {"unit", parameter.unit},
+                          {"lower", bound(parameter.lower)},
+                          {"upper", bound(parameter.upper)}});
+  return {{"name", name},
+          {"standard_name", about.standard_name},
+          {"formula", about.formula},
+          {"source", about.source},
+          {"cause", about.cause},
+          {"typical", about.typical},
+          {"clock", symbol(about.clock)},
+          {"parameters", parameters},
+          {"confounded_with", about.confounded_with},
+          {"separated_by", about.separated_by}};
+}
+
+class EffectsCommand : public ReportCommand {
+ public:
+  EffectsCommand()
+      : ReportCommand("effects", "[NAME] [options]",
+                      "Lists the catalogue of effects, or one entry in full") {
+    add_input("NAME", &effect_, false);
+  }
+
+  int run() override {
+    report([this] { return text(); }, [this] { return json(); });
+    return kDone;
+  }
+
+ private:
+  void check(const boost::program_options::variables_map& /*given*/) override {
+    const std::vector<std::string>& names = effect_names();
+    if (!effect_.empty() && std::find(names.begin(), names.end(), effect_) == names.end())
+      fail("unknown effect '" + effect_ + "'" + did_you_mean(effect_, names) +
+           "; accepted: " + joined(names, " "));
+  }
+
+  [[nodiscard]] std::string text() const {
+    if (!effect_.empty()) return entry_of(effect_);
+    std::string all;
+    for (const std::string& name : effect_names()) {
+      if (!all.empty()) all += '\n';
+      all += line_of(name);
+    }
+    return all;
+  }
+
+  [[nodiscard]] std::string json() const {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const std::string& name : effect_names())
+      if (effect_.empty() || effect_ == name) list.push_back(json_of(name));
+    const nlohmann::ordered_json document = {{"schema", "slideway.effects/1"}, {"effects", list}};
+    return document.dump(2) + "\n";
+  }
+
+  std::string effect_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_effects() { return std::make_unique<EffectsCommand>(); }
+
+}  // namespace slideway

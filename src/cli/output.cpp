@@ -1,0 +1,35 @@
+#include "output.hpp"
+
+#include <cerrno>
+#include <iostream>
+#include <stdexcept>
+#include <system_error>
+
+#include "slideway/base/file.hpp"
+
+namespace slideway {
+
+void print(std::string_view text) {
+  errno = 0;
+  std::cout.write(text.data(), static_cast<std::streamsize>(text.size()));
+  std::cout.flush();
+  if (!std::cout)
+    throw std::runtime_error("standard output: can not be written: " +
+                             std::generic_category().message(errno != 0 ? errno : EIO));
+}
+
+void write_output(const std::string& path, std::string_view text) {
+  if (path == "-")
+    print(text);
+  else
+    write_file(path, text);
+}
+
+void say(std::string_view message) {
+  std::string line = "slideway: " + std::string(message);
+  for (char& c : line)
+    if (c == '\n' || c == '\r') c = ' ';
+  std::cerr << line << std::endl;
+}
+
+}  // namespace slideway

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace slideway {
+
+/// Writes to stdout and makes sure that it arrived.
+/// @throws std::runtime_error  the disk is full, the pipe is closed
+void print(std::string_view text);
+
+/// Writes a file, or stdout if the path is "-". @throws std::runtime_error
+void write_output(const std::string& path, std::string_view text);
+
+/// A message for people, one line on stderr: "slideway: ...".
+void say(std::string_view message);
+
+}  // namespace slideway

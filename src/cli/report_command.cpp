@@ -1,0 +1,45 @@
+#include "report_command.hpp"
+
+#include "output.hpp"
+#include "slideway/report/report.hpp"
+
+namespace slideway {
+namespace po = boost::program_options;
+
+ReportCommand::ReportCommand(std::string name, std::string arguments, std::string summary)
+    : Command(std::move(name), std::move(arguments), std::move(summary)) {
+  add_options()("json", po::value(&json_)->value_name("FILE"),
+                "write the result as JSON; - for stdout, which then holds nothing else");
+  add_options()("quiet,q", po::bool_switch(&quiet_), "no text on stdout");
+}
+
+void ReportCommand::report(const std::function<std::string()>& text,
+                           const std::function<std::string()>& json) const {
+  if (!json_.empty()) write_output(json_, json());
+  if (!quiet_ && json_ != "-") print(text());
+}
+
+ProblemCommand::ProblemCommand(std::string name, std::string arguments, std::string summary)
+    : ReportCommand(std::move(name), std::move(arguments), std::move(summary)) {
+  add_input("PROBLEM", &input_);
+  add_options()("data", po::value(&data_)->value_name("DIR"),
+                "what ${SLIDEWAY_DATA} in the problem file stands for");
+}
+
+void ProblemCommand::add_strict() {
+  add_options()("strict", po::bool_switch(&strict_), "exit code 4 if the verdict is negative");
+}
+
+int ProblemCommand::run_problem(Scope scope) const {
+  const Problem problem = read_problem(input_, data_directory(data_));
+  const Result result = identify(problem, read_profiles(problem), scope);
+  report([&] { return text_report(result); }, [&] { return json_report(result); });
+  return strict_ && is_negative(result) ? kNegativeVerdict : kDone;
+}
+
+std::optional<std::filesystem::path> data_directory(const std::string& option) {
+  if (option.empty()) return std::nullopt;
+  return option;
+}
+
+}  // namespace slideway
