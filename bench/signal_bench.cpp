@@ -1,0 +1,96 @@
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "slideway/base/random.hpp"
+#include "slideway/signal/correlation.hpp"
+#include "slideway/signal/low_band.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr int kLevels = 5;
+
+std::vector<double> noise(std::int64_t n) {
+  RandomStream random(1, "signal_bench");
+  std::vector<double> signal(static_cast<std::size_t>(n));
+  for (double& value : signal) value = random.normal();
+  return signal;
+}
+
+std::vector<double> uniform_positions(std::int64_t n) {
+  std::vector<double> positions(static_cast<std::size_t>(n));
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = 0.03 * static_cast<double>(i);
+  return positions;
+}
+
+void set_items(benchmark::State& state) {
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+
+void BM_DwtForward(benchmark::State& state, const std::string& name, Boundary boundary) {
+  const Wavelet wavelet = daubechies(name);
+  const std::vector<double> signal = noise(state.range(0));
+  std::vector<std::vector<double>> low(kLevels);
+  std::vector<std::vector<double>> high(kLevels);
+  for (auto _ : state) {
+    dwt(wavelet, boundary, signal, low[0], &high[0]);
+    for (std::size_t j = 1; j < kLevels; ++j) dwt(wavelet, boundary, low[j - 1], low[j], &high[j]);
+    benchmark::DoNotOptimize(low.back().data());
+  }
+  set_items(state);
+}
+
+void BM_Bands(benchmark::State& state, const std::string& name, Boundary boundary) {
+  const Wavelet wavelet = daubechies(name);
+  const std::vector<double> signal = noise(state.range(0));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(reconstruct_bands(wavelet, boundary, kLevels, signal));
+  set_items(state);
+}
+
+void BM_LowBandApply(benchmark::State& state, const std::string& name, bool uniform) {
+  std::vector<double> positions = uniform_positions(state.range(0));
+  if (!uniform)
+    for (double& position : positions) position += 0.3 * std::sin(position);
+  const LowBand low_band({name, kLevels, Boundary::symmetric}, positions);
+  const std::vector<double> signal = noise(state.range(0));
+  std::vector<double> coefficients(static_cast<std::size_t>(low_band.values()));
+  for (auto _ : state) {
+    low_band.apply(signal, coefficients);
+    benchmark::DoNotOptimize(coefficients.data());
+  }
+  set_items(state);
+}
+
+void BM_BestLag(benchmark::State& state) {
+  const std::vector<double> signal = noise(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(best_lag(signal, signal, 200));
+}
+
+// A slope correlates with itself over half its length: the sum's longest case.
+void BM_EffectiveObservations(benchmark::State& state) {
+  const std::vector<double> slope = uniform_positions(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(effective_observations(slope, slope));
+}
+
+const auto kSizes = [](auto* benchmark) {
+  benchmark->Arg(20'000)->Arg(1'000'000)->Unit(benchmark::kMicrosecond);
+};
+
+BENCHMARK_CAPTURE(BM_DwtForward, db1_symmetric, "db1", Boundary::symmetric)->Apply(kSizes);
+BENCHMARK_CAPTURE(BM_DwtForward, db1_periodization, "db1", Boundary::periodization)->Apply(kSizes);
+BENCHMARK_CAPTURE(BM_DwtForward, db4_symmetric, "db4", Boundary::symmetric)->Apply(kSizes);
+BENCHMARK_CAPTURE(BM_DwtForward, db4_periodization, "db4", Boundary::periodization)->Apply(kSizes);
+BENCHMARK_CAPTURE(BM_Bands, db1_symmetric, "db1", Boundary::symmetric)->Apply(kSizes);
+BENCHMARK_CAPTURE(BM_Bands, db4_symmetric, "db4", Boundary::symmetric)->Apply(kSizes);
+BENCHMARK_CAPTURE(BM_LowBandApply, db1_uniform, "db1", true)->Apply(kSizes);
+BENCHMARK_CAPTURE(BM_LowBandApply, db4_uniform, "db4", true)->Apply(kSizes);
+BENCHMARK_CAPTURE(BM_LowBandApply, db1_resampled, "db1", false)->Apply(kSizes);
+BENCHMARK(BM_BestLag)->Arg(625)->Arg(20'000)->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_EffectiveObservations)->Arg(625)->Arg(20'000)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace slideway

@@ -1,0 +1,47 @@
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "slideway/base/file.hpp"
+#include "slideway/base/random.hpp"
+#include "slideway/profile/table.hpp"
+
+namespace slideway {
+namespace {
+
+// A profile as a profilometer writes it: half-micrometre steps, heights to the picometre.
+std::string profile_text(std::int64_t rows) {
+  RandomStream random(1, "table_bench");
+  std::string text = "x_mm,z_um\n";
+  for (std::int64_t i = 0; i < rows; ++i) {
+    const std::string x = std::to_string(static_cast<double>(i) * 5e-4);
+    text += x.substr(0, x.size() - 2) + ',' + std::to_string(0.3 * random.normal()) + '\n';
+  }
+  return text;
+}
+
+void BM_ReadTable(benchmark::State& state) {
+  const auto path = std::filesystem::temp_directory_path() / "slideway_table_bench.csv";
+  const std::string text = profile_text(state.range(0));
+  write_file(path, text);
+  const std::array<std::string, 2> columns{"x_mm", "z_um"};
+  for (auto _ : state) benchmark::DoNotOptimize(read_table(path, columns));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(text.size()));
+  std::filesystem::remove(path);
+}
+BENCHMARK(BM_ReadTable)->Arg(20000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+
+void BM_Sha256(benchmark::State& state) {
+  const std::string text = profile_text(state.range(0));
+  for (auto _ : state) benchmark::DoNotOptimize(sha256(text));
+  state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(text.size()));
+}
+BENCHMARK(BM_Sha256)->Arg(1000000)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace slideway
+
+BENCHMARK_MAIN();
