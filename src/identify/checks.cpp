@@ -118,7 +118,8 @@ void explain_scaling(const Fit& fit, FitResult& out) {
       : correlated
           ? "uncertainties are scaled by the residual and widened for its correlation (AR noise, "
             "restricted likelihood); coverage factors from Student's t for 95.45 %"
-          : "uncertainties are scaled by the residual, which shows no correlation; coverage "
+          : "uncertainties are scaled by the residual, without a correlation that widens them; "
+            "coverage "
             "factors "
             "from Student's t for 95.45 %");
 }

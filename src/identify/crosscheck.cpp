@@ -37,7 +37,7 @@ std::string disagreement(const SquarenessCheck& check) {
   if (!check.travel_mm) return text;
   text += ": over the " + significant(*check.travel_mm, 4) + " mm that were cut, " +
           significant(indirect, 2) + " rad makes " + significant(*check.indirect_amplitude_um, 2) +
-          " um, while the face shows " + significant(*check.fit_amplitude_um, 2) + " um";
+          " µm, while the face shows " + significant(*check.fit_amplitude_um, 2) + " µm";
   if (fit > indirect)
     text +=
         "; the squareness that was measured can not have made this face: look for another cause";

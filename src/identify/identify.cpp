@@ -42,6 +42,7 @@ InputSummary summarise_input(const Profile& profile) {
 Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope) {
   Result result;
   result.title = problem.title;
+  result.version = SLIDEWAY_VERSION;
   for (const Profile& profile : profiles) result.inputs.push_back(summarise_input(profile));
   result.wavelet = problem.low_band.wavelet;
   result.level = problem.low_band.level;

@@ -173,8 +173,8 @@ std::string fit_table(const FitResult& fit) {
   head += ", " + counted(fit.observations, "value") + " (" + number(fit.effective_observations, 4) +
           " effective)";
   if (fit.rms_um) head += ", residual rms " + number(*fit.rms_um, 4) + " µm";
-  head += ", chi-square " + number(fit.chi_square, 4) + " at " + number(fit.degrees_of_freedom, 4) +
-          " degrees of freedom";
+  head += ", chi-square " + fixed_point(fit.chi_square, 0) + " at " +
+          fixed_point(fit.degrees_of_freedom, 0) + " degrees of freedom";
   std::string text = heading(head) + parameters(fit.parameters, "parameter") +
                      parameters(fit.nuisances, "levelling of the traces") + standard_terms(fit) +
                      parameter_correlations(fit);
@@ -223,7 +223,8 @@ std::string in_words(const Combination& terms, const std::map<std::string, std::
       text = factor < 0.0 ? "-" : "";
     else
       text += factor < 0.0 ? " - " : " + ";
-    if (std::abs(factor) != 1.0) text += number(std::abs(factor), 2) + " ";
+    const std::string size = number(std::abs(factor), 2);
+    if (size != "1") text += size + " ";
     const auto found = names.find(name);
     text += found == names.end() ? name : found->second;
   }
@@ -281,19 +282,25 @@ std::string squareness_of(const std::optional<double>& rad, const std::optional<
   return (U_rad ? with_uncertainty(*rad * 1e6, *U_rad * 1e6) : number(*rad * 1e6, 4)) + unit;
 }
 
+/// With a capital and a full stop; REQUIRES a first letter of ASCII.
+std::string sentence(std::string text) {
+  if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
+  return text.back() == '.' ? text : text + ".";
+}
+
 std::string crosscheck(const SquarenessCheck& check) {
   std::string text =
       "Squareness by the fit: " + squareness_of(check.fit_rad, check.fit_U_rad) +
       "; by the run-out, Eq. (21): " + squareness_of(check.indirect_rad, check.indirect_U_rad) +
       ". ";
-  if (check.En) text += "E_n = " + number(*check.En, 3) + ": ";
+  if (check.En) text += "E_n = " + number(*check.En, 2) + ": ";
   if (check.verdict == "consistent")
     text += "consistent (E_n is not above 1). ";
   else if (check.verdict == "inconsistent")
     text += "INCONSISTENT (E_n is above 1). ";
   else
     text += "No cross-check. ";
-  if (!check.reason.empty()) text += check.reason + (check.reason.back() == '.' ? " " : ". ");
+  if (!check.reason.empty()) text += sentence(check.reason) + " ";
   const auto amplitude = [](const std::optional<double>& um) {
     return um ? number(*um, 4) + " µm" : std::string("unknown");
   };

@@ -122,7 +122,7 @@ TEST(TextReport, ShoutsAnInconsistentCrossCheckWithItsReason) {
   result.squareness->reason = "the fit asks for more than the run-out allows";
   const std::string text = on_one_line(text_report(result));
   EXPECT_THAT(text, HasSubstr("E_n = 70: INCONSISTENT"));
-  EXPECT_THAT(text, HasSubstr("the fit asks for more than the run-out allows"));
+  EXPECT_THAT(text, HasSubstr("(E_n is above 1). The fit asks for more than the run-out allows."));
 }
 
 TEST(TextReport, SaysHowUncertaintiesWereScaledPerProfile) {
