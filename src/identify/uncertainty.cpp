@@ -25,6 +25,21 @@ Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Eigen::MatrixXd&
   return out;
 }
 
+/// Variance of ln(weight²) of a profile whose noise was estimated.
+double weight_variance(const Noise& noise) {
+  constexpr double kStep = 1e-3;
+  const Eigen::VectorXd at = noise.parameters();
+  Eigen::VectorXd gradient(at.size());
+  for (Eigen::Index j = 0; j < at.size(); ++j) {
+    Eigen::VectorXd up = at, down = at;
+    up[j] += kStep;
+    down[j] -= kStep;
+    gradient[j] =
+        std::log(noise.at(up).weight_deviation() / noise.at(down).weight_deviation()) / kStep;
+  }
+  return gradient.dot(noise.covariance * gradient);
+}
+
 }  // namespace
 
 Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
@@ -57,8 +72,11 @@ Uncertainty assess(const Linearisation& linear, const std::vector<double>& weigh
     project_out(nuisance_basis(observation), z);
     const Eigen::MatrixXd coloured_z = coloured(noise[i], z);
     out.covariance += coloured_z.transpose() * coloured_z;
-    if (!noise[i].declared && noise[i].covariance.size() > 0)
+    if (!noise[i].declared && noise[i].covariance.size() > 0) {
       out.noise.push_back(noise_effect(noise[i], z));
+      const Eigen::MatrixXd share = z.transpose() * columns;
+      out.covariance += 2.0 * weight_variance(noise[i]) * (share - share * share);
+    }
     const Eigen::MatrixXd& n = observation.nuisances;
     Eigen::MatrixXd k(n.rows(), n.cols());
     if (n.cols() > 0) k = n * (n.transpose() * n).inverse();

@@ -19,8 +19,10 @@ struct Spread {
 ///
 /// The estimate is w = Σ_i Z_i' (values_i - ...) / weight_i² in orthonormal coordinates; its
 /// covariance is Σ_i Z_i' Σ_i Z_i / weight_i⁴ plus the priors' part, with Σ_i the noise of profile
-/// i: weights that do not fit the noise cost efficiency, never honesty. Degrees of freedom by
-/// Satterthwaite's formula (GUM G.4.1) from the uncertainty of the noise's own parameters.
+/// i: weights that do not fit the noise cost efficiency, never honesty. Weights taken from the data
+/// add 2 Σ_i var(ln weight_i²) (G_i - G_i²), G_i = the share of profile i in the information
+/// (Kenward and Roger 1997; Meier 1953 for a weighted mean). Degrees of freedom by Satterthwaite's
+/// formula (GUM G.4.1) from the uncertainty of the noise's own parameters.
 struct Uncertainty {
   Eigen::MatrixXd basis;                       // (A + S) by r
   Eigen::MatrixXd covariance;                  // r by r, of w
