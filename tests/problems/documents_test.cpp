@@ -1,4 +1,7 @@
+#include <map>
+
 #include "problems/program.hpp"
+#include "problems/reproduction.hpp"
 
 namespace slideway {
 namespace {
@@ -18,6 +21,24 @@ std::string with_current_output(std::string text) {
                  output_of(text.substr(arguments, arguments_end - arguments)));
   }
   return text;
+}
+
+/// Every @name@ replaced by its number; each must be used, and none may be missing.
+std::string filled(std::string text, const std::map<std::string, std::string>& numbers) {
+  for (const auto& [name, number] : numbers) {
+    const std::string mark = "@" + name + "@";
+    std::size_t at = text.find(mark);
+    EXPECT_NE(at, std::string::npos) << mark << " is in no line";
+    for (; at != std::string::npos; at = text.find(mark, at + number.size()))
+      text.replace(at, mark.size(), number);
+  }
+  EXPECT_EQ(text.find('@'), std::string::npos) << text.substr(text.find('@')).substr(0, 40);
+  return text;
+}
+
+TEST(Documents, ReproductionStatesWhatTheLibraryFindsToday) {
+  const std::string text(FileBytes(source_folder() / "tests/problems/reproduction.md.in").text());
+  expect_current(source_folder() / "docs/reproduction.md", filled(text, reproduced_numbers()));
 }
 
 TEST(Documents, ReadmeShowsWhatTheProgramSays) {
