@@ -135,6 +135,11 @@ SolveSummary solve(const Model& model, Linearisation& linear, const std::vector<
   out.estimate = residual.estimate(x);
   out.shape_at_bound = bounds_met(residual, out.estimate);
   refit_nuisances(model, out.estimate, linear);
+  if (residual.shapes().empty() && residual.size() > 0) {  // iterative refinement
+    const Residual rest(model, linear, weights, start);
+    out.estimate.amplitudes += rest.estimate(rest.linear_optimum(shapes, nullptr)).amplitudes;
+    refit_nuisances(model, out.estimate, linear);
+  }
   return out;
 }
 
