@@ -1,0 +1,293 @@
+#include "slideway/identify/fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <filesystem>
+#include <fstream>
+
+#include "identify/cases.hpp"
+#include "slideway/base/random.hpp"
+#include "slideway/base/text.hpp"
+#include "support/turning.hpp"
+
+namespace slideway {
+namespace {
+
+using Extended = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+
+constexpr double kSpindle = 30.0;  // mm, slide coordinate of the spindle axis
+constexpr double kBase = 20.0;     // mm, of the bridge
+const turning::Carriage kCarriage{.b = {0.0, 3e-6, 2e-8, -1e-10}, .squareness = 2e-5};
+
+double face_error(const turning::ToolPoint& tool) { return turning::one_lever(kCarriage, tool); }
+double slide_error(const turning::ToolPoint& tool) {
+  return turning::polynomial(kCarriage.b, tool.x);
+}
+
+Profile with_noise(Profile profile, double uncertainty) {
+  profile.standard_uncertainty = uncertainty;
+  RandomStream random(1, profile.name);
+  for (double& value : profile.values) value += uncertainty * random.normal();
+  return profile;
+}
+
+/// The same machine as a face shows it and as three instruments read its slide.
+std::vector<Profile> readings() {
+  RandomStream silent(0, "none");
+  turning::Cut cut;
+  cut.radius_mm = 60.0;
+  cut.feed_mm_per_min = 10.0;
+  cut.spindle_rpm = 1000.0;
+  cut.spindle_position_mm = kSpindle;
+  turning::Stylus stylus;
+  stylus.offset_mm = 2e-3;
+  const std::vector<double> radii = cases::spaced(0.0, 60.0, 800);
+  Profile face = cases::face("face", 10.0, radii,
+                             turning::trace(turning::Face(cut, face_error), radii, stylus, silent));
+  face.setup.spindle_position_mm = kSpindle;
+  turning::Pass pass;
+  pass.zero = 1e-5;
+  const std::vector<double> travel = cases::spaced(15.0, 95.0, 400);
+  Profile height = cases::profile("height", Kind::slide, travel,
+                                  turning::slide_heights(slide_error, travel, pass, silent));
+  height.free_tilt = false;
+  Profile bridge = cases::profile("bridge", Kind::slide, travel,
+                                  turning::slide_slopes(slide_error, travel, kBase, pass, silent));
+  // Chords as short as 10 µm: the local slope to 2e-15.
+  Profile slope = cases::profile("slope", Kind::slide, travel,
+                                 turning::slide_slopes(slide_error, travel, 0.01, pass, silent));
+  bridge.setup.quantity = slope.setup.quantity = Quantity::slope;
+  bridge.setup.base_mm = kBase;
+  return {with_noise(face, 2e-5), with_noise(height, 1e-5), with_noise(bridge, 3e-7),
+          with_noise(slope, 5e-7)};
+}
+
+/// What b_k adds to a reading at one position, from Eqs. (10) and (16).
+long double power_in(const Profile& profile, int k, long double s) {
+  const auto power = [](long double x, int n) { return n < 0 ? 0.0L : std::pow(x, n); };
+  if (profile.setup.kind == Kind::face) {
+    const long double x = kSpindle + s;
+    return power(x, k) - k * power(x, k - 1) * s;
+  }
+  if (profile.setup.quantity == Quantity::height) return power(s, k);
+  if (!profile.setup.base_mm) return k * power(s, k - 1);
+  return (power(s + kBase / 2, k) - power(s - kBase / 2, k)) / kBase;
+}
+
+/// b_1, b_2, b_3 and the squareness by QR in extended precision on columns written out here:
+/// heights averaged over four samples (db1, level 2), one constant per profile.
+Eigen::VectorXd direct_solution(const std::vector<Profile>& profiles) {
+  Eigen::Index rows = 0;
+  for (const Profile& profile : profiles) rows += std::ssize(profile.values) / 4;
+  Extended a = Extended::Zero(rows, 4 + std::ssize(profiles));
+  Extended y = Extended::Zero(rows, 1);
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    const Profile& profile = profiles[i];
+    for (std::size_t first = 0; first + 4 <= profile.values.size(); first += 4, ++row) {
+      for (std::size_t j = first; j < first + 4; ++j) {
+        const long double s = profile.positions[j];
+        for (int k = 1; k <= 3; ++k) a(row, k - 1) += power_in(profile, k, s);
+        if (profile.setup.kind == Kind::face) a(row, 3) -= s;
+        a(row, 4 + static_cast<Eigen::Index>(i)) += 1.0L;
+        y(row, 0) += profile.values[j];
+      }
+      a.row(row) /= *profile.standard_uncertainty;
+      y.row(row) /= *profile.standard_uncertainty;
+    }
+  }
+  const Extended scale = a.colwise().norm().cwiseInverse();
+  const Extended x = scale.transpose().asDiagonal() *
+                     (a * scale.row(0).asDiagonal()).colPivHouseholderQr().solve(y);
+  return x.col(0).head(4).cast<double>();
+}
+
+Problem joint_problem() {
+  return cases::problem(Lever::paper, 2,
+                        {cases::effect("straightness", 3), cases::effect("squareness")});
+}
+
+FitResult fitted(const Problem& problem, const std::vector<Profile>& profiles) {
+  const Model model = build_model(problem, profiles);
+  return summarise(model, fit(model));
+}
+
+double value(const FitResult& result, const std::string& name) {
+  return result.find(name)->value.value();
+}
+double uncertainty(const FitResult& result, const std::string& name) {
+  return result.find(name)->standard_uncertainty.value();
+}
+
+const std::vector<std::string> kDetermined{"straightness.b1", "straightness.b2", "straightness.b3",
+                                           "squareness.dbeta_xz"};
+
+TEST(Fit, OfFourKindsOfReadingsAgreesWithTheDirectSolution) {
+  const std::vector<Profile> profiles = readings();
+  const FitResult result = fitted(joint_problem(), profiles);
+  const Eigen::VectorXd direct = direct_solution(profiles);
+  ASSERT_TRUE(result.converged);
+  for (std::size_t p = 0; p < kDetermined.size(); ++p) {
+    // Twelve digits are left of the powers of 95 mm in double precision; two are spared.
+    EXPECT_NEAR(value(result, kDetermined[p]), direct[p], 1e-10 * std::abs(direct[p]))
+        << kDetermined[p];
+  }
+}
+
+TEST(Fit, OfFourKindsOfReadingsFindsTheMachine) {
+  const FitResult result = fitted(joint_problem(), readings());
+  const std::vector<double> truth{3e-6, 2e-8, -1e-10, 2e-5};
+  for (std::size_t p = 0; p < kDetermined.size(); ++p) {
+    // Four standard uncertainties: 1 in 16000 each, and the seed is fixed.
+    EXPECT_NEAR(value(result, kDetermined[p]), truth[p], 4.0 * uncertainty(result, kDetermined[p]))
+        << kDetermined[p];
+  }
+  for (const NoiseSummary& noise : result.noise) EXPECT_EQ(noise.scaling, "declared");
+}
+
+void expect_same(const FitResult& a, const FitResult& b, double factor = 1.0) {
+  for (const std::string& name : kDetermined) {
+    // Roundings of the data, which a millionth of the uncertainty is far above.
+    EXPECT_NEAR(factor * value(a, name), value(b, name), 1e-6 * uncertainty(b, name)) << name;
+    EXPECT_NEAR(factor * uncertainty(a, name), uncertainty(b, name), 1e-9 * uncertainty(b, name))
+        << name;
+  }
+}
+
+TEST(Fit, OfAShiftedTraceDiffersInItsOffsetOnly) {
+  std::vector<Profile> profiles = readings();
+  const FitResult before = fitted(joint_problem(), profiles);
+  for (double& z : profiles[0].values) z += 0.5;
+  const FitResult after = fitted(joint_problem(), profiles);
+  expect_same(before, after);
+  ASSERT_EQ(after.nuisances[0].name, "face.offset");
+  // The offset is 500 µm; its doubles end at 1e-13 of that.
+  EXPECT_NEAR(*after.nuisances[0].value - *before.nuisances[0].value, 500.0, 1e-9);
+}
+
+TEST(Fit, OfATiltedTraceDiffersInItsTiltOnly) {
+  std::vector<Profile> profiles = readings();
+  profiles[1].free_tilt = true;  // the bridge's zero is free: b_1 goes with the tilt
+  const std::vector<std::string> curved{"straightness.b2", "straightness.b3"};
+  const FitResult before = fitted(joint_problem(), profiles);
+  for (std::size_t i = 0; i < profiles[1].values.size(); ++i)
+    profiles[1].values[i] += 1e-3 * profiles[1].positions[i];
+  const FitResult after = fitted(joint_problem(), profiles);
+  for (const std::string& name : curved)
+    EXPECT_NEAR(value(after, name), value(before, name), 1e-6 * uncertainty(before, name)) << name;
+  ASSERT_EQ(after.nuisances[2].name, "height.tilt");
+  EXPECT_NEAR(*after.nuisances[2].value - *before.nuisances[2].value, 1e-3, 1e-12);
+}
+
+TEST(Fit, ScalesWithTheData) {
+  std::vector<Profile> profiles = readings();
+  const FitResult before = fitted(joint_problem(), profiles);
+  for (Profile& profile : profiles) {
+    for (double& z : profile.values) z *= 3.0;
+    *profile.standard_uncertainty *= 3.0;
+  }
+  expect_same(before, fitted(joint_problem(), profiles), 3.0);
+}
+
+TEST(Fit, OfEveryProfileTwiceHasHalfTheVariance) {
+  std::vector<Profile> profiles = readings();
+  const FitResult once = fitted(joint_problem(), profiles);
+  const std::size_t count = profiles.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    profiles.push_back(profiles[i]);
+    profiles.back().name += " again";
+  }
+  const FitResult twice = fitted(joint_problem(), profiles);
+  for (const std::string& name : kDetermined) {
+    EXPECT_NEAR(value(once, name), value(twice, name), 1e-6 * uncertainty(once, name)) << name;
+    EXPECT_NEAR(uncertainty(once, name) / uncertainty(twice, name), std::sqrt(2.0), 1e-9) << name;
+  }
+}
+
+TEST(Fit, DoesNotMindTheOrderOfAFileNorItsUnits) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "fit_order";
+  std::filesystem::create_directories(folder);
+  const std::vector<Profile> profiles = readings();
+  const auto from_file = [&](const std::string& name, bool backwards, double unit,
+                             std::string_view unit_name) {
+    std::ofstream out(folder / name);
+    const Profile& face = profiles[0];
+    for (std::size_t i = 0; i < face.values.size(); ++i) {
+      const std::size_t j = backwards ? face.values.size() - 1 - i : i;
+      out << shortest(face.positions[j]) << ',' << shortest(face.values[j] * unit) << '\n';
+    }
+    out.close();
+    std::vector<Profile> read = profiles;
+    ProfileSource source{.path = folder / name};
+    source.value_unit = *length_unit(unit_name);
+    read_profile(source, read[0]);
+    return fitted(joint_problem(), read);
+  };
+  const FitResult forwards = from_file("forwards.csv", false, 1.0, "mm");
+  const FitResult backwards = from_file("backwards.csv", true, 1.0, "mm");
+  for (const std::string& name : kDetermined)
+    EXPECT_EQ(value(forwards, name), value(backwards, name)) << name;
+  expect_same(forwards, from_file("micrometres.csv", false, 1e3, "um"));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Fit, OfPositionsThatAreNotUniformIsUnbiased) {
+  std::vector<double> positions = cases::spaced(0.0, 80.0, 2000);
+  RandomStream random(3, "positions");
+  for (double& position : positions) position += 0.01 * random.uniform();  // steps of 0.04
+  std::vector<double> heights;
+  for (const double x : positions) heights.push_back(turning::polynomial(kCarriage.b, x));
+  Profile slide = cases::profile("slide", Kind::slide, positions, heights);
+  slide.free_offset = slide.free_tilt = false;
+  const FitResult result =
+      fitted(cases::problem(Lever::paper, 5, {cases::effect("straightness", 3)}), {slide});
+  // Data and columns are interpolated alike: what is left is rounding, 1e-10 of b_1's and b_3's
+  // size.
+  for (int k = 1; k <= 3; ++k)
+    EXPECT_NEAR(value(result, "straightness.b" + std::to_string(k)), kCarriage.b[k],
+                1e-10 * std::abs(kCarriage.b[k]))
+        << k;
+}
+
+TEST(Fit, FindsTheTimeConstantOfADriftFromTwoFeeds) {
+  constexpr double kAmplitude = 0.4, kTimeConstant = 240.0;  // µm, s
+  const auto error = [&](const turning::ToolPoint& tool) {
+    return turning::one_lever(kCarriage, tool) +
+           1e-3 * kAmplitude * (1.0 - std::exp(-tool.t / kTimeConstant));
+  };
+  RandomStream random(11, "two feeds");
+  const std::vector<double> radii = cases::spaced(0.0, 50.0, 4000);
+  std::vector<Profile> profiles;
+  for (const double feed : {2.0, 8.0}) {
+    turning::Cut cut;
+    cut.radius_mm = 50.0;
+    cut.feed_mm_per_min = feed;
+    cut.spindle_rpm = 500.0;
+    turning::Stylus stylus;
+    stylus.noise.correlated = 2e-5;
+    stylus.noise.correlation_mm = 0.3;
+    profiles.push_back(
+        cases::face("feed" + std::to_string(static_cast<int>(feed)), feed, radii,
+                    turning::trace(turning::Face(cut, error), radii, stylus, random)));
+    profiles.back().setup.spindle_rpm = 500.0;
+  }
+  const FitResult result =
+      fitted(cases::problem(Lever::paper, 5,
+                            {cases::effect("straightness", 3), cases::effect("squareness"),
+                             cases::effect("thermal_drift")}),
+             profiles);
+  ASSERT_TRUE(result.converged);
+  // Four standard uncertainties, which also make sense of the numbers: 5 % at most.
+  const double found = value(result, "thermal_drift.time_constant_s");
+  const double u = uncertainty(result, "thermal_drift.time_constant_s");
+  EXPECT_NEAR(found, kTimeConstant, 4.0 * u);
+  EXPECT_LT(u, 0.05 * kTimeConstant);
+  EXPECT_NEAR(value(result, "thermal_drift.amplitude_um"), kAmplitude,
+              4.0 * uncertainty(result, "thermal_drift.amplitude_um"));
+  EXPECT_NEAR(value(result, "squareness.dbeta_xz"), kCarriage.squareness,
+              4.0 * uncertainty(result, "squareness.dbeta_xz"));
+}
+
+}  // namespace
+}  // namespace slideway
