@@ -30,7 +30,8 @@ bool Command::setup(const std::vector<std::string>& arguments) {
     return false;
   }
   for (const std::string& input : required_)
-    if (given.count(input) == 0) fail(input + " is missing; usage: " + usage());
+    if (given.count(input) == 0 || given[input].as<std::string>().empty())
+      fail(input + " is missing; usage: " + usage());
   check(given);
   return true;
 }
@@ -60,7 +61,7 @@ po::variables_map Command::parse(const std::vector<std::string>& arguments) {
   } catch (const po::too_many_positional_options_error&) {
     fail("too many arguments; usage: " + usage());
   } catch (const po::error& error) {
-    fail(error.what());
+    fail(std::string(error.what()) + "; usage: " + usage() + ", or slideway " + name_ + " --help");
   }
 }
 

@@ -53,7 +53,7 @@ class DecomposeCommand : public Command {
  public:
   DecomposeCommand()
       : Command("decompose", "FILE --out OUT.csv [options]",
-                "Splits a profile into wavelet bands of full length, a1..aL and d1..dL") {
+                "Splits a profile into wavelet bands of full length, a1..aL, d1..dL") {
     add_input("FILE", &input_);
     low_band_.add_to(add_options());
     add_options()("position", po::value(&position_)->value_name("COL")->default_value("1"),
@@ -64,6 +64,7 @@ class DecomposeCommand : public Command {
   }
 
   int run() override {
+    keep_input(input_, out_);
     const std::array<std::string, 2> names{position_, value_};
     const Table table = read_table(input_, names);
     const std::vector<double>& positions = table.columns[0];

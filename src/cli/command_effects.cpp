@@ -7,6 +7,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/report/layout.hpp"
 
 namespace slideway {
 namespace {
@@ -38,8 +39,9 @@ std::string parameter_list(const Effect& effect) {
 std::string line_of(const std::string& name) {
   const auto effect = sample(name);
   const Description& about = effect->description();
-  return name + "\n  clock " + std::string(symbol(about.clock)) + "   " + about.formula +
-         "\n  parameters: " + parameter_list(*effect) + "\n";
+  return name + "\n" +
+         paragraph("  clock " + std::string(symbol(about.clock)) + "   ", about.formula) +
+         paragraph("  parameters: ", parameter_list(*effect));
 }
 
 std::string entry_of(const std::string& name) {
@@ -58,7 +60,7 @@ std::string entry_of(const std::string& name) {
   std::string text = name + "\n";
   for (const auto& [label, value] : lines) {
     if (value.empty()) continue;
-    text += "  " + label + ":" + std::string(17 - label.size(), ' ') + value + "\n";
+    text += paragraph("  " + label + ":" + std::string(17 - label.size(), ' '), value);
   }
   return text;
 }
@@ -104,9 +106,9 @@ class EffectsCommand : public ReportCommand {
   }
 
  private:
-  void check(const boost::program_options::variables_map& /*given*/) override {
+  void check(const boost::program_options::variables_map& given) override {
     const std::vector<std::string>& names = effect_names();
-    if (!effect_.empty() && std::find(names.begin(), names.end(), effect_) == names.end())
+    if (given.count("NAME") != 0 && std::find(names.begin(), names.end(), effect_) == names.end())
       fail("unknown effect '" + effect_ + "'" + did_you_mean(effect_, names) +
            "; accepted: " + joined(names, " "));
   }

@@ -9,7 +9,7 @@ class IdentifyCommand : public ProblemCommand {
  public:
   IdentifyCommand()
       : ProblemCommand("identify", "PROBLEM [options]",
-                       "Finds the errors of the carriages: low band, ranking, fit, cross-check") {
+                       "Finds the carriages' errors: low band, ranking, fit, cross-check") {
     add_strict();
     add_options()("no-trace", "stop before the closed loop");
   }

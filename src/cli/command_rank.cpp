@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "low_band_arguments.hpp"
+#include "output.hpp"
 #include "report_command.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/ranking.hpp"
@@ -16,8 +17,7 @@ class RankCommand : public ProblemCommand {
  public:
   RankCommand()
       : ProblemCommand("rank", "PROBLEM | FILE.csv --signal COL --candidates COL... [options]",
-                       "Correlates every declared effect, or any columns of a file, with the "
-                       "measured signal") {
+                       "Correlates each declared effect, or any columns, with the signal") {
     add_options()("signal", po::value(&signal_)->value_name("COL"),
                   "rank columns of a file against this one: header name or number");
     add_options()("candidates", po::value(&candidates_)->value_name("COL...")->multitoken(),
@@ -41,6 +41,7 @@ class RankCommand : public ProblemCommand {
   }
 
   int run_columns() const {
+    keep_input(input(), json_file());
     const std::vector<ColumnRanking> ranking =
         rank_columns(input(), signal_, candidates_, options_);
     report([&] { return text(ranking); }, [&] { return json(ranking); });

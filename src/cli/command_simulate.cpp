@@ -14,8 +14,7 @@ class SimulateCommand : public Command {
  public:
   SimulateCommand()
       : Command("simulate", "PROBLEM --out DIR [--seed N]",
-                "Writes the profiles that the problem's [truth] makes, and a problem file without "
-                "[truth]") {
+                "Writes the profiles [truth] makes, and the problem without [truth]") {
     add_input("PROBLEM", &input_);
     add_options()("out", po::value(&out_)->value_name("DIR"), "directory to write into");
     add_options()("seed", po::value(&seed_text_)->value_name("N"),

@@ -9,7 +9,16 @@ namespace po = boost::program_options;
 
 namespace {
 constexpr int kHighestLevel = 30;
+
+template <typename Read>
+auto for_option(const char* option, Read&& read) {
+  try {
+    return read();
+  } catch (const UsageError& error) {
+    throw UsageError(std::string(option) + ": " + error.what());
+  }
 }
+}  // namespace
 
 LowBandArguments::LowBandArguments(const LowBandOptions& defaults)
     : wavelet_(defaults.wavelet), boundary_(name(defaults.boundary)), level_(defaults.level) {}
@@ -27,7 +36,8 @@ LowBandOptions LowBandArguments::checked(int lowest_level) const {
   if (level_ < lowest_level || level_ > kHighestLevel)
     throw UsageError("--level: " + std::to_string(level_) + " is out of range; accepted: " +
                      std::to_string(lowest_level) + " to " + std::to_string(kHighestLevel));
-  return {daubechies(wavelet_).name, level_, boundary(boundary_)};
+  return {for_option("--wavelet", [this] { return daubechies(wavelet_).name; }), level_,
+          for_option("--boundary", [this] { return boundary(boundary_); })};
 }
 
 }  // namespace slideway

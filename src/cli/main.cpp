@@ -34,8 +34,8 @@ std::string help() {
       "usage: slideway COMMAND [options] INPUT\n"
       "       slideway COMMAND --help\n"
       "       slideway --version\n\n"
-      "Finds out from the flatness of a turned face which errors the carriages of the lathe "
-      "have.\n\n"
+      "Finds out from the flatness of a turned face which errors the carriages of\n"
+      "the lathe have.\n\n"
       "Commands:\n";
   for (const auto& [name, make] : commands())
     text += "  " + name + std::string(12 - name.size(), ' ') + make()->summary() + "\n";
@@ -50,9 +50,10 @@ std::unique_ptr<Command> make_command(const std::string& wanted) {
     if (name == wanted) return make();
     names.push_back(name);
   }
+  for (const char* option : {"--help", "--version"}) names.emplace_back(option);
   const std::string kind = wanted.starts_with('-') ? "option" : "command";
   throw UsageError("unknown " + kind + " '" + wanted + "'" + did_you_mean(wanted, names) +
-                   "; accepted: " + joined(names, " ") + " --help --version");
+                   "; accepted: " + joined(names, " "));
 }
 
 int run(const std::vector<std::string>& arguments) {

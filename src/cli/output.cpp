@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 
 namespace slideway {
@@ -25,10 +26,21 @@ void write_output(const std::string& path, std::string_view text) {
     write_file(path, text);
 }
 
+void keep_input(const std::filesystem::path& input, const std::filesystem::path& output) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(input, ignored) &&
+      std::filesystem::equivalent(input, output, ignored))
+    throw UsageError(output.string() +
+                     ": is the input, which would be lost; accepted: another name");
+}
+
 void say(std::string_view message) {
   std::string line = "slideway: " + std::string(message);
   for (char& c : line)
-    if (c == '\n' || c == '\r') c = ' ';
+    if (c == '\n' || c == '\r')
+      c = ' ';
+    else if ((c >= 0 && c < ' ') || c == 0x7f)
+      c = '?';  // a name may hold what a terminal obeys
   std::cerr << line << std::endl;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,9 @@ void print(std::string_view text);
 
 /// Writes a file, or stdout if the path is "-". @throws std::runtime_error
 void write_output(const std::string& path, std::string_view text);
+
+/// @throws UsageError  the output would replace the input
+void keep_input(const std::filesystem::path& input, const std::filesystem::path& output);
 
 /// A message for people, one line on stderr: "slideway: ...".
 void say(std::string_view message);

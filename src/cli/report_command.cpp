@@ -1,6 +1,7 @@
 #include "report_command.hpp"
 
 #include "output.hpp"
+#include "slideway/base/error.hpp"
 #include "slideway/report/report.hpp"
 
 namespace slideway {
@@ -26,13 +27,27 @@ ProblemCommand::ProblemCommand(std::string name, std::string arguments, std::str
                 "what ${SLIDEWAY_DATA} in the problem file stands for");
 }
 
+template <typename Error, typename Work>
+auto ProblemCommand::in_problem(Work&& work) const {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw Error(input_ + ": " + error.what());
+  }
+}
+
 void ProblemCommand::add_strict() {
   add_options()("strict", po::bool_switch(&strict_), "exit code 4 if the verdict is negative");
 }
 
 int ProblemCommand::run_problem(Scope scope) const {
+  keep_input(input_, json_file());
   const Problem problem = read_problem(input_, data_directory(data_));
-  const Result result = identify(problem, read_profiles(problem), scope);
+  for (const ProfileEntry& entry : problem.profiles) keep_input(entry.source.path, json_file());
+  const std::vector<Profile> profiles =
+      in_problem<UsageError>([&] { return read_profiles(problem); });
+  const Result result = in_problem<UsageError>(
+      [&] { return in_problem<DataError>([&] { return identify(problem, profiles, scope); }); });
   report([&] { return text_report(result); }, [&] { return json_report(result); });
   return strict_ && is_negative(result) ? kNegativeVerdict : kDone;
 }

@@ -18,6 +18,8 @@ class ReportCommand : public Command {
   void report(const std::function<std::string()>& text,
               const std::function<std::string()>& json) const;
 
+  [[nodiscard]] const std::string& json_file() const { return json_; }
+
  private:
   std::string json_;
   bool quiet_ = false;
@@ -36,6 +38,10 @@ class ProblemCommand : public ReportCommand {
   [[nodiscard]] const std::string& input() const { return input_; }
 
  private:
+  /// What the work returns; an error of this kind gets the problem file in front.
+  template <typename Error, typename Work>
+  auto in_problem(Work&& work) const;
+
   std::string input_, data_;
   bool strict_ = false;
 };

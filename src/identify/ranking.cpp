@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "residual.hpp"
+#include "slideway/base/error.hpp"
 #include "slideway/profile/table.hpp"
 #include "slideway/signal/correlation.hpp"
 
@@ -121,7 +122,13 @@ std::vector<ColumnRanking> rank_columns(const std::filesystem::path& file,
   const Table table = read_table(file, names);
   std::vector<double> rows(table.columns.front().size());
   std::iota(rows.begin(), rows.end(), 0.0);
-  const LowBand low_band(options, rows);
+  const LowBand low_band = [&] {
+    try {
+      return LowBand(options, rows);
+    } catch (const DataError& error) {
+      throw DataError(file.string() + ": " + error.what());
+    }
+  }();
   const auto filtered = [&](const std::vector<double>& column) {
     std::vector<double> out(low_band.values());
     low_band.apply(column, out);

@@ -108,6 +108,21 @@ std::map<std::string, double> parameters_of(const Truth& truth, const std::strin
   return out;
 }
 
+/// A directory with the problem or its measured profiles in it is none to simulate into.
+void keep_inputs(const Problem& problem, const std::filesystem::path& directory) {
+  const auto refuse_if_same = [](const std::filesystem::path& in,
+                                 const std::filesystem::path& out) {
+    std::error_code ignored;
+    if (std::filesystem::equivalent(in, out, ignored))
+      throw UsageError(out.string() +
+                       ": is an input, which would be lost; accepted: another directory");
+  };
+  refuse_if_same(problem.path, directory / "problem.toml");
+  for (const ProfileEntry& entry : problem.profiles)
+    for (const ProfileEntry& written : problem.profiles)
+      refuse_if_same(entry.source.path, directory / (written.profile.name + ".csv"));
+}
+
 }  // namespace
 
 std::vector<Profile> simulate(const Problem& problem) {
@@ -130,6 +145,7 @@ std::vector<Profile> simulate(const Problem& problem) {
 }
 
 void write_simulation(const Problem& problem, const std::filesystem::path& directory) {
+  keep_inputs(problem, directory);
   const std::vector<Profile> profiles = simulate(problem);
   std::filesystem::create_directories(directory);
   std::vector<std::string> files;

@@ -12,8 +12,11 @@
 namespace slideway {
 namespace {
 
+/// mm or rad. Beyond it lie the marks some instruments write for a missing value (1e38).
+constexpr double kLargest = 1e9;
+
 [[noreturn]] void refuse_order(const std::string& file, std::size_t row, double now, double last) {
-  throw DataError(file + ": row " + std::to_string(row) + ": position " + shortest(now) +
+  throw DataError(file + ": data row " + std::to_string(row) + ": position " + shortest(now) +
                   " follows " + shortest(last) +
                   "; positions must strictly increase (or strictly decrease)");
 }
@@ -30,9 +33,9 @@ bool keep_window(const ProfileSource& source, const UnitScale& to_mm,
       continue;
     const double position = to_mm(source.position_unit(given));
     const double value = source.value_unit(values[i]);
-    if (!std::isfinite(position) || !std::isfinite(value))
-      throw DataError(source.path.string() + ": row " + std::to_string(i + 1) +
-                      ": too large for its unit");
+    if (!(std::abs(position) <= kLargest && std::abs(value) <= kLargest))
+      throw DataError(source.path.string() + ": data row " + std::to_string(i + 1) +
+                      ": too large for its unit; the largest accepted: 1e9 mm or rad");
     if (kept == 1) upwards = position > positions[0];
     if (kept > 0) {
       const double step = position - positions[kept - 1];

@@ -87,13 +87,13 @@ TEST_F(ReadProfile, ReversesATraceThatRunsBackwards) {
 TEST_F(ReadProfile, RefusesPositionsOutOfOrder) {
   const std::string rule = "; positions must strictly increase (or strictly decrease)";
   EXPECT_THAT([&] { read("x,z\n0,0\n1,0\n0.5,0\n"); },
-              ThrowsMessage<DataError>(file() + ": row 3: position 0.5 follows 1" + rule));
+              ThrowsMessage<DataError>(file() + ": data row 3: position 0.5 follows 1" + rule));
   EXPECT_THAT([&] { read("0,0\n0.5,0\n0.5,0\n"); },
-              ThrowsMessage<DataError>(file() + ": row 3: position 0.5 follows 0.5" + rule));
+              ThrowsMessage<DataError>(file() + ": data row 3: position 0.5 follows 0.5" + rule));
   EXPECT_THAT([&] { read("0,0\n0,0\n1,0\n"); },
-              ThrowsMessage<DataError>(file() + ": row 2: position 0 follows 0" + rule));
+              ThrowsMessage<DataError>(file() + ": data row 2: position 0 follows 0" + rule));
   EXPECT_THAT([&] { read("3,0\n2,0\n2.5,0\n"); },
-              ThrowsMessage<DataError>(file() + ": row 3: position 2.5 follows 2" + rule));
+              ThrowsMessage<DataError>(file() + ": data row 3: position 2.5 follows 2" + rule));
 }
 
 TEST_F(ReadProfile, RefusesFewerThanTwoSamples) {

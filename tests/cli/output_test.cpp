@@ -1,0 +1,110 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/bad_input.hpp"
+
+namespace slideway {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string kProblem = shipped("problems/paper-600mm/problem.toml");
+
+class Output : public ProgramTest {
+ protected:
+  /// The line with which a run fails that could not write; "" if it did not fail so.
+  static std::string failure(const ProgramRun& run) {
+    EXPECT_TRUE(is_refused(run, 1));
+    EXPECT_THAT(run.err, HasSubstr("can not be written"));
+    return run.err;
+  }
+};
+
+TEST_F(Output, GoesToTheJsonFileAndAsTextToStdout) {
+  const ProgramRun done = run({"identify", kProblem, "--no-trace", "--json", "report.json"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(done.out, run({"identify", kProblem, "--no-trace"}).out);
+  EXPECT_EQ(contents(path("report.json")),
+            run({"identify", kProblem, "--no-trace", "--json", "-"}).out);
+  EXPECT_THAT(names_in(folder_.path()), testing::ElementsAre("report.json"));
+}
+
+TEST_F(Output, IsSuppressedByQuietButForTheJsonFile) {
+  const ProgramRun done =
+      run({"identify", kProblem, "--no-trace", "--quiet", "--json", "report.json"});
+  EXPECT_EQ(done.exit_code, 0);
+  EXPECT_EQ(done.out, "");
+  EXPECT_EQ(done.err, "");
+  EXPECT_TRUE(nlohmann::json::accept(contents(path("report.json"))));
+  for (const char* command : {"identify", "fit", "rank"}) {
+    const ProgramRun quiet = run({command, kProblem, "-q"});
+    EXPECT_EQ(quiet.exit_code, 0) << command;
+    EXPECT_EQ(quiet.out + quiet.err, "") << command;
+  }
+}
+
+TEST_F(Output, ReplacesAnOlderReport) {
+  folder_.file("report.json", std::string(1'000'000, 'x'));
+  EXPECT_EQ(run({"identify", kProblem, "--json", "report.json"}).exit_code, 0);
+  EXPECT_TRUE(nlohmann::json::accept(contents(path("report.json"))));
+}
+
+TEST_F(Output, OnAFullDiskFailsWithAMessage) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this system";
+  const ProgramSetup full{folder_.path(), "/dev/full"};
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"--help"},
+           {"--version"},
+           {"identify", "--help"},
+           {"effects"},
+           {"identify", kProblem},
+           {"identify", kProblem, "--json", "-"},
+           {"decompose", shipped("data/axis-ranking.csv"), "--out", "-"}})
+    EXPECT_THAT(failure(run_program(arguments, full)),
+                testing::StartsWith("slideway: standard output: "));
+  EXPECT_THAT(failure(run({"identify", kProblem, "--json", "/dev/full"})),
+              testing::StartsWith("slideway: /dev/full: "));
+  EXPECT_THAT(failure(run({"decompose", shipped("data/axis-ranking.csv"), "--out", "/dev/full"})),
+              testing::StartsWith("slideway: /dev/full: "));
+}
+
+TEST_F(Output, IntoADirectoryThatIsNotThereFails) {
+  EXPECT_THAT(failure(run({"identify", kProblem, "--json", "gone/report.json"})),
+              HasSubstr("gone/report.json: can not be written: No such file or directory"));
+}
+
+TEST_F(Output, IntoADirectoryThatTakesNoFilesFails) {
+  if (!std::filesystem::exists("/proc/self")) GTEST_SKIP() << "no /proc on this system";
+  failure(run({"identify", kProblem, "--json", "/proc/report.json"}));  // not even root's
+}
+
+TEST_F(Output, OverADirectoryOrBehindAFileFails) {
+  folder_.file("file", "x");
+  EXPECT_THAT(failure(run({"identify", kProblem, "--json", "."})), HasSubstr("Is a directory"));
+  EXPECT_THAT(failure(run({"identify", kProblem, "--json", "file/report.json"})),
+              HasSubstr("Not a directory"));
+  EXPECT_THAT(names_in(folder_.path()), testing::ElementsAre("file"));
+}
+
+TEST_F(Output, NeverReplacesTheInput) {
+  const std::string problem = ProblemText{}.text(), csv = face_csv(64);
+  folder_.file("problem.toml", problem);
+  folder_.file("face.csv", csv);
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"identify", "problem.toml", "--json", "problem.toml"},
+           {"fit", "problem.toml", "--json", "./problem.toml"},
+           {"identify", "problem.toml", "--json", "face.csv"},
+           {"rank", "face.csv", "--signal", "1", "--candidates", "2", "--json", "face.csv"},
+           {"decompose", "face.csv", "--level", "1", "--out", "face.csv"}}) {
+    const ProgramRun refused = run(arguments);
+    EXPECT_TRUE(is_refused(refused, 2));
+    EXPECT_THAT(refused.err, HasSubstr("is the input, which would be lost"));
+  }
+  EXPECT_EQ(contents(path("problem.toml")), problem);
+  EXPECT_EQ(contents(path("face.csv")), csv);
+}
+
+}  // namespace
+}  // namespace slideway
