@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "identify/cases.hpp"
 #include "slideway/base/random.hpp"
 #include "slideway/identify/uncertainty.hpp"
 
@@ -153,6 +154,32 @@ TEST(Noise, OfTwoProfilesIsEachOnesOwn) {
   // errors: sqrt((1 - φ²)/n) / (1 - φ) of ln(1/(1 - φ)), and that of ln σ.
   EXPECT_NEAR(std::log(noise[1].weight_deviation() / 0.5), 0.0,
               4.0 * std::sqrt(0.36 / kValues / 0.04 + 0.5 / kValues));
+}
+
+TEST(Uncertainty, OfAWeightedMeanCountsThatItsWeightsComeFromTheData) {
+  // Two series of 16 values, one mean. Weights taken at their word make its variance too small by
+  // 1 + 4 Σ w (1 - w) / 15 = 1.13 (Meier 1953).
+  constexpr int kRuns = 4000, kValues = 16;
+  const Problem problem = cases::problem(Lever::paper, 0, {cases::effect("straightness", 0)});
+  double claimed = 0.0, actual = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    RandomStream random(static_cast<std::uint64_t>(run), "weighted mean");
+    std::vector<Profile> profiles;
+    for (const char* name : {"a", "b"}) {
+      std::vector<double> values(kValues);
+      for (double& value : values) value = random.normal();
+      profiles.push_back(
+          cases::profile(name, Kind::slide, cases::spaced(0.0, 15.0, kValues), values));
+      profiles.back().free_offset = profiles.back().free_tilt = false;
+    }
+    const Model model = build_model(problem, profiles);
+    const Fit result = fit(model);
+    const double u = result.uncertainty.of(result.parameters.jacobian.row(0)).standard_uncertainty;
+    claimed += u * u / kRuns;
+    actual += result.parameters.values[0] * result.parameters.values[0] / kRuns;
+  }
+  // Four standard errors of a variance from 4000 means.
+  EXPECT_NEAR(claimed / actual, 1.0, 4.0 * std::sqrt(2.0 / kRuns));
 }
 
 TEST(CoverageFactor, IsTheOneOfTheGuide) {
