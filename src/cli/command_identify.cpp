@@ -4,16 +4,20 @@
 
 namespace slideway {
 namespace {
+namespace po = boost::program_options;
 
 class IdentifyCommand : public ProblemCommand {
  public:
   IdentifyCommand()
       : ProblemCommand("identify", "PROBLEM [options]",
-                       "Finds the carriages' errors: low band, ranking, fit, cross-check") {
+                       "Finds the carriages' errors and what else made the face") {
     add_strict();
-    add_options()("no-trace", "stop before the closed loop");
+    add_options()("no-trace", po::bool_switch(&no_trace_), "stop before the closed loop");
   }
-  int run() override { return run_problem(Scope::identify); }
+  int run() override { return run_problem(Scope::identify, !no_trace_); }
+
+ private:
+  bool no_trace_ = false;
 };
 
 }  // namespace

@@ -40,7 +40,7 @@ void ProblemCommand::add_strict() {
   add_options()("strict", po::bool_switch(&strict_), "exit code 4 if the verdict is negative");
 }
 
-int ProblemCommand::run_problem(Scope scope) const {
+int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
   keep_input(input_, json_file());
   const Problem problem = read_problem(input_, data_directory(data_));
   for (const ProfileEntry& entry : problem.profiles) keep_input(entry.source.path, json_file());
@@ -48,8 +48,12 @@ int ProblemCommand::run_problem(Scope scope) const {
       in_problem<UsageError>([&] { return read_profiles(problem); });
   const Result result = in_problem<UsageError>(
       [&] { return in_problem<DataError>([&] { return identify(problem, profiles, scope); }); });
-  report([&] { return text_report(result); }, [&] { return json_report(result); });
-  return strict_ && is_negative(result) ? kNegativeVerdict : kDone;
+  std::optional<TraceResult> trace;
+  if (closes_loop) trace = close_loop(problem, profiles);
+  const TraceResult* found = trace ? &*trace : nullptr;
+  report([&] { return text_report(result, found); }, [&] { return json_report(result, found); });
+  const bool negative = is_negative(result) || (trace && is_negative(*trace));
+  return strict_ && negative ? kNegativeVerdict : kDone;
 }
 
 std::optional<std::filesystem::path> data_directory(const std::string& option) {

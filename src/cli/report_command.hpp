@@ -33,7 +33,7 @@ class ProblemCommand : public ReportCommand {
   void add_strict();
 
   /// Reads the problem and its profiles, does the job and reports. @return the exit code.
-  int run_problem(Scope scope) const;
+  int run_problem(Scope scope, bool closes_loop = false) const;
 
   [[nodiscard]] const std::string& input() const { return input_; }
 

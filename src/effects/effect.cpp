@@ -1,10 +1,19 @@
 #include "slideway/effects/effect.hpp"
 
+#include <cmath>
+
 namespace slideway {
 
 std::pair<double, double> Effect::search_range(int shape, const Stations& /*stations*/) const {
   const Parameter& parameter = parameters()[shapes()[shape].parameter];
   return {parameter.lower, parameter.upper};
+}
+
+double Effect::resolution(int shape, double value, const Stations& stations) const {
+  constexpr double kSteps = 40.0;
+  const auto [low, high] = search_range(shape, stations);
+  return shapes()[shape].logarithmic ? value * std::log(high / low) / kSteps
+                                     : (high - low) / kSteps;
 }
 
 std::vector<std::string> Effect::lacking(const Setup& setup) const {

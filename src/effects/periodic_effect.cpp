@@ -21,6 +21,11 @@ std::pair<double, double> PeriodicEffect::search_range(int /*shape*/,
   return within_bounds(spec_.range(stations), spec_.rate);
 }
 
+double PeriodicEffect::resolution(int /*shape*/, double value, const Stations& stations) const {
+  const double cycles = kCyclesPerStep / range_of(stations, spec_.clock).extent();
+  return spec_.rate_is_period ? value * value * cycles : cycles;
+}
+
 bool PeriodicEffect::applies_to(const Setup& setup) const { return spec_.applies_to(setup); }
 
 void PeriodicEffect::columns(const Stations& stations, std::span<const double> shape,

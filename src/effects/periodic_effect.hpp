@@ -8,6 +8,10 @@
 
 namespace slideway {
 
+// Two lines this part of a cycle apart over the whole reading are one to a search: the line between
+// them loses a tenth of its power at most.
+inline constexpr double kCyclesPerStep = 1.0 / 3.0;
+
 struct PeriodicSpec {
   Description description;
   Parameter rate;  // the period, or the number of cycles per unit of the clock
@@ -29,6 +33,7 @@ class PeriodicEffect : public Effect {
   [[nodiscard]] const std::vector<Shape>& shapes() const override { return shapes_; }
   [[nodiscard]] std::pair<double, double> search_range(int shape,
                                                        const Stations& stations) const override;
+  [[nodiscard]] double resolution(int shape, double value, const Stations& stations) const override;
   [[nodiscard]] bool applies_to(const Setup& setup) const override;
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override;

@@ -108,13 +108,14 @@ void fix_gauge(const Model& model, Fit& fit) {
 
 }  // namespace
 
-Fit fit(const Model& model) {
+Fit fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   require_enough_data(model);
   Fit out;
   out.weights = first_weights(model);
-  const Estimate start = initial_estimate(model);
+  Estimate start = initial_estimate(model);
+  if (shapes) start.shapes = *shapes;
   out.linear = linearise(model, start);
-  SolveSummary solved = solve(model, out.linear, out.weights, start, true);
+  SolveSummary solved = solve(model, out.linear, out.weights, start, !shapes);
   for (int round = 0; round < kMaxRounds; ++round) {
     const Triangle triangle = compress(out.linear, out.weights);
     out.rank = analyse_rank(triangle.matrix, triangle.scale);

@@ -139,6 +139,16 @@ Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
   const Eigen::Index amplitudes = term.effect->amplitudes();
   if (!term.effect->applies_to(profile.setup))
     return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
+  if (term.effect->shapes()[which].stepwise) {
+    std::vector<double> below(shape.begin(), shape.end()), above = below;
+    const double reach = 0.5 * (profile.setup.last_mm - profile.setup.first_mm) /
+                         static_cast<double>(observation.values.size());
+    below[which] -= reach;
+    above[which] += reach;
+    return (low_band_columns(model, term, observation, above) -
+            low_band_columns(model, term, observation, below)) /
+           (2.0 * reach);
+  }
   const Stations stations = profile.stations(model.machine);
   Eigen::MatrixXd columns(stations.size(), amplitudes);
   term.effect->derivatives(stations, shape, which, columns);

@@ -215,7 +215,7 @@ class Estimator {
     std::vector<double> partial =
         Autoregression::burg({profile.residual.data(), static_cast<std::size_t>(n)}, most);
     partial.resize(order_by_bic(partial, n));
-    if (Autoregression(partial).long_run_ratio() < 1.0) partial.clear();
+    if (!profile.either_sign && Autoregression(partial).long_run_ratio() < 1.0) partial.clear();
     likelihood_.emplace_back(profile, static_cast<int>(partial.size()));
     Eigen::VectorXd x(partial.size() + 1);
     for (std::size_t j = 0; j < partial.size(); ++j) x[j] = std::atanh(partial[j]);
@@ -243,7 +243,8 @@ class Estimator {
 
   [[nodiscard]] Noise conclude(std::size_t i) const {
     Noise noise = make_noise(parameters_[i]);
-    if (noise.correlation.order() > 0 && noise.correlation.long_run_ratio() < 1.0)
+    if (!profiles_[i].either_sign && noise.correlation.order() > 0 &&
+        noise.correlation.long_run_ratio() < 1.0)
       noise = white(noise.standard_deviation());
     const Eigen::Index d = noise.correlation.order() + 1;
     const Eigen::MatrixXd hessian = 0.5 * hessian_[i].bottomRightCorner(d, d);

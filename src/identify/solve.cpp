@@ -8,37 +8,19 @@
 #include <cmath>
 
 #include "residual.hpp"
+#include "slideway/identify/shape_grid.hpp"
 
 namespace slideway {
 namespace {
-
-constexpr int kScanPoints = 64;
-
-/// Search range of a shape over all fitted profiles the effect shows in.
-std::pair<double, double> search_range(const Model& model, const ModelTerm& term, int shape) {
-  const Parameter& parameter = term.effect->parameters()[term.effect->shapes()[shape].parameter];
-  std::pair<double, double> range{INFINITY, -INFINITY};
-  for (const Observation& observation : model.observations) {
-    if (!term.effect->applies_to(observation.profile->setup)) continue;
-    const auto one = term.effect->search_range(shape, observation.profile->stations(model.machine));
-    range.first = std::min(range.first, one.first);
-    range.second = std::max(range.second, one.second);
-  }
-  if (!(range.first < range.second)) range = {parameter.lower, parameter.upper};
-  return {std::max(range.first, parameter.lower), std::min(range.second, parameter.upper)};
-}
 
 /// Scans each shape over its range, the linear part optimal at every point; one shape after the
 /// other.
 void scan_shapes(const Residual& residual, const Model& model, Eigen::VectorXd& shapes) {
   for (const auto& [term, which] : residual.shapes()) {
-    const Shape& kind = term->effect->shapes()[which];
-    const auto [low, high] = search_range(model, *term, which);
     double& shape = shapes[term->first_shape + which];
     double best_cost = INFINITY, best = shape;
-    for (int i = 0; i < kScanPoints; ++i) {
-      const double part = (i + 0.5) / kScanPoints;
-      shape = to_outer((1.0 - part) * to_inner(low, kind) + part * to_inner(high, kind), kind);
+    for (const double value : shape_grid(model, *term, which)) {
+      shape = value;
       double cost = 0.0;
       static_cast<void>(residual.linear_optimum(shapes, &cost));
       if (cost < best_cost) best_cost = cost, best = shape;
@@ -108,10 +90,8 @@ Estimate initial_estimate(const Model& model) {
   start.shapes.resize(model.shapes());
   for (const ModelTerm& term : model.terms)
     for (int s = 0; s < static_cast<int>(term.effect->shapes().size()); ++s) {
-      const Shape& kind = term.effect->shapes()[s];
-      const auto [low, high] = search_range(model, term, s);
-      start.shapes[term.first_shape + s] =
-          to_outer(0.5 * (to_inner(low, kind) + to_inner(high, kind)), kind);
+      const std::vector<double> grid = shape_grid(model, term, s);
+      start.shapes[term.first_shape + s] = grid[grid.size() / 2];
     }
   for (const Observation* observation : fitted_observations(model))
     start.nuisances.emplace_back(Eigen::VectorXd::Zero(observation->nuisances.cols()));

@@ -1,26 +1,30 @@
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "json_parts.hpp"
 #include "slideway/report/report.hpp"
 
 namespace slideway {
+
+Json parameter_json(const FittedParameter& p) {
+  const auto determined = [&p](const std::optional<double>& value) {
+    return p.identifiable ? or_null(value) : Json(nullptr);
+  };
+  return {{"name", p.name},
+          {"symbol", p.symbol},
+          {"standard_name", p.standard_name},
+          {"value", determined(p.value)},
+          {"unit", p.unit},
+          {"standard_uncertainty", determined(p.standard_uncertainty)},
+          {"expanded_uncertainty", determined(p.expanded_uncertainty)},
+          {"coverage_factor", p.coverage_factor},
+          {"degrees_of_freedom", or_null(p.degrees_of_freedom)},
+          {"identifiable", p.identifiable},
+          {"at_bound", p.at_bound}};
+}
+
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-template <typename T>
-Json or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-template <typename Range, typename Function>
-Json array_of(const Range& range, Function&& to_json) {
-  Json array = Json::array();
-  for (const auto& item : range) array.push_back(to_json(item));
-  return array;
-}
 
 Json combination(const Combination& terms) {
   Json object = Json::object();
@@ -65,23 +69,6 @@ Json ranking_entry(const Ranking& entry) {
 Json candidate_correlation(const CandidateCorrelation& pair) {
   return {
       {"a", pair.a}, {"b", pair.b}, {"profile", pair.profile}, {"coefficient", pair.coefficient}};
-}
-
-Json parameter(const FittedParameter& p) {
-  const auto determined = [&p](const std::optional<double>& value) {
-    return p.identifiable ? or_null(value) : Json(nullptr);
-  };
-  return {{"name", p.name},
-          {"symbol", p.symbol},
-          {"standard_name", p.standard_name},
-          {"value", determined(p.value)},
-          {"unit", p.unit},
-          {"standard_uncertainty", determined(p.standard_uncertainty)},
-          {"expanded_uncertainty", determined(p.expanded_uncertainty)},
-          {"coverage_factor", p.coverage_factor},
-          {"degrees_of_freedom", or_null(p.degrees_of_freedom)},
-          {"identifiable", p.identifiable},
-          {"at_bound", p.at_bound}};
 }
 
 Json identifiability(const Identifiability& what) {
@@ -141,8 +128,8 @@ Json fit_json(const FitResult& fit, const Result& result) {
           {"effective_observations", fit.effective_observations},
           {"chi_square", fit.chi_square},
           {"degrees_of_freedom", fit.degrees_of_freedom},
-          {"parameters", array_of(fit.parameters, parameter)},
-          {"nuisances", array_of(fit.nuisances, parameter)},
+          {"parameters", array_of(fit.parameters, parameter_json)},
+          {"nuisances", array_of(fit.nuisances, parameter_json)},
           {"correlations", array_of(fit.correlations, correlation)},
           {"identifiability", identifiability(fit.identifiability)},
           {"noise", array_of(fit.noise, noise)},
@@ -187,7 +174,7 @@ void require_finite(const Json& json, const std::string& path) {
 
 }  // namespace
 
-std::string json_report(const Result& result) {
+std::string json_report(const Result& result, const TraceResult* trace) {
   const RankingResult ranking = result.ranking.value_or(RankingResult{});
   Json report = {{"schema", "slideway.report/1"},
                  {"version", result.version},
@@ -205,7 +192,13 @@ std::string json_report(const Result& result) {
                         {"agree", or_null(result.dominant.agree)}};
   report["fit"] = result.fit ? fit_json(*result.fit, result) : Json(nullptr);
   report["crosscheck"] = crosscheck(result);
-  report["trace"] = nullptr;
+  report["trace"] = trace ? trace_json(*trace) : Json(nullptr);
+  if (trace) {
+    report["before"] = {{"rms_um", or_null(trace->before_rms_um)},
+                        {"parameters", array_of(trace->before, parameter_json)}};
+    report["after"] = {{"rms_um", or_null(trace->after_rms_um)},
+                       {"parameters", array_of(trace->after, parameter_json)}};
+  }
   require_finite(report, "");
   // A file name need not be UTF-8.
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

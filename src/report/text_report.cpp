@@ -9,12 +9,9 @@
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "slideway/report/report.hpp"
+#include "text_parts.hpp"
 
 namespace slideway {
-namespace {
-
-using Column = TextTable::Column;
-constexpr std::size_t kLargest = 3;  // correlations listed
 
 std::string heading(const std::string& text) { return "\n" + paragraph("", text); }
 std::string item(const std::string& text) { return paragraph("  ", text); }
@@ -25,11 +22,16 @@ std::string number(double value, int digits) {
   return significant(value, digits);
 }
 
+std::string probability(double p) { return p < 1e-4 ? "< 1e-4" : number(p, 2); }
+
+namespace {
+
+using Column = TextTable::Column;
+constexpr std::size_t kLargest = 3;  // correlations listed
+
 std::string coefficient(double value) {
   return (value < 0.0 ? "-" : "+") + fixed_point(std::abs(value), 4);
 }
-
-std::string probability(double p) { return p < 1e-4 ? "< 1e-4" : number(p, 2); }
 
 std::string size_in(const std::optional<double>& um, const std::optional<double>& urad) {
   if (um) return number(*um, 3) + " µm";
@@ -319,7 +321,7 @@ std::string notes(const FitResult& fit) {
 
 }  // namespace
 
-std::string text_report(const Result& result) {
+std::string text_report(const Result& result, const TraceResult* trace) {
   std::string text = title(result) + inputs(result) + low_band(result);
   if (result.ranking) text += ranking(*result.ranking);
   text += dominant(result.dominant);
@@ -327,6 +329,7 @@ std::string text_report(const Result& result) {
     text += fit_table(*result.fit) + noise(*result.fit) + identifiability(*result.fit) +
             residuals(result, *result.fit);
   if (result.squareness) text += crosscheck(*result.squareness);
+  if (trace) text += trace_text(*trace);
   if (result.fit) text += notes(*result.fit);
   return text;
 }

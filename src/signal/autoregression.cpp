@@ -70,6 +70,18 @@ void Autoregression::whiten(Eigen::Ref<Eigen::MatrixXd> rows) const {
   }
 }
 
+void Autoregression::colour(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  for (Eigen::Index column = 0; column < rows.cols(); ++column) {
+    double* e = rows.col(column).data();
+    for (Eigen::Index t = 0; t < rows.rows(); ++t) {
+      const int m = static_cast<int>(std::min<Eigen::Index>(t, order()));
+      const double* before = e + t;
+      if (m < order()) e[t] *= std::sqrt(relative_variance(m));
+      for (const double phi : predictor(m)) e[t] += phi * *--before;
+    }
+  }
+}
+
 void Autoregression::colour_transposed(Eigen::Ref<Eigen::MatrixXd> rows) const {
   for (Eigen::Index column = 0; column < rows.cols(); ++column) {
     double* v = rows.col(column).data();

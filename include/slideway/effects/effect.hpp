@@ -79,6 +79,11 @@ class Effect {
   [[nodiscard]] virtual std::pair<double, double> search_range(int shape,
                                                                const Stations& stations) const;
 
+  /// Change of a shape parameter at `value` that changes the columns visibly, in its unit: the step
+  /// of a search grid. By default 1/40 of the (logarithmic) search range. REQUIRES as
+  /// search_range().
+  [[nodiscard]] virtual double resolution(int shape, double value, const Stations& stations) const;
+
   /// False where the reading can not see the effect at all (a slope reading and a drift of height):
   /// its columns are then zero.
   [[nodiscard]] virtual bool applies_to(const Setup& setup) const = 0;

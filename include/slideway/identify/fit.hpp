@@ -26,8 +26,10 @@ struct Fit {
 
 /// Fits all profiles jointly: weighted least squares, the weights from each profile's long-run
 /// noise (declared, or estimated from the residual), uncertainties for the noise's correlation.
+///
+/// @param shapes  start from these shapes instead of searching their whole range
 /// @throws DataError  fewer low-band values than parameters
-Fit fit(const Model& model);
+Fit fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
 
 /// The fit for the report.
 FitResult summarise(const Model& model, const Fit& fit);

@@ -60,7 +60,8 @@ void append_term(Model& model, const DeclaredEffect& declared, const TravelRange
 Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
                                  const Observation& observation, std::span<const double> shape);
 
-/// The same for d(columns)/d(shape[which]).
+/// The same for d(columns)/d(shape[which]); for a stepwise shape the difference over one low-band
+/// value, which is what the data resolve.
 Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
                                      const Observation& observation, std::span<const double> shape,
                                      int which);

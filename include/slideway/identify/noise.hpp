@@ -35,15 +35,17 @@ struct LinearProfile {
   Eigen::MatrixXd columns;         // #values by r
   Eigen::VectorXd residual;        // at the current estimate
   std::optional<double> declared;  // standard uncertainty of one value, mm or rad
+  bool either_sign = false;        // use correlation that narrows uncertainties too
 };
 
 /// Estimates the noise of every profile by restricted maximum likelihood, the parameters of the
 /// model left free (so that what the fit has taken out of the residual is put back), AR order by
 /// BIC.
 ///
-/// Correlation is used only where it widens uncertainties: a residual that alternates does not make
-/// a smooth parameter better known than white noise would. A declared uncertainty stands unless the
-/// residual refutes it (likelihood gain over 10 beyond BIC, and a larger long-run variance).
+/// Unless a profile asks for either sign, correlation is used only where it widens uncertainties: a
+/// residual that alternates does not make a smooth parameter better known than white noise would. A
+/// declared uncertainty stands unless the residual refutes it (likelihood gain over 10 beyond BIC,
+/// and a larger long-run variance).
 ///
 /// @param prior_information  r by r, what priors add to the information on w
 std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,

@@ -34,6 +34,9 @@ class Autoregression {
   /// divided by sqrt(relative_variance). In place; exact for the first rows too.
   void whiten(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
+  /// The inverse of whiten(): independent rows become this noise. In place.
+  void colour(Eigen::Ref<Eigen::MatrixXd> rows) const;
+
   /// The transposed inverse of whiten(): columns X become Z with Z'Z = X' R X, where R is the
   /// covariance of the noise with unit innovations. In place.
   void colour_transposed(Eigen::Ref<Eigen::MatrixXd> rows) const;

@@ -26,6 +26,7 @@ class LowBand {
   /// @throws DataError  fewer samples than 2^level
   LowBand(const LowBandOptions& options, std::span<const double> positions);
 
+  [[nodiscard]] const LowBandOptions& options() const { return options_; }
   [[nodiscard]] Eigen::Index samples() const { return samples_; }
   [[nodiscard]] Eigen::Index values() const { return values_; }  // approximation coefficients
   [[nodiscard]] bool resampled() const { return !cell_.empty(); }

@@ -2,6 +2,7 @@
 
 #include "../clock_range.hpp"
 #include "../linear_effect.hpp"
+#include "../periodic_effect.hpp"
 #include "../request.hpp"
 
 namespace slideway {
@@ -66,6 +67,11 @@ class SpindleRunout : public LinearEffect {
                                                        const Stations& stations) const override {
     const double rpm = *stations.setup().spindle_rpm;
     return {rpm * (1.0 - kRpmReach), rpm * (1.0 + kRpmReach)};
+  }
+
+  [[nodiscard]] double resolution(int /*shape*/, double /*value*/,
+                                  const Stations& stations) const override {
+    return kCyclesPerStep / kHarmonics * kMinute / range_of(stations, time_of).extent();
   }
 
   [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_height(setup); }

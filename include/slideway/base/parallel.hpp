@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace slideway {
+
+/// Calls work(0) ... work(count - 1) on as many threads as the machine has. Each call must write to
+/// a place of its own, so that the result is the same for any number of threads. The exception of
+/// the lowest index that threw is thrown again when all have ended.
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work);
+
+}  // namespace slideway

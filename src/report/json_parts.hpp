@@ -1,0 +1,30 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "slideway/identify/result.hpp"
+#include "slideway/trace/trace.hpp"
+
+namespace slideway {
+
+using Json = nlohmann::ordered_json;
+
+template <typename T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+template <typename Range, typename Function>
+Json array_of(const Range& range, Function&& to_json) {
+  Json array = Json::array();
+  for (const auto& item : range) array.push_back(to_json(item));
+  return array;
+}
+
+Json parameter_json(const FittedParameter& parameter);
+
+/// The `trace` part of the report.
+Json trace_json(const TraceResult& trace);
+
+}  // namespace slideway

@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/base/text.hpp"
+#include "slideway/report/layout.hpp"
+#include "slideway/report/number.hpp"
+#include "text_parts.hpp"
+
+namespace slideway {
+namespace {
+
+using Column = TextTable::Column;
+
+std::string unit_of(const FittedParameter& p) { return p.unit == "1" ? "" : " " + p.unit; }
+
+std::string value_of(const FittedParameter& p) {
+  if (!p.value) return "not determined";
+  const auto& uncertainty =
+      p.expanded_uncertainty ? p.expanded_uncertainty : p.standard_uncertainty;
+  if (!uncertainty) return number(*p.value, 4) + unit_of(p);
+  return with_uncertainty(*p.value, *uncertainty) + unit_of(p);
+}
+
+std::string last_name(const std::string& name) { return name.substr(name.rfind('.') + 1); }
+
+std::string change(double before, double after) {
+  return number(before, 4) + " -> " + number(after, 4) + " µm";
+}
+
+std::string verdict(const TraceResult& trace) {
+  if (trace.verdict == "nothing_missing")
+    return "nothing is missing: the residual is no more than noise (lack of fit p = " +
+           probability(trace.lack_of_fit_p) + ").";
+  if (trace.verdict == "explained") return "an effect was missing and is named:";
+  if (trace.verdict == "ambiguous")
+    return "an effect is missing, and these data can not tell it from its rivals:";
+  if (trace.verdict == "not_identifiable")
+    return "the form is there, but these data can not tell what makes it:";
+  return trace.rounds.empty()
+             ? "structure is left that no effect of the catalogue explains: UNNAMED."
+             : "structure is left that no effect of the catalogue explains: UNNAMED, beside:";
+}
+
+std::string round(const TraceRound& round, std::size_t index) {
+  std::string text =
+      item(std::to_string(index + 1) + ". " + round.accepted +
+           (round.ambiguous_with.empty() ? "" : " or " + joined(round.ambiguous_with, " or ")) +
+           ": residual " + change(round.before_rms_um, round.after_rms_um) +
+           ", difference in BIC " + number(round.delta_bic, 3) + ", p " +
+           (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value));
+  if (round.before_holdout_rms_um && round.after_holdout_rms_um)
+    text +=
+        paragraph("     ", "on profiles left out of the fit " +
+                               change(*round.before_holdout_rms_um, *round.after_holdout_rms_um));
+  for (const FittedParameter& p : round.parameters)
+    text += paragraph("     ", last_name(p.name) + " = " + value_of(p));
+  return text;
+}
+
+/// How far the missing effects had bent the parameters, in units of their final uncertainty.
+std::string bent(const TraceResult& trace) {
+  TextTable table({"parameter", "before", "after", "shift / U"},
+                  {Column::name, Column::number, Column::number, Column::number});
+  bool any = false;
+  for (const FittedParameter& before : trace.before) {
+    const auto after = std::find_if(trace.after.begin(), trace.after.end(),
+                                    [&](const auto& p) { return p.name == before.name; });
+    if (after == trace.after.end() || !before.value || !after->value ||
+        !after->expanded_uncertainty || !(*after->expanded_uncertainty > 0.0))
+      continue;
+    any = true;
+    table.add({before.name, number(*before.value, 4), number(*after->value, 4),
+               number((*before.value - *after->value) / *after->expanded_uncertainty, 2)});
+  }
+  return any ? item("What that had done to the declared parameters:") + table.text() : "";
+}
+
+std::string left_over(const Unnamed& left) {
+  std::string text = "Left without a name: " + number(left.rms_um, 3) + " µm rms, " +
+                     number(left.pv_um, 3) + " µm peak to valley on " + left.profile +
+                     " (lack of fit p " + (left.p_value < 1e-4 ? "" : "= ") +
+                     probability(left.p_value) + "), largest from " + number(left.from_mm, 4) +
+                     " to " + number(left.to_mm, 4) + " mm";
+  if (!left.clock.empty())
+    text += "; most alike on the clock " + left.clock + ", correlation length " +
+            number(left.correlation_length, 2) + " " + left.correlation_unit;
+  if (left.dominant_period_mm)
+    text += "; dominant period " + number(*left.dominant_period_mm, 3) + " mm";
+  if (left.odd_share)
+    text += "; " + number(100.0 * *left.odd_share, 2) + " % of it odd about the axis";
+  return item(text + ". It is not counted as an improvement.");
+}
+
+std::string limits(const TraceResult& trace) {
+  if (trace.detection_limits.empty()) return "";
+  TextTable table({"effect", "found from", "unit", "at"},
+                  {Column::effect, Column::number, Column::text, Column::text});
+  for (const DetectionLimit& limit : trace.detection_limits)
+    table.add({limit.effect, number(limit.value, 2), limit.unit, limit.at});
+  return item("Sizes found with 80 % probability:") + table.text();
+}
+
+}  // namespace
+
+std::string trace_text(const TraceResult& trace) {
+  std::string text = heading("Closed loop: " + verdict(trace));
+  for (std::size_t i = 0; i < trace.rounds.size(); ++i) text += round(trace.rounds[i], i);
+  if (!trace.rounds.empty()) text += bent(trace);
+  if (trace.unnamed) text += left_over(*trace.unnamed);
+  for (const std::string& line : trace.advice) text += note(line);
+  for (const std::string& line : trace.notes) text += note(line);
+  for (const auto& [effect, same] : trace.not_separable)
+    text += note(effect + " and " + same + " are one column here: not separable");
+  for (const TriedEffect& effect : trace.refused)
+    if (!effect.refused.empty() && effect.delta_bic < 0.0)
+      text += note(effect.effect + " was refused: " + effect.refused);
+  for (const auto& [effect, needs] : trace.not_testable)
+    text += note(effect + " is not testable: needs " + needs);
+  return text + limits(trace);
+}
+
+}  // namespace slideway

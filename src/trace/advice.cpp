@@ -1,0 +1,152 @@
+#include "advice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr Eigen::Index kReach = 20;  // atoms of a rival on either side of its best
+constexpr double kSeparates = 10.0;  // predicted ΔBIC that tells two effects apart
+
+struct Measurement {
+  std::string what;
+  Profile profile;
+};
+
+void mirror(Profile& profile) {
+  const double center = profile.setup.center_mm;
+  std::vector<double> positions;
+  for (const double s : profile.positions)
+    if (s > center) positions.push_back(s);
+  const std::size_t half = positions.size();
+  for (std::size_t i = 0; i < half; ++i) positions.push_back(2.0 * center - positions[i]);
+  std::sort(positions.begin(), positions.end());
+  profile.positions = std::move(positions);
+  profile.setup.first_mm = profile.positions.front();
+  profile.setup.last_mm = profile.positions.back();
+}
+
+/// What can be made of a face: each differs from it in one thing.
+std::vector<Measurement> measurements_like(const Profile& face) {
+  std::vector<Measurement> out;
+  const Setup& setup = face.setup;
+  const auto add = [&](std::string what, auto&& change) {
+    Profile profile = face;
+    profile.name = "to come";
+    profile.role = Role::fit;
+    change(profile);
+    profile.values.assign(profile.positions.size(), 0.0);
+    out.push_back({std::move(what), std::move(profile)});
+  };
+  if (setup.feed_mm_per_min)
+    for (const double factor : {0.25, 4.0})
+      add("a cut at " + significant(factor * *setup.feed_mm_per_min, 3) + " mm/min",
+          [&](Profile& p) { p.setup.feed_mm_per_min = factor * *setup.feed_mm_per_min; });
+  if (setup.cut_direction) {
+    const bool inward = *setup.cut_direction == CutDirection::inward;
+    add(inward ? "a cut outward" : "a cut inward", [&](Profile& p) {
+      p.setup.cut_direction = inward ? CutDirection::outward : CutDirection::inward;
+    });
+  }
+  if (setup.spindle_rpm)
+    add("a cut at " + significant(1.5 * *setup.spindle_rpm, 3) + " rev/min",
+        [&](Profile& p) { p.setup.spindle_rpm = 1.5 * *setup.spindle_rpm; });
+  if (setup.traverse_mm_per_s)
+    add("a trace at " + significant(0.5 * *setup.traverse_mm_per_s, 3) + " mm/s",
+        [&](Profile& p) { p.setup.traverse_mm_per_s = 0.5 * *setup.traverse_mm_per_s; });
+  if (setup.first_mm >= setup.center_mm)
+    add("a trace over the whole diameter", [](Profile& p) { mirror(p); });
+  return out;
+}
+
+/// The problem with one more profile, at the fitted shapes.
+struct Planned {
+  std::vector<Profile> profiles;
+  Model model;
+  Linearisation linear;
+};
+
+Planned plan(const Problem& problem, const std::vector<Profile>& profiles, const Model& model,
+             const Fit& fit, const Measurement& measurement) {
+  Planned out{profiles, {model.machine, model.range, {}, {}}, {}};
+  out.profiles.push_back(measurement.profile);
+  Problem bare = problem;
+  bare.effects.clear();
+  bare.low_band = model.observations.front().low_band.options();
+  out.model = build_model(bare, out.profiles);
+  out.model.range = model.range;
+  out.model.terms = model.terms;
+  Estimate estimate = fit.estimate;
+  estimate.nuisances.clear();
+  for (const Observation* observation : fitted_observations(out.model))
+    estimate.nuisances.emplace_back(Eigen::VectorXd::Zero(observation->nuisances.cols()));
+  out.linear = linearise(out.model, estimate);
+  return out;
+}
+
+/// Atoms of a rival around its best shape.
+std::vector<std::vector<double>> shapes_near(const Refined& rival) {
+  if (rival.shape.empty()) return {{}};
+  const auto& all = rival.candidate->shapes;
+  const auto at = std::lower_bound(all.begin(), all.end(), rival.shape);
+  const Eigen::Index middle = at - all.begin(), count = std::ssize(all);
+  return {all.begin() + std::max<Eigen::Index>(middle - kReach, 0),
+          all.begin() + std::min(middle + kReach + 1, count)};
+}
+
+double predicted_separation(const Planned& planned, const Whitened& data, std::size_t like,
+                            const Refined& effect, const Refined& rival) {
+  std::vector<Noise> noise = data.noise();
+  noise.push_back(noise[like]);
+  Linearisation linear = planned.linear;
+  const Eigen::Index priors = linear.prior_rows.rows();
+  const Eigen::VectorXd signal =
+      stacked_columns(planned.model, effect.candidate->term, effect.shape, priors) *
+      effect.projection.amplitudes;
+  Eigen::Index row = 0;
+  for (Eigen::VectorXd& residual : linear.residuals) {
+    residual = signal.segment(row, residual.size());
+    row += residual.size();
+  }
+  linear.prior_residuals.setZero();
+  const Whitened white(linear, noise);
+  double most = 0.0;
+  for (const std::vector<double>& shape : shapes_near(rival))
+    most = std::max(
+        most,
+        project(white, stacked_columns(planned.model, rival.candidate->term, shape, priors)).gain);
+  return white.residual().squaredNorm() - most;
+}
+
+}  // namespace
+
+std::string separating_measurement(const Problem& problem, const std::vector<Profile>& profiles,
+                                   const Model& model, const Fit& fit, const Whitened& data,
+                                   const Refined& effect, const Refined& rival) {
+  const std::vector<const Observation*> fitted = fitted_observations(model);
+  double best = 0.0;
+  std::string name;
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    if (fitted[i]->profile->setup.kind != Kind::face) continue;
+    for (const Measurement& measurement : measurements_like(*fitted[i]->profile)) {
+      const Planned planned = plan(problem, profiles, model, fit, measurement);
+      const double separation = predicted_separation(planned, data, i, effect, rival);
+      if (separation <= best) continue;
+      best = separation;
+      name = measurement.what + " (like " + fitted[i]->profile->name + ")";
+    }
+    break;  // the others differ from it in the same few things
+  }
+  const std::string pair = effect.candidate->name() + " and " + rival.candidate->name();
+  if (best < kSeparates)
+    return pair + ": none of the cuts and traces tried on paper would tell them apart; " +
+           effect.candidate->name() + " is separated by " +
+           effect.candidate->term.effect->description().separated_by;
+  return pair + ": " + name + " would tell them apart best; predicted difference in BIC " +
+         significant(best, 2);
+}
+
+}  // namespace slideway

@@ -1,0 +1,165 @@
+#include "background.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "slideway/base/units.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr Eigen::Index kSlowCosines = 16;  // to 8 cycles a profile
+constexpr Eigen::Index kValuesPerCosine = 10;
+constexpr Eigen::Index kLeastSpare = 6;  // values beyond what is free, else the fit's noise
+constexpr double kRounding = 1e-13;      // of the values: no noise, only rounding
+constexpr int kMostLines = 6;
+constexpr double kFalseLine = 1e-3;       // chance that a spectrum of noise is given one line
+constexpr Eigen::Index kNeighbours = 15;  // on either side, for the level of a spectrum
+
+bool same_cut(const Observation& a, const Observation& b) {
+  const Setup &s = a.profile->setup, &t = b.profile->setup;
+  return a.values.size() == b.values.size() && a.profile->positions == b.profile->positions &&
+         s.kind == t.kind && s.quantity == t.quantity && s.base_mm == t.base_mm &&
+         s.center_mm == t.center_mm && s.spindle_position_mm == t.spindle_position_mm &&
+         s.z_mm == t.z_mm && s.overhang_mm == t.overhang_mm &&
+         s.feed_mm_per_min == t.feed_mm_per_min && s.spindle_rpm == t.spindle_rpm &&
+         s.cut_direction == t.cut_direction && s.cut_radius_mm == t.cut_radius_mm &&
+         s.start_s == t.start_s && s.traverse_mm_per_s == t.traverse_mm_per_s;
+}
+
+Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+  qr.setThreshold(1e-10);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
+}
+
+Eigen::MatrixXd line(Eigen::Index n, double cycles_per_value) {
+  Eigen::MatrixXd out(n, 2);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double angle = 2.0 * kPi * cycles_per_value * static_cast<double>(i);
+    out.row(i) << std::cos(angle), std::sin(angle);
+  }
+  return out;
+}
+
+double power(const Eigen::VectorXd& values, double cycles_per_value) {
+  const std::complex<double> turn = std::polar(1.0, -2.0 * kPi * cycles_per_value);
+  std::complex<double> phase = 1.0, sum = 0.0;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    sum += values[i] * phase;
+    phase *= turn;
+  }
+  return std::norm(sum);
+}
+
+/// Frequency (cycles per value) of a line that stands out of the spectrum around it, or 0. The
+/// spectrum of smooth noise over its local level is exponential; the level is the median of the
+/// neighbours over ln 2.
+double outstanding_line(const Eigen::VectorXd& values) {
+  const Eigen::Index n = values.size(), count = (n - 1) / 2;
+  if (count < 4 * kNeighbours) return 0.0;
+  Eigen::VectorXd spectrum(count);
+  for (Eigen::Index k = 0; k < count; ++k)
+    spectrum[k] = power(values, static_cast<double>(k + 1) / static_cast<double>(n));
+  double best = std::log(static_cast<double>(count) / kFalseLine);
+  Eigen::Index peak = -1;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index first =
+        std::clamp<Eigen::Index>(k - kNeighbours, 0, count - 2 * kNeighbours - 1);
+    std::vector<double> around(spectrum.data() + first,
+                               spectrum.data() + first + 2 * kNeighbours + 1);
+    std::nth_element(around.begin(), around.begin() + kNeighbours, around.end());
+    const double level = around[kNeighbours] / std::log(2.0);
+    if (spectrum[k] > best * level) best = spectrum[k] / level, peak = k;
+  }
+  if (peak < 0) return 0.0;
+  double frequency = 0.0, largest = -1.0;
+  for (int step = -8; step <= 8; ++step) {
+    const double f = (static_cast<double>(peak + 1) + step / 10.0) / static_cast<double>(n);
+    const double size = power(values, f);
+    if (size > largest) largest = size, frequency = f;
+  }
+  return frequency;
+}
+
+void append(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
+  Eigen::MatrixXd out(std::max(columns.rows(), more.rows()), columns.cols() + more.cols());
+  out << columns, more;
+  columns = std::move(out);
+}
+
+LinearProfile linear_profile(const Eigen::MatrixXd& free, Eigen::VectorXd residual,
+                             const std::optional<double>& declared) {
+  Eigen::MatrixXd basis = orthonormal(free);
+  residual -= basis * (basis.transpose() * residual).eval();
+  return {std::move(basis), Eigen::MatrixXd(residual.size(), 0), std::move(residual), declared,
+          true};
+}
+
+/// Deviations of observation i from the mean of those that repeat it, of the size its noise has.
+std::optional<LinearProfile> from_repeats(const Linearisation& linear, std::size_t i) {
+  const Observation& observation = *linear.observations[i];
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(observation.values.size());
+  double count = 0.0;
+  for (std::size_t j = 0; j < linear.observations.size(); ++j)
+    if (same_cut(observation, *linear.observations[j])) mean += linear.residuals[j], ++count;
+  if (count < 2.0) return std::nullopt;
+  const Eigen::VectorXd deviation =
+      (linear.residuals[i] - mean / count) * std::sqrt(count / (count - 1.0));
+  constexpr double kCopy = 1e-9;  // of the values: one file given twice is no repeat
+  if (deviation.norm() <= kCopy * observation.values.norm()) return std::nullopt;
+  return linear_profile(observation.nuisances, deviation,
+                        observation.profile->standard_uncertainty);
+}
+
+LinearProfile from_fine_band(const Linearisation& linear, std::size_t i,
+                             const std::vector<Eigen::MatrixXd>& suspect) {
+  const Observation& observation = *linear.observations[i];
+  const Eigen::Index n = observation.values.size();
+  Eigen::MatrixXd free = observation.nuisances;
+  append(free, linear.columns[i]);
+  append(free, slow_cosines(n, slow_cosine_count(n)));
+  if (!suspect.empty()) append(free, suspect[i]);
+  for (int found = 0; found < kMostLines; ++found) {
+    const Eigen::MatrixXd basis = orthonormal(free);
+    const Eigen::VectorXd rest =
+        linear.residuals[i] - basis * (basis.transpose() * linear.residuals[i]);
+    const double frequency = outstanding_line(rest);
+    if (frequency == 0.0) break;
+    append(free, line(n, frequency));
+  }
+  return linear_profile(free, linear.residuals[i], observation.profile->standard_uncertainty);
+}
+
+}  // namespace
+
+Eigen::Index slow_cosine_count(Eigen::Index n) {
+  return std::min(kSlowCosines, n / kValuesPerCosine);
+}
+
+Eigen::MatrixXd slow_cosines(Eigen::Index n, Eigen::Index count) {
+  Eigen::MatrixXd out(n, count);
+  for (Eigen::Index j = 0; j < count; ++j)
+    for (Eigen::Index i = 0; i < n; ++i)
+      out(i, j) = std::cos(kPi * static_cast<double>(j + 1) * (static_cast<double>(i) + 0.5) /
+                           static_cast<double>(n));
+  return out;
+}
+
+std::vector<Noise> background_noise(const Fit& fit, const std::vector<Eigen::MatrixXd>& suspect) {
+  std::vector<Noise> out;
+  for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
+    const std::optional<LinearProfile> repeats = from_repeats(fit.linear, i);
+    const std::vector<LinearProfile> one{repeats ? *repeats
+                                                 : from_fine_band(fit.linear, i, suspect)};
+    const Eigen::Index spare = one[0].residual.size() - one[0].nuisances.cols();
+    const double least = kRounding * fit.linear.observations[i]->values.norm();
+    const bool usable = spare >= kLeastSpare && one[0].residual.norm() > least;
+    out.push_back(usable ? estimate_noise(one, Eigen::MatrixXd(0, 0)).front() : fit.noise[i]);
+  }
+  return out;
+}
+
+}  // namespace slideway

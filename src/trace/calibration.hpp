@@ -1,0 +1,23 @@
+#pragma once
+
+#include "search.hpp"
+
+namespace slideway {
+
+/// How large the best of all atoms gets where nothing is missing: the parametric bootstrap of the
+/// sup statistic (the largest penalised gain over all candidates and shapes), its tail a Gumbel
+/// distribution. A p-value from it knows the whole search.
+struct Calibration {
+  double location = 0.0, scale = 1.0;
+  [[nodiscard]] double p_value(double penalised_gain) const;
+  /// Penalised gain that noise exceeds with this probability.
+  [[nodiscard]] double threshold(double significance) const;
+};
+
+/// White residuals of data in which nothing is missing, outside the model's span. The noise of each
+/// is drawn from what its estimate leaves open, and made white with the estimate itself.
+Eigen::MatrixXd null_residuals(const Whitened& data, Eigen::Index count);
+
+Calibration calibrate(const Whitened& data, const Candidates& candidates);
+
+}  // namespace slideway

@@ -1,0 +1,150 @@
+#include "detection.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
+#include <cmath>
+
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr double kPower = 0.8;
+constexpr double kPowerDeviate = 0.8416;  // normal deviate of 80 %
+constexpr double kEnough = 10.0;          // -ΔBIC
+constexpr double kLeastSize = 5.0;
+constexpr double kNegligible = 0.02;  // of a column's size: not worth a name
+
+std::span<const double> middle_shape(const Candidate& candidate) {
+  return candidate.shapes[candidate.shapes.size() / 2];
+}
+
+std::string shape_text(const Candidate& candidate, std::span<const double> shape) {
+  std::string out;
+  for (std::size_t s = 0; s < shape.size(); ++s) {
+    const int p = candidate.term.effect->shapes()[s].parameter;
+    out += candidate.term.effect->parameters()[static_cast<std::size_t>(p)].name + " = " +
+           significant(shape[s], 3);
+  }
+  return out;
+}
+
+/// Share of a candidate's column each parameter of the model takes, as a column of its own.
+std::string made_by(const Model& model, const Fit& fit, const Whitened& data,
+                    const Eigen::VectorXd& column) {
+  const Linearisation& linear = fit.linear;
+  const Eigen::Index k = linear.prior_rows.cols();
+  Eigen::MatrixXd columns(data.rows(), k);
+  columns = stack(linear, k, [&](std::size_t i) { return linear.columns[i]; });
+  Eigen::MatrixXd all = columns;
+  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+    const Eigen::MatrixXd& own = linear.observations[i]->nuisances;
+    Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(data.rows(), own.cols());
+    wide.middleRows(data.first_row(i), data.count(i)) = own;
+    Eigen::MatrixXd joined(data.rows(), all.cols() + own.cols());
+    joined << all, wide;
+    all = std::move(joined);
+  }
+  const Eigen::VectorXd unit =
+      all.colwise().norm().transpose().unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-9);
+  solver.compute(all * unit.asDiagonal());
+  const Eigen::VectorXd scaled = solver.solve(column);
+  const Eigen::VectorXd amplitudes = (unit.asDiagonal() * scaled).head(k);
+  const Eigen::VectorXd parameters = fit.parameters.jacobian * amplitudes;
+  const Eigen::MatrixXd back =
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fit.parameters.jacobian)
+          .pseudoInverse();
+  const std::vector<std::string> names = model.parameter_names();
+  std::vector<std::string> out;
+  for (Eigen::Index p = 0; p < parameters.size(); ++p) {
+    if (fit.null.identifiable.size() > static_cast<std::size_t>(p) &&
+        !fit.null.identifiable[static_cast<std::size_t>(p)])
+      continue;
+    const double share =
+        (columns * back.col(p) * parameters[p]).norm() / std::max(column.norm(), 1e-300);
+    if (share > kNegligible) out.push_back(names[static_cast<std::size_t>(p)]);
+  }
+  return out.empty() ? "offset and tilt of the traces" : joined(out);
+}
+
+}  // namespace
+
+std::optional<double> detection_limit(const Model& model, const Whitened& data,
+                                      const Candidate& candidate, std::span<const double> shape,
+                                      const Calibration& calibration, double significance) {
+  const Eigen::MatrixXd columns =
+      stacked_columns(model, candidate.term, shape, data.rows() - data.values());
+  const Projection own = project(data, columns);
+  if (own.rank == 0) return std::nullopt;
+  const auto unknowns =
+      static_cast<double>(candidate.unknowns() - candidate.amplitudes() + own.rank);
+  const double penalty = unknowns * std::log(static_cast<double>(data.values()));
+  const double enough = std::max(
+      {penalty + std::max(kEnough, calibration.threshold(significance)), kLeastSize * kLeastSize});
+  const double noncentrality = boost::math::non_central_chi_squared::find_non_centrality(
+      static_cast<double>(own.rank), enough, 1.0 - kPower);
+  const Effect& effect = *candidate.term.effect;
+  const Eigen::Index a = candidate.amplitudes();
+  Eigen::VectorXd values =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effect.parameters().size()));
+  values[0] = 1.0;
+  for (std::size_t s = 0; s < shape.size(); ++s) values[effect.shapes()[s].parameter] = shape[s];
+  // Gain of one unit of the first parameter; the mean over its phase, where it has one.
+  const double gain = own.gram.diagonal().head(std::min<Eigen::Index>(a, 2)).mean() *
+                      effect.from_parameters(values).head(a).squaredNorm();
+  if (!(gain > 0.0)) return std::nullopt;
+  const double limit = std::sqrt(noncentrality / gain);
+  if (a > 2 || shape.empty()) return limit;
+  values[0] = limit;
+  const Eigen::VectorXd inner = effect.from_parameters(values);
+  Eigen::MatrixXd joint(data.rows(), a + 1);
+  joint.leftCols(a) = columns;
+  Eigen::Index row = 0;
+  joint.col(a).setZero();
+  for (const Observation* observation : fitted_observations(model)) {
+    const Eigen::VectorXd slope =
+        low_band_derivatives(model, candidate.term, *observation, shape, 0) * inner.head(a);
+    joint.col(a).segment(row, slope.size()) = slope;
+    row += slope.size();
+  }
+  data.whiten(joint);
+  joint -= data.basis() * (data.basis().transpose() * joint).eval();
+  const Eigen::MatrixXd inverse =
+      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(joint).pseudoInverse();
+  const ParameterValues at = effect.parameter_values(inner.head(a), shape);
+  const double uncertainty = (at.jacobian.row(0) * inverse).norm();
+  return std::max(limit, (kLeastSize + kPowerDeviate) * uncertainty);
+}
+
+std::vector<DetectionLimit> detection_limits(const Model& model, const Whitened& data,
+                                             const Candidates& candidates,
+                                             const Calibration& calibration, double significance) {
+  std::vector<DetectionLimit> out;
+  for (const Candidate* candidate : candidates) {
+    const std::span<const double> shape = middle_shape(*candidate);
+    const auto limit = detection_limit(model, data, *candidate, shape, calibration, significance);
+    if (!limit) continue;
+    const Parameter& first = candidate->term.effect->parameters()[0];
+    out.push_back(
+        {candidate->name(), first.name, first.unit, *limit, shape_text(*candidate, shape)});
+  }
+  return out;
+}
+
+std::vector<std::pair<std::string, std::string>> inseparable(const Model& model, const Fit& fit,
+                                                             const Whitened& data,
+                                                             const Candidates& candidates) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const Candidate* candidate : candidates) {
+    const Eigen::MatrixXd columns = stacked_columns(
+        model, candidate->term, middle_shape(*candidate), data.rows() - data.values());
+    if (project(data, columns).rank > 0 || columns.isZero(0.0)) continue;
+    out.emplace_back(candidate->name(), made_by(model, fit, data, columns.col(0)));
+  }
+  return out;
+}
+
+}  // namespace slideway

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "calibration.hpp"
+#include "refine.hpp"
+#include "slideway/trace/trace.hpp"
+
+namespace slideway {
+
+/// For every candidate the size that is found with 80 % probability: its gain must pass what the
+/// search finds in noise, ΔBIC -10, and five standard uncertainties. At the shape in the middle of
+/// its search grid.
+std::vector<DetectionLimit> detection_limits(const Model& model, const Whitened& data,
+                                             const Candidates& candidates,
+                                             const Calibration& calibration, double significance);
+
+/// Size of one effect at a given shape that is found with 80 % probability, in the unit of its
+/// first parameter; none if the model spans it.
+std::optional<double> detection_limit(const Model& model, const Whitened& data,
+                                      const Candidate& candidate, std::span<const double> shape,
+                                      const Calibration& calibration, double significance);
+
+/// Candidates whose columns the model makes itself, with the parameters that make them: (cup,
+/// "straightness.b2").
+std::vector<std::pair<std::string, std::string>> inseparable(const Model& model, const Fit& fit,
+                                                             const Whitened& data,
+                                                             const Candidates& candidates);
+
+}  // namespace slideway

@@ -1,0 +1,167 @@
+#include "dictionary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "slideway/base/error.hpp"
+#include "slideway/base/parallel.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/shape_grid.hpp"
+#include "slideway/identify/solve.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr int kThinLevel = 2;  // four samples a low-band value show a search what it looks at
+constexpr Eigen::Index kAtomsAtATime = 16;
+
+/// A profile with four samples a low-band value: means of equal blocks are again the low band for
+/// db1, so its columns are those of the whole profile but for what varies inside a quarter.
+struct ThinProfile {
+  std::vector<double> positions;
+  LowBand low_band;
+  double scale = 1.0;
+};
+
+std::optional<ThinProfile> thin(const Observation& observation) {
+  LowBandOptions options = observation.low_band.options();
+  if (options.wavelet != "db1" || options.level <= kThinLevel || observation.low_band.resampled())
+    return std::nullopt;
+  const std::vector<double>& all = observation.profile->positions;
+  const std::size_t stride = std::size_t{1} << (options.level - kThinLevel);
+  const double scale = std::sqrt(static_cast<double>(stride));
+  std::vector<double> positions;
+  for (std::size_t i = 0; i < all.size(); i += stride)
+    positions.push_back(0.5 * (all[i] + all[std::min(i + stride, all.size()) - 1]));
+  options.level = kThinLevel;
+  LowBand low_band(options, positions);
+  if (low_band.values() != observation.values.size() || low_band.resampled()) return std::nullopt;
+  return ThinProfile{std::move(positions), std::move(low_band), scale};
+}
+
+/// The fitted observations as a search looks at them.
+class Viewer {
+ public:
+  Viewer(const Model& model, Eigen::Index prior_rows)
+      : model_(model), observations_(fitted_observations(model)), rows_(prior_rows) {
+    for (const Observation* observation : observations_) {
+      thin_.push_back(thin(*observation));
+      rows_ += observation->values.size();
+    }
+  }
+
+  [[nodiscard]] Eigen::Index rows() const { return rows_; }
+
+  void columns(const ModelTerm& term, std::span<const double> shape,
+               Eigen::Ref<Eigen::MatrixXd> out) const {
+    out.setZero();
+    Eigen::Index row = 0;
+    for (std::size_t i = 0; i < observations_.size(); ++i) {
+      const Observation& observation = *observations_[i];
+      const Eigen::Index count = observation.values.size();
+      if (term.effect->applies_to(observation.profile->setup))
+        out.middleRows(row, count) = thin_[i] ? thin_columns(term, shape, observation, *thin_[i])
+                                              : low_band_columns(model_, term, observation, shape);
+      row += count;
+    }
+  }
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd thin_columns(const ModelTerm& term, std::span<const double> shape,
+                                             const Observation& observation,
+                                             const ThinProfile& profile) const {
+    const Stations stations(profile.positions, observation.profile->setup, model_.machine);
+    Eigen::MatrixXd columns(stations.size(), term.effect->amplitudes());
+    term.effect->columns(stations, shape, columns);
+    return profile.scale * profile.low_band.apply(columns);
+  }
+
+  const Model& model_;
+  std::vector<const Observation*> observations_;
+  std::vector<std::optional<ThinProfile>> thin_;
+  Eigen::Index rows_;
+};
+
+/// What the problem lacks for an effect to be looked for, or nothing.
+std::string needs(const Model& model, const Effect& effect) {
+  bool shown = false;
+  std::vector<std::string> keys;
+  for (const Observation& observation : model.observations) {
+    const Setup& setup = observation.profile->setup;
+    if (!effect.applies_to(setup)) continue;
+    shown = shown || observation.profile->role == Role::fit;
+    for (const std::string& key : effect.lacking(setup))
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+  }
+  if (!keys.empty()) return joined(keys);
+  return shown ? "" : "a reading that can show it (effects NAME tells which)";
+}
+
+/// One entry per point of the grid; an empty one if the effect has no shape.
+std::vector<std::vector<double>> shapes_of(const Model& model, const ModelTerm& term) {
+  if (term.effect->shapes().empty()) return {{}};
+  std::vector<std::vector<double>> out;
+  for (const double value : shape_grid(model, term, 0)) out.push_back({value});
+  return out;
+}
+
+void fill(const Viewer& viewer, Candidate& candidate) {
+  const Eigen::Index a = candidate.amplitudes(), atoms = candidate.atoms();
+  candidate.columns.resize(viewer.rows(), a * atoms);
+  parallel_for((atoms + kAtomsAtATime - 1) / kAtomsAtATime, [&](std::size_t block) {
+    const Eigen::Index first = static_cast<Eigen::Index>(block) * kAtomsAtATime;
+    for (Eigen::Index i = first; i < std::min(first + kAtomsAtATime, atoms); ++i)
+      viewer.columns(candidate.term, candidate.shapes[i], candidate.columns.middleCols(i * a, a));
+  });
+}
+
+}  // namespace
+
+Dictionary make_dictionary(const Model& model, const std::vector<std::string>& names,
+                           Eigen::Index prior_rows) {
+  Dictionary out;
+  const Viewer viewer(model, prior_rows);
+  for (const std::string& name : names) {
+    const bool declared = std::any_of(model.terms.begin(), model.terms.end(),
+                                      [&](const ModelTerm& term) { return term.name == name; });
+    if (declared) continue;
+    Candidate candidate;
+    candidate.term.name = name;
+    try {
+      candidate.term.effect = make_effect(name, candidate.options, model.machine, model.range);
+    } catch (const UsageError& error) {
+      out.not_testable.push_back({name, error.what()});
+      continue;
+    }
+    const std::string missing = needs(model, *candidate.term.effect);
+    if (!missing.empty()) {
+      out.not_testable.push_back({name, missing});
+      continue;
+    }
+    candidate.shapes = shapes_of(model, candidate.term);
+    fill(viewer, candidate);
+    out.candidates.push_back(std::move(candidate));
+  }
+  return out;
+}
+
+Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,
+                                std::span<const double> shape, Eigen::Index prior_rows) {
+  std::vector<Eigen::MatrixXd> parts;
+  Eigen::Index rows = prior_rows;
+  for (const Observation* observation : fitted_observations(model)) {
+    parts.push_back(low_band_columns(model, term, *observation, shape));
+    rows += parts.back().rows();
+  }
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, term.effect->amplitudes());
+  Eigen::Index row = 0;
+  for (const Eigen::MatrixXd& part : parts) {
+    out.middleRows(row, part.rows()) = part;
+    row += part.rows();
+  }
+  return out;
+}
+
+}  // namespace slideway

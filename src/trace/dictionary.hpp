@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "slideway/identify/model.hpp"
+
+namespace slideway {
+
+/// An effect that may be missing, with its columns at every shape the search looks at.
+struct Candidate {
+  ModelTerm term;
+  EffectOptions options;
+  std::vector<std::vector<double>> shapes;  // one entry per atom; an empty shape if it has none
+  Eigen::MatrixXd columns;                  // stacked rows by (#amplitudes * #atoms), not whitened
+
+  [[nodiscard]] const std::string& name() const { return term.name; }
+  [[nodiscard]] Eigen::Index amplitudes() const { return term.effect->amplitudes(); }
+  [[nodiscard]] Eigen::Index atoms() const { return static_cast<Eigen::Index>(shapes.size()); }
+  /// Free numbers: amplitudes and shapes.
+  [[nodiscard]] Eigen::Index unknowns() const {
+    return amplitudes() + static_cast<Eigen::Index>(term.effect->shapes().size());
+  }
+};
+
+/// Those a search looks at.
+using Candidates = std::vector<const Candidate*>;
+
+struct Untestable {
+  std::string effect, needs;
+};
+
+/// The candidates of a problem, ready to be held against residuals.
+struct Dictionary {
+  std::vector<Candidate> candidates;
+  std::vector<Untestable> not_testable;
+};
+
+/// @param prior_rows  rows of zeros below the observations', one per prior of the model
+Dictionary make_dictionary(const Model& model, const std::vector<std::string>& names,
+                           Eigen::Index prior_rows);
+
+/// Low-band columns of an effect under one another for all fitted observations, prior rows zero.
+Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,
+                                std::span<const double> shape, Eigen::Index prior_rows);
+
+}  // namespace slideway

@@ -1,0 +1,108 @@
+#include "holdout.hpp"
+
+#include <Eigen/QR>
+#include <cmath>
+
+namespace slideway {
+namespace {
+
+constexpr double kTold = 5.0;  // standard uncertainties of the effect in the profiles kept
+
+/// White columns [model, effect, residual] of one profile, free of its nuisances.
+Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, std::size_t i,
+                           const Eigen::MatrixXd& effect) {
+  const Observation& observation = *linear.observations[i];
+  const Eigen::Index k = linear.prior_rows.cols(), a = effect.cols();
+  Eigen::MatrixXd rows(observation.values.size(), k + a + 1);
+  rows << linear.columns[i], effect.middleRows(data.first_row(i), data.count(i)),
+      linear.residuals[i];
+  Eigen::MatrixXd nuisances = observation.nuisances;
+  const Noise& noise = data.noise()[i];
+  noise.correlation.whiten(rows);
+  rows /= noise.innovation;
+  if (nuisances.cols() > 0) {
+    noise.correlation.whiten(nuisances);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(nuisances);
+    const Eigen::MatrixXd basis =
+        qr.householderQ() * Eigen::MatrixXd::Identity(nuisances.rows(), nuisances.cols());
+    rows -= basis * (basis.transpose() * rows).eval();
+  }
+  return rows;
+}
+
+struct Solution {
+  Eigen::VectorXd values;
+  double square = 0.0;
+};
+
+Solution least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+  const Eigen::VectorXd unit = columns.colwise().norm().transpose().unaryExpr(
+      [](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-9);
+  solver.compute(columns * unit.asDiagonal());
+  Solution out;
+  const Eigen::VectorXd scaled = solver.solve(target);
+  out.values = unit.asDiagonal() * scaled;
+  out.square = (target - columns * out.values).squaredNorm();
+  return out;
+}
+
+}  // namespace
+
+std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened& data,
+                                     const Refined& candidate) {
+  const std::size_t count = linear.observations.size();
+  const Eigen::Index k = linear.prior_rows.cols(), a = candidate.columns.cols();
+  if (count < 2) return std::nullopt;
+  std::vector<Eigen::MatrixXd> rows;
+  for (std::size_t i = 0; i < count; ++i)
+    rows.push_back(white_rows(linear, data, i, candidate.columns));
+  double before = 0.0, after = 0.0, values = 0.0, before_mm = 0.0, after_mm = 0.0, samples = 0.0;
+  for (std::size_t left_out = 0; left_out < count; ++left_out) {
+    if (rows[left_out].middleCols(k, a).isZero(0.0)) continue;
+    Eigen::MatrixXd kept(data.rows() - data.count(left_out), k + a + 1);
+    Eigen::Index next = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i == left_out) continue;
+      kept.middleRows(next, rows[i].rows()) = rows[i];
+      next += rows[i].rows();
+    }
+    kept.bottomRows(linear.prior_rows.rows()).setZero();
+    kept.bottomLeftCorner(linear.prior_rows.rows(), k + a + 1).leftCols(k) = linear.prior_rows;
+    kept.bottomRightCorner(linear.prior_rows.rows(), 1) = linear.prior_residuals;
+    const Solution without = least_squares(kept.leftCols(k), kept.col(k + a));
+    const Solution with = least_squares(kept.leftCols(k + a), kept.col(k + a));
+    if (without.square - with.square < kTold * kTold) continue;
+    const Eigen::MatrixXd& own = rows[left_out];
+    const Eigen::VectorXd rest_before = own.col(k + a) - own.leftCols(k) * without.values;
+    const Eigen::VectorXd rest_after = own.col(k + a) - own.leftCols(k + a) * with.values;
+    before += rest_before.squaredNorm();
+    after += rest_after.squaredNorm();
+    values += static_cast<double>(own.rows());
+    const Observation& observation = *linear.observations[left_out];
+    if (observation.profile->setup.quantity != Quantity::height) continue;
+    Eigen::VectorXd raw_before =
+        linear.residuals[left_out] - linear.columns[left_out] * without.values;
+    Eigen::VectorXd raw_after =
+        linear.residuals[left_out] - linear.columns[left_out] * with.values.head(k) -
+        candidate.columns.middleRows(data.first_row(left_out), data.count(left_out)) *
+            with.values.tail(a);
+    if (observation.nuisances.cols() > 0) {
+      raw_before -= observation.nuisances * fitted_nuisances(observation, raw_before);
+      raw_after -= observation.nuisances * fitted_nuisances(observation, raw_after);
+    }
+    before_mm += raw_before.squaredNorm();
+    after_mm += raw_after.squaredNorm();
+    samples += static_cast<double>(observation.low_band.samples());
+  }
+  if (values == 0.0) return std::nullopt;
+  HeldOut out{std::sqrt(before / values), std::sqrt(after / values), std::nullopt, std::nullopt};
+  if (samples > 0.0) {
+    out.before_um = std::sqrt(before_mm / samples) / kMicrometre;
+    out.after_um = std::sqrt(after_mm / samples) / kMicrometre;
+  }
+  return out;
+}
+
+}  // namespace slideway

@@ -1,0 +1,140 @@
+#include "search.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/base/parallel.hpp"
+
+namespace slideway {
+namespace {
+
+/// Part of a column's square outside the model below which it is the model's own (b_2 and cup).
+constexpr double kSpanned = 1e-9;
+constexpr Eigen::Index kColumnsAtATime = 64;
+
+/// Pseudo-inverse square root of a Gram matrix scaled by the columns' sizes before projection:
+/// |R c|² is the gain of products c.
+struct GramRoot {
+  Eigen::MatrixXd root;  // rank by a
+  Eigen::Index rank = 0;
+};
+
+GramRoot root_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& squares) {
+  const Eigen::VectorXd unit =
+      squares.unaryExpr([](double s) { return s > 0.0 ? 1.0 / std::sqrt(s) : 0.0; });
+  GramRoot out;
+  if (gram.cols() == 1) {
+    out.rank = gram(0, 0) > kSpanned * squares[0] ? 1 : 0;
+    out.root = Eigen::MatrixXd::Constant(out.rank, 1, 0.0);
+    if (out.rank == 1) out.root(0, 0) = 1.0 / std::sqrt(gram(0, 0));
+    return out;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(unit.asDiagonal() * gram *
+                                                             unit.asDiagonal());
+  out.rank = (eigen.eigenvalues().array() > kSpanned).count();
+  out.root = eigen.eigenvalues().tail(out.rank).cwiseSqrt().cwiseInverse().asDiagonal() *
+             eigen.eigenvectors().rightCols(out.rank).transpose() * unit.asDiagonal();
+  return out;
+}
+
+/// Calls use(atom, root, products of its columns with every residual) for the atoms of one block.
+template <typename Use>
+void for_block(const Whitened& data, const Candidate& candidate, Eigen::Index first,
+               Eigen::Index count, const Eigen::MatrixXd& residuals, Use&& use) {
+  const Eigen::Index a = candidate.amplitudes();
+  Eigen::MatrixXd columns = candidate.columns.middleCols(first * a, count * a);
+  data.whiten(columns);
+  const Eigen::MatrixXd inside = data.basis().transpose() * columns;
+  const Eigen::MatrixXd products = columns.transpose() * residuals;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto own = columns.middleCols(i * a, a);
+    const auto spanned = inside.middleCols(i * a, a);
+    const Eigen::MatrixXd gram = own.transpose() * own - spanned.transpose() * spanned;
+    use(first + i, root_of(gram, own.colwise().squaredNorm().transpose()),
+        products.middleRows(i * a, a));
+  }
+}
+
+struct Block {
+  std::size_t candidate;
+  Eigen::Index first, count;
+};
+
+std::vector<Block> blocks_of(const Candidates& candidates) {
+  std::vector<Block> out;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const Eigen::Index most =
+        std::max<Eigen::Index>(1, kColumnsAtATime / candidates[c]->amplitudes());
+    for (Eigen::Index first = 0; first < candidates[c]->atoms(); first += most)
+      out.push_back({c, first, std::min(most, candidates[c]->atoms() - first)});
+  }
+  return out;
+}
+
+double penalty(const Whitened& data, Eigen::Index unknowns) {
+  return static_cast<double>(unknowns) * std::log(static_cast<double>(data.values()));
+}
+
+/// Free numbers of a candidate of which the model spans some amplitudes.
+Eigen::Index unknowns(const Candidate& candidate, Eigen::Index rank) {
+  return candidate.unknowns() - candidate.amplitudes() + rank;
+}
+
+}  // namespace
+
+std::vector<Finding> search(const Whitened& data, const Candidates& candidates) {
+  const std::vector<Block> blocks = blocks_of(candidates);
+  std::vector<Finding> best(blocks.size());
+  parallel_for(blocks.size(), [&](std::size_t b) {
+    const Block& block = blocks[b];
+    const Candidate& candidate = *candidates[block.candidate];
+    best[b] = {&candidate, block.first, -1.0, INFINITY, 0};
+    for_block(data, candidate, block.first, block.count, data.residual(),
+              [&](Eigen::Index atom, const GramRoot& root, const auto& products) {
+                const double gain = (root.root * products).squaredNorm();
+                const double bic = penalty(data, unknowns(candidate, root.rank)) - gain;
+                if (root.rank > 0 && bic < best[b].delta_bic)
+                  best[b] = {&candidate, atom, gain, bic, root.rank};
+              });
+  });
+  std::vector<Finding> out;
+  for (const Candidate* candidate : candidates) out.push_back({candidate, 0, 0.0, INFINITY, 0});
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    if (best[b].delta_bic < out[blocks[b].candidate].delta_bic) out[blocks[b].candidate] = best[b];
+  return out;
+}
+
+Projection project(const Whitened& data, const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd white = columns;
+  data.whiten(white);
+  const Eigen::MatrixXd inside = data.basis().transpose() * white;
+  Projection out;
+  out.gram = white.transpose() * white - inside.transpose() * inside;
+  out.products = white.transpose() * data.residual();
+  const GramRoot root = root_of(out.gram, white.colwise().squaredNorm().transpose());
+  out.rank = root.rank;
+  out.amplitudes = root.root.transpose() * (root.root * out.products);
+  out.gain = (root.root * out.products).squaredNorm();
+  return out;
+}
+
+Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates,
+                              const Eigen::MatrixXd& residuals) {
+  const std::vector<Block> blocks = blocks_of(candidates);
+  Eigen::MatrixXd best = Eigen::MatrixXd::Constant(residuals.cols(), blocks.size(), -INFINITY);
+  parallel_for(blocks.size(), [&](std::size_t b) {
+    const Candidate& candidate = *candidates[blocks[b].candidate];
+    for_block(
+        data, candidate, blocks[b].first, blocks[b].count, residuals,
+        [&](Eigen::Index, const GramRoot& root, const auto& products) {
+          if (root.rank == 0) return;
+          const double cost = penalty(data, unknowns(candidate, root.rank));
+          best.col(b) = best.col(b).cwiseMax(
+              ((root.root * products).colwise().squaredNorm().array() - cost).matrix().transpose());
+        });
+  });
+  return best.rowwise().maxCoeff();
+}
+
+}  // namespace slideway

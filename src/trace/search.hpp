@@ -1,0 +1,37 @@
+#pragma once
+
+#include "dictionary.hpp"
+#include "whitened.hpp"
+
+namespace slideway {
+
+/// What one candidate would bring: the whitened residual's square falls by `gain` at the best of
+/// its atoms.
+struct Finding {
+  const Candidate* candidate = nullptr;
+  Eigen::Index atom = 0;
+  double gain = 0.0;
+  double delta_bic = 0.0;  // unknowns ln n - gain
+  Eigen::Index rank = 0;   // amplitudes the model does not span; 0: the candidate is one of it
+};
+
+/// Best atom of every candidate, in the order of the dictionary.
+std::vector<Finding> search(const Whitened& data, const Candidates& candidates);
+
+/// Columns (not whitened) of one effect, held against the data: the residual's square it takes away
+/// with its amplitudes free, and the normal equations of those.
+struct Projection {
+  Eigen::MatrixXd gram;        // of the whitened columns outside the model's span
+  Eigen::VectorXd products;    // with the residual
+  Eigen::VectorXd amplitudes;  // best
+  double gain = 0.0;
+  Eigen::Index rank = 0;
+};
+Projection project(const Whitened& data, const Eigen::MatrixXd& columns);
+
+/// Largest penalised gain (gain - unknowns ln n) of any atom, for every column of `residuals`
+/// (white, in the layout of the data, outside the model's span).
+Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates,
+                              const Eigen::MatrixXd& residuals);
+
+}  // namespace slideway

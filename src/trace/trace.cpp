@@ -1,0 +1,308 @@
+#include "slideway/trace/trace.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "advice.hpp"
+#include "background.hpp"
+#include "detection.hpp"
+#include "round.hpp"
+#include "slideway/base/text.hpp"
+#include "structure.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr double kLackOfFit = 1e-3;        // p below which what is left is structure
+constexpr std::size_t kMostValues = 2048;  // of a profile, in a search
+constexpr double kSuperfluous = -10.0;     // ΔBIC an effect must keep up to stay
+
+/// The problem with the low band in which effects are searched: the declared one, or the first
+/// coarser one that leaves every profile few enough values.
+Problem for_search(Problem problem, const std::vector<Profile>& profiles) {
+  std::size_t most = 0;
+  for (const Profile& profile : profiles) most = std::max(most, profile.positions.size());
+  while ((most >> problem.low_band.level) > kMostValues) ++problem.low_band.level;
+  return problem;
+}
+
+/// An effect that has been added to the declared model.
+struct Added {
+  const Candidate* candidate = nullptr;
+  std::vector<double> shape;
+  TraceRound round;
+};
+
+std::optional<double> rms_um(const FitResult& fit) { return fit.rms_um; }
+
+std::optional<double> holdout_rms_um(const FitResult& fit) {
+  double squares = 0.0;
+  int count = 0;
+  for (const ResidualSummary& residual : fit.residuals)
+    if (residual.role == "holdout" && residual.unit == "um")
+      squares += residual.rms_um * residual.rms_um, ++count;
+  if (count == 0) return std::nullopt;
+  return std::sqrt(squares / count);
+}
+
+std::vector<FittedParameter> parameters_of(const FitResult& fit, const std::string& effect) {
+  std::vector<FittedParameter> out;
+  for (const FittedParameter& parameter : fit.parameters)
+    if (parameter.name.starts_with(effect + ".")) out.push_back(parameter);
+  return out;
+}
+
+class Loop {
+ public:
+  Loop(const Problem& problem, const std::vector<Profile>& profiles)
+      : problem_(problem),
+        profiles_(profiles),
+        declared_(build_model(problem, profiles)),
+        base_(build_model(for_search(problem, profiles), profiles)),
+        first_fit_(fit(base_)),
+        dictionary_(make_dictionary(base_, problem.trace.candidates,
+                                    first_fit_.linear.prior_rows.rows())) {}
+
+  TraceResult run() {
+    State state = make_state({});
+    before_ = summary_of(state);
+    std::optional<Look> last;
+    while (true) {
+      last = look_at(state);
+      if (static_cast<int>(state.added.size()) >= problem_.trace.max_effects) break;
+      const std::optional<std::size_t> choice = last->choice();
+      if (!choice || !try_adding(state, *last, *choice)) break;
+      drop_superfluous(state);
+    }
+    exchange(state);
+    last = look_at(state);
+    return report(state, *last);
+  }
+
+ private:
+  struct State {
+    std::vector<Added> added;
+    Model model;
+    Fit fit;
+  };
+
+  [[nodiscard]] Model with(const Model& base, const std::vector<Added>& added) const {
+    Model model = base;
+    for (const Added& effect : added)
+      append_term(model, {effect.candidate->name(), effect.candidate->options, {}}, model.range);
+    return model;
+  }
+
+  [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<Added>& added) const {
+    std::vector<double> all(first_fit_.estimate.shapes.begin(), first_fit_.estimate.shapes.end());
+    for (const Added& effect : added)
+      all.insert(all.end(), effect.shape.begin(), effect.shape.end());
+    return Eigen::Map<const Eigen::VectorXd>(all.data(), std::ssize(all));
+  }
+
+  [[nodiscard]] State make_state(std::vector<Added> added) const {
+    State out{std::move(added), with(base_, {}), first_fit_};
+    if (out.added.empty()) return out;
+    out.model = with(base_, out.added);
+    out.fit = fit(out.model, shapes_of(out.added));
+    return out;
+  }
+
+  /// The report's numbers, at the declared level.
+  [[nodiscard]] FitResult summary_of(const State& state) const {
+    const Model model = with(declared_, state.added);
+    return summarise(model, fit(model, shapes_of(state.added)));
+  }
+
+  [[nodiscard]] Candidates candidates_beside(const std::vector<Added>& added) const {
+    Candidates out;
+    for (const Candidate& candidate : dictionary_.candidates)
+      if (std::none_of(added.begin(), added.end(),
+                       [&](const Added& effect) { return effect.candidate == &candidate; }))
+        out.push_back(&candidate);
+    return out;
+  }
+
+  Look look_at(const State& state) {
+    return look(state.model, state.fit, candidates_beside(state.added), problem_.trace.significance,
+                calibration_);
+  }
+
+  bool try_adding(State& state, const Look& seen, std::size_t choice) {
+    const Refined& refined = seen.refined[choice];
+    Added next{refined.candidate, refined.shape, {}};
+    next.round.accepted = refined.candidate->name();
+    next.round.delta_bic = refined.delta_bic;
+    next.round.p_value = seen.p_values[choice];
+    next.round.candidates = tried(seen, choice);
+    const FitResult before = summary_of(state);
+    std::vector<Added> added = state.added;
+    added.push_back(std::move(next));
+    State extended = make_state(std::move(added));
+    const FitResult after = summary_of(extended);
+    TraceRound& round = extended.added.back().round;
+    round.before_rms_um = rms_um(before).value_or(0.0);
+    round.after_rms_um = rms_um(after).value_or(0.0);
+    round.before_holdout_rms_um = holdout_rms_um(before);
+    round.after_holdout_rms_um = holdout_rms_um(after);
+    if (round.before_holdout_rms_um) {
+      if (!(*round.after_holdout_rms_um < *round.before_holdout_rms_um)) {
+        notes_.push_back(round.accepted + " was refused: it predicts the held-out profiles worse");
+        return false;
+      }
+    } else if (seen.held_out[choice]) {
+      round.before_holdout_rms_um = seen.held_out[choice]->before_um;
+      round.after_holdout_rms_um = seen.held_out[choice]->after_um;
+    }
+    state = std::move(extended);
+    return true;
+  }
+
+  [[nodiscard]] std::vector<TriedEffect> tried(const Look& seen,
+                                               std::optional<std::size_t> without) const {
+    std::vector<TriedEffect> out;
+    const double square = seen.data.residual().squaredNorm();
+    for (std::size_t i = 0; i < seen.refined.size(); ++i) {
+      if (without && i == *without) continue;
+      const Refined& refined = seen.refined[i];
+      TriedEffect entry{refined.candidate->name(), refined.delta_bic, seen.p_values[i]};
+      entry.refused = seen.refused[i];
+      const double share = std::max(0.0, 1.0 - refined.projection.gain / square);
+      entry.rms_um = before_->rms_um.value_or(0.0) * std::sqrt(share);
+      const std::vector<Parameter>& known = refined.candidate->term.effect->parameters();
+      for (std::size_t p = 0; p < known.size(); ++p) {
+        FittedParameter parameter{entry.effect + "." + known[p].name, known[p].symbol,
+                                  known[p].unit};
+        parameter.value = refined.values[static_cast<Eigen::Index>(p)];
+        parameter.standard_uncertainty = refined.uncertainties[static_cast<Eigen::Index>(p)];
+        entry.parameters.push_back(std::move(parameter));
+      }
+      out.push_back(std::move(entry));
+    }
+    return out;
+  }
+
+  /// Earlier effects that the last one has made superfluous leave again.
+  void drop_superfluous(State& state) {
+    for (std::size_t i = 0; i + 1 < state.added.size();) {
+      const State without = make_state(all_but(state.added, i));
+      const Added& effect = state.added[i];
+      const Whitened data(without.fit.linear, background_noise(state.fit));
+      const Projection own =
+          project(data, stacked_columns(without.model, effect.candidate->term, effect.shape,
+                                        data.rows() - data.values()));
+      const double bic = static_cast<double>(effect.candidate->unknowns()) *
+                             std::log(static_cast<double>(data.values())) -
+                         own.gain;
+      if (bic <= kSuperfluous) {
+        ++i;
+        continue;
+      }
+      notes_.push_back(effect.candidate->name() + " was dropped again: " +
+                       state.added.back().candidate->name() + " has made it superfluous");
+      state = without;
+    }
+  }
+
+  /// Each effect once more against all others, the rest of the model as it now is: a better one
+  /// takes its place, and those that are as good are its rivals.
+  void exchange(State& state) {
+    for (std::size_t i = 0; i < state.added.size(); ++i) {
+      const State without = make_state(all_but(state.added, i));
+      const Look seen = look_at(without);
+      const std::optional<std::size_t> choice = seen.choice();
+      if (!choice) continue;
+      std::size_t own = *choice;
+      const std::string& name = state.added[i].candidate->name();
+      if (seen.refined[own].candidate->name() != name) {
+        for (std::size_t j = 0; j < seen.refined.size(); ++j)
+          if (seen.refined[j].candidate->name() == name && seen.refused[j].empty()) own = j;
+        if (seen.refined[own].delta_bic > seen.refined[*choice].delta_bic ||
+            seen.refined[own].candidate->name() != name) {
+          notes_.push_back(name + " was exchanged for " + seen.refined[*choice].candidate->name() +
+                           ", which fits better");
+          own = *choice;
+          state.added[i].candidate = seen.refined[own].candidate;
+          state.added[i].shape = seen.refined[own].shape;
+          state.added[i].round.accepted = seen.refined[own].candidate->name();
+          state.added[i].round.delta_bic = seen.refined[own].delta_bic;
+          state.added[i].round.p_value = seen.p_values[own];
+          state.added[i].round.candidates = tried(seen, own);
+          state = make_state(state.added);
+        }
+      }
+      TraceRound& round = state.added[i].round;
+      round.ambiguous_with.clear();
+      for (const std::size_t rival : seen.rivals(own)) {
+        round.ambiguous_with.push_back(seen.refined[rival].candidate->name());
+        advice_.push_back(separating_measurement(problem_, profiles_, without.model, without.fit,
+                                                 seen.data, seen.refined[own],
+                                                 seen.refined[rival]));
+      }
+    }
+  }
+
+  static std::vector<Added> all_but(std::vector<Added> added, std::size_t i) {
+    added.erase(added.begin() + static_cast<std::ptrdiff_t>(i));
+    return added;
+  }
+
+  TraceResult report(const State& state, const Look& last) {
+    TraceResult out;
+    const FitResult after = summary_of(state);
+    out.before = before_->parameters;
+    out.after = after.parameters;
+    out.before_rms_um = rms_um(*before_);
+    out.after_rms_um = rms_um(after);
+    for (const Added& effect : state.added) {
+      out.rounds.push_back(effect.round);
+      out.rounds.back().parameters = parameters_of(after, effect.candidate->name());
+    }
+    const Candidates beside = candidates_beside(state.added);
+    out.refused = tried(last, std::nullopt);
+    out.lack_of_fit_p = lack_of_fit(last.data, state.fit.linear);
+    if (out.lack_of_fit_p < kLackOfFit) {
+      out.unnamed = describe_structure(state.model, last.data, state.fit.linear);
+      out.unnamed->p_value = out.lack_of_fit_p;
+    }
+    for (const Untestable& effect : dictionary_.not_testable)
+      out.not_testable.emplace_back(effect.effect, effect.needs);
+    out.not_separable = inseparable(state.model, state.fit, last.data, beside);
+    if (calibration_)
+      out.detection_limits = detection_limits(state.model, last.data, beside, *calibration_,
+                                              problem_.trace.significance);
+    out.advice = advice_;
+    out.notes = notes_;
+    out.verdict = verdict(out, after);
+    return out;
+  }
+
+  static std::string verdict(const TraceResult& out, const FitResult& /*fit*/) {
+    if (out.unnamed) return "unnamed";
+    const bool ambiguous = std::any_of(out.rounds.begin(), out.rounds.end(),
+                                       [](const auto& r) { return !r.ambiguous_with.empty(); });
+    if (ambiguous) return "ambiguous";
+    return out.rounds.empty() ? "nothing_missing" : "explained";
+  }
+
+  const Problem& problem_;
+  const std::vector<Profile>& profiles_;
+  Model declared_, base_;
+  Fit first_fit_;
+  Dictionary dictionary_;
+  std::optional<Calibration> calibration_;
+  std::optional<FitResult> before_;
+  std::vector<std::string> advice_, notes_;
+};
+
+}  // namespace
+
+TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles) {
+  return Loop(problem, profiles).run();
+}
+
+bool is_negative(const TraceResult& trace) {
+  return trace.verdict == "unnamed" || trace.verdict == "not_identifiable";
+}
+
+}  // namespace slideway

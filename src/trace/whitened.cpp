@@ -1,0 +1,68 @@
+#include "whitened.hpp"
+
+#include <Eigen/QR>
+
+namespace slideway {
+namespace {
+
+constexpr double kRankTolerance = 1e-10;  // of a unit column
+
+/// Nuisances of each profile in columns of their own, then amplitudes and shapes.
+Eigen::MatrixXd model_span(const Linearisation& linear) {
+  Eigen::Index nuisances = 0;
+  for (const Observation* observation : linear.observations)
+    nuisances += observation->nuisances.cols();
+  const Eigen::Index shared = linear.prior_rows.cols();
+  Eigen::Index next = 0;
+  Eigen::MatrixXd out = stack(linear, nuisances + shared, [&](std::size_t i) {
+    const Observation& observation = *linear.observations[i];
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(observation.values.size(), nuisances + shared);
+    rows.middleCols(next, observation.nuisances.cols()) = observation.nuisances;
+    rows.rightCols(shared) = linear.columns[i];
+    next += observation.nuisances.cols();
+    return rows;
+  });
+  out.bottomRightCorner(linear.prior_rows.rows(), shared) = linear.prior_rows;
+  return out;
+}
+
+Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns) {
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    const double norm = columns.col(j).norm();
+    if (norm > 0.0) columns.col(j) /= norm;
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(kRankTolerance);
+  qr.compute(columns);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
+}
+
+}  // namespace
+
+Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise)
+    : noise_(std::move(noise)) {
+  for (const Observation* observation : linear.observations) {
+    first_.push_back(values_);
+    values_ += observation->values.size();
+  }
+  first_.push_back(values_);
+  rows_ = values_ + linear.prior_rows.rows();
+  Eigen::MatrixXd span = model_span(linear);
+  whiten(span);
+  basis_ = orthonormal(std::move(span));
+  residual_ = stack(linear, 1, [&](std::size_t i) { return linear.residuals[i]; });
+  residual_.tail(linear.prior_rows.rows()) = linear.prior_residuals;
+  whiten(residual_);
+  residual_ -= basis_ * (basis_.transpose() * residual_).eval();
+}
+
+void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
+  for (std::size_t i = 0; i < noise_.size(); ++i)
+    for (Eigen::Index j = 0; j < stacked.cols(); ++j) {
+      auto rows = stacked.block(first_[i], j, count(i), 1);
+      noise_[i].correlation.whiten(rows);
+      rows /= noise_[i].innovation;
+    }
+}
+
+}  // namespace slideway

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "slideway/identify/fit.hpp"
+
+namespace slideway {
+
+/// All fitted low bands under one another, and the priors below them, made white: what the search
+/// for a missing effect looks at.
+///
+/// Rows are low-band values divided by their noise (generalised least squares); the span of the
+/// model's columns, of its shapes' derivatives and of the nuisances is taken out of the residual,
+/// so that only what the model can not make is left.
+class Whitened {
+ public:
+  /// @param linear  the model at its fit
+  /// @param noise   per fitted observation
+  Whitened(const Linearisation& linear, std::vector<Noise> noise);
+
+  [[nodiscard]] Eigen::Index rows() const { return rows_; }
+  /// Values without the priors.
+  [[nodiscard]] Eigen::Index values() const { return values_; }
+  [[nodiscard]] std::size_t observations() const { return noise_.size(); }
+  [[nodiscard]] Eigen::Index first_row(std::size_t observation) const {
+    return first_[observation];
+  }
+  [[nodiscard]] Eigen::Index count(std::size_t observation) const {
+    return first_[observation + 1] - first_[observation];
+  }
+  [[nodiscard]] const std::vector<Noise>& noise() const { return noise_; }
+
+  /// Stacked low-band columns (rows() of them, zero in the rows of priors) made white, in place.
+  void whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const;
+
+  /// Orthonormal, rows() by k: what the model and the nuisances span.
+  [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
+
+  /// White residual outside that span.
+  [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
+
+ private:
+  std::vector<Noise> noise_;
+  std::vector<Eigen::Index> first_;
+  Eigen::Index values_ = 0;
+  Eigen::Index rows_ = 0;
+  Eigen::MatrixXd basis_;
+  Eigen::VectorXd residual_;
+};
+
+/// Rows of all fitted observations under one another, with as many rows of zeros as there are
+/// priors below: the layout of Whitened. `of(i)` gives the rows of fitted observation i.
+template <typename Of>
+Eigen::MatrixXd stack(const Linearisation& linear, Eigen::Index columns, Of&& of) {
+  Eigen::Index rows = linear.prior_rows.rows();
+  for (const Observation* observation : linear.observations) rows += observation->values.size();
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, columns);
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+    const Eigen::Index count = linear.observations[i]->values.size();
+    out.middleRows(row, count) = of(i);
+    row += count;
+  }
+  return out;
+}
+
+}  // namespace slideway
