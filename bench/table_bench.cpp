@@ -43,5 +43,3 @@ BENCHMARK(BM_Sha256)->Arg(1000000)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace slideway
-
-BENCHMARK_MAIN();
