@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <csignal>
 #include <exception>
 #include <memory>
@@ -82,6 +84,9 @@ int failed(int code, std::string_view message) {
 
 int main(int argc, char** argv) {
   using namespace slideway;
+  // Memory a matrix gives back serves the next: fresh pages cost more than the arithmetic on them.
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a failed write, reported as one
   try {
     return run({argv + 1, argv + argc});

@@ -157,11 +157,19 @@ Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
 
 Eigen::VectorXd effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,
                               const Eigen::VectorXd& amplitudes, std::span<const double> shape) {
-  const Stations stations = profile.stations(model.machine);
-  if (!term.effect->applies_to(profile.setup)) return Eigen::VectorXd::Zero(stations.size());
-  Eigen::MatrixXd columns(stations.size(), term.effect->amplitudes());
-  term.effect->columns(stations, shape, columns);
-  return columns * amplitudes;
+  constexpr std::size_t kBlock = 1024;  // samples: columns that stay in the cache
+  const std::span<const double> positions = profile.positions;
+  Eigen::VectorXd signal = Eigen::VectorXd::Zero(std::ssize(positions));
+  if (!term.effect->applies_to(profile.setup)) return signal;
+  Eigen::MatrixXd columns;
+  for (std::size_t first = 0; first < positions.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, positions.size() - first);
+    columns.resize(count, term.effect->amplitudes());
+    term.effect->columns({positions.subspan(first, count), profile.setup, model.machine}, shape,
+                         columns);
+    signal.segment(first, count) = columns * amplitudes;
+  }
+  return signal;
 }
 
 }  // namespace slideway

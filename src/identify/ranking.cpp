@@ -46,7 +46,6 @@ Ranking rank_one(const Signal& signal, const Observation& observation) {
   const Profile& profile = *observation.profile;
   const auto measured = view(observation.values), modelled = view(signal.low_band);
   Ranking out{signal.term->name, profile.name};
-  out.raw = pearson(profile.values, view(signal.raw));
   out.low_band = pearson(measured, modelled);
   const Lag lag = best_lag(measured, modelled, most_lags(measured.size()));
   const double step = (profile.setup.last_mm - profile.setup.first_mm) /
@@ -56,6 +55,7 @@ Ranking rank_one(const Signal& signal, const Observation& observation) {
   out.effective_observations = effective_observations(measured, modelled);
   out.p_value = correlation_p_value(out.low_band, out.effective_observations);
   RunningCoefficient raw = running_pearson(profile.values, view(signal.raw), kRunningPoints);
+  out.raw = raw.coefficient.back();
   // The low band has fewer values: its coefficient stands at the same share of the trace.
   const RunningCoefficient low = running_pearson(measured, modelled, kRunningPoints);
   out.running = {std::move(raw.samples), std::move(raw.coefficient), low.coefficient};

@@ -155,21 +155,23 @@ void add_residuals(const Model& model, const Fit& fit, FitResult& out) {
 }
 
 void add_contributions(const Model& model, const Fit& fit, FitResult& out) {
-  for (const Observation* observation : fit.linear.observations) {
+  for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
+    const Observation& observation = *fit.linear.observations[i];
     const std::size_t first = out.contributions.size();
     double total = 0.0;
     for (const ModelTerm& term : model.terms) {
-      Eigen::VectorXd signal =
-          low_band_columns(model, term, *observation, shapes_of(term, fit.estimate.shapes)) *
-          fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
+      const Eigen::Index from = term.first_amplitude, count = term.effect->amplitudes();
+      Eigen::VectorXd signal = fit.linear.columns[i].middleCols(from, count) *
+                               fit.estimate.amplitudes.segment(from, count);
       signal.array() -= signal.mean();
-      const double size = in_micro(*observation, signal.norm() / per_sample(*observation));
+      const double size = in_micro(observation, signal.norm() / per_sample(observation));
       total += size * size;
-      out.contributions.push_back({term.name, observation->profile->name, size, 0.0});
+      out.contributions.push_back({term.name, observation.profile->name, size, 0.0});
     }
-    for (std::size_t i = first; i < out.contributions.size(); ++i)
-      out.contributions[i].share =
-          total > 0.0 ? out.contributions[i].rms_um * out.contributions[i].rms_um / total : 0.0;
+    for (std::size_t c = first; c < out.contributions.size(); ++c) {
+      Contribution& contribution = out.contributions[c];
+      contribution.share = total > 0.0 ? contribution.rms_um * contribution.rms_um / total : 0.0;
+    }
   }
 }
 

@@ -83,13 +83,20 @@ void Autoregression::colour(Eigen::Ref<Eigen::MatrixXd> rows) const {
 }
 
 void Autoregression::colour_transposed(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  const std::span<const double> settled = predictor(order());
   for (Eigen::Index column = 0; column < rows.cols(); ++column) {
     double* v = rows.col(column).data();
-    for (Eigen::Index t = rows.rows() - 1; t >= 0; --t) {
-      const int m = static_cast<int>(std::min<Eigen::Index>(t, order()));
+    Eigen::Index t = rows.rows() - 1;
+    for (; t >= order(); --t) {
+      const double now = v[t];
+      double* before = v + t;
+      for (const double phi : settled) *--before += phi * now;
+    }
+    for (; t >= 0; --t) {
+      const int m = static_cast<int>(t);
       double* before = v + t;
       for (const double phi : predictor(m)) *--before += phi * v[t];
-      if (m < order()) v[t] *= std::sqrt(relative_variance(m));
+      v[t] *= std::sqrt(relative_variance(m));
     }
   }
 }

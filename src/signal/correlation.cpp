@@ -20,24 +20,30 @@ bool is_rounding(double squares, double n, double mean) {
   return squares <= n * last_digits * last_digits;
 }
 
-// Sums of squares and products about the means, updated one pair at a time (Welford). Values count
-// from the first one, so that no digits go to a huge mean and a constant has exactly no spread.
+// Sums of squares and products about the means, a block of pairs at a time (Chan, Golub and LeVeque
+// 1983). Values count from the first one, so that no digits go to a huge mean and a constant has
+// exactly no spread.
 class CoMoments {
  public:
-  void add(double x, double y) {
-    if (n_ == 0.0) {
-      first_x_ = x;
-      first_y_ = y;
-    }
-    ++n_;
-    const double dx = x - first_x_ - mean_x_;
-    const double dy = y - first_y_ - mean_y_;
-    mean_x_ += dx / n_;
-    mean_y_ += dy / n_;
-    const double share = (n_ - 1.0) / n_;
-    xx_ += share * dx * dx;
-    yy_ += share * dy * dy;
-    xy_ += share * dx * dy;
+  CoMoments(double first_x, double first_y) : first_x_(first_x), first_y_(first_y) {}
+
+  void add(std::span<const double> x, std::span<const double> y) {
+    const auto count = static_cast<double>(x.size());
+    Eigen::ArrayXd dx = Eigen::Map<const Eigen::ArrayXd>(x.data(), std::ssize(x)) - first_x_;
+    Eigen::ArrayXd dy = Eigen::Map<const Eigen::ArrayXd>(y.data(), std::ssize(y)) - first_y_;
+    const double mean_x = dx.mean();
+    const double mean_y = dy.mean();
+    dx -= mean_x;
+    dy -= mean_y;
+    const double step_x = mean_x - mean_x_;
+    const double step_y = mean_y - mean_y_;
+    const double share = count / (n_ + count);
+    xx_ += dx.square().sum() + n_ * share * step_x * step_x;
+    yy_ += dy.square().sum() + n_ * share * step_y * step_y;
+    xy_ += (dx * dy).sum() + n_ * share * step_x * step_y;
+    mean_x_ += share * step_x;
+    mean_y_ += share * step_y;
+    n_ += count;
   }
 
   double coefficient() const {
@@ -48,7 +54,7 @@ class CoMoments {
 
  private:
   double n_ = 0.0;
-  double first_x_ = 0.0, first_y_ = 0.0;
+  double first_x_, first_y_;
   double mean_x_ = 0.0, mean_y_ = 0.0;  // from the first
   double xx_ = 0.0, yy_ = 0.0, xy_ = 0.0;
 };
@@ -111,11 +117,13 @@ RunningCoefficient running_pearson(std::span<const double> x, std::span<const do
                                    std::size_t points) {
   RunningCoefficient running;
   points = std::min(points, x.size());
-  CoMoments moments;
+  if (points == 0) return running;
+  CoMoments moments(x.front(), y.front());
   std::size_t done = 0;
   for (std::size_t k = 1; k <= points; ++k) {
-    for (const std::size_t end = k * x.size() / points; done < end; ++done)
-      moments.add(x[done], y[done]);
+    const std::size_t count = k * x.size() / points - done;
+    moments.add(x.subspan(done, count), y.subspan(done, count));
+    done += count;
     running.samples.push_back(done);
     running.coefficient.push_back(moments.coefficient());
   }
