@@ -21,17 +21,23 @@ function(slideway_room name)
                         ${ROOM_PRIVATE_DEPENDS})
 endfunction()
 
-# slideway_test(room SOURCES a_test.cpp ... DEPENDS lib ...)
+# slideway_test(room SOURCES a_test.cpp ... DEPENDS lib ... [SLOW Suite.Case ...])
 # One GoogleTest program per folder of tests, its cases registered as <room>/<Suite>.<Case>. It links
-# the room of its name if there is one.
+# the room of its name if there is one. Cases under SLOW (patterns) get the label "slow".
 function(slideway_test room)
-  cmake_parse_arguments(TEST "" "" "SOURCES;DEPENDS" ${ARGN})
+  cmake_parse_arguments(TEST "" "" "SOURCES;DEPENDS;SLOW" ${ARGN})
   add_executable(${room}_test ${TEST_SOURCES})
   target_include_directories(${room}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${room}_test PRIVATE $<TARGET_NAME_IF_EXISTS:slideway::${room}>
                         slideway_options ${TEST_DEPENDS} GTest::gmock_main)
   target_compile_definitions(${room}_test PRIVATE
     SLIDEWAY_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  gtest_discover_tests(${room}_test TEST_PREFIX ${room}/ DISCOVERY_TIMEOUT 60
-                       PROPERTIES TIMEOUT 600)
+  list(JOIN TEST_SLOW ":" slow)
+  gtest_discover_tests(${room}_test TEST_PREFIX ${room}/ NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
+                       TEST_FILTER "-${slow}" PROPERTIES TIMEOUT 600)
+  if(slow)
+    gtest_discover_tests(${room}_test TEST_PREFIX ${room}/ NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
+                         TEST_FILTER "${slow}" TEST_LIST ${room}_test_SLOW_TESTS
+                         PROPERTIES TIMEOUT 600 LABELS slow)
+  endif()
 endfunction()
