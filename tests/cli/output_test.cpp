@@ -38,7 +38,7 @@ TEST_F(Output, IsSuppressedByQuietButForTheJsonFile) {
   EXPECT_EQ(done.out, "");
   EXPECT_EQ(done.err, "");
   EXPECT_TRUE(nlohmann::json::accept(contents(path("report.json"))));
-  for (const char* command : {"identify", "fit", "rank"}) {
+  for (const char* command : {"fit", "rank"}) {
     const ProgramRun quiet = run({command, kProblem, "-q"});
     EXPECT_EQ(quiet.exit_code, 0) << command;
     EXPECT_EQ(quiet.out + quiet.err, "") << command;
@@ -47,7 +47,7 @@ TEST_F(Output, IsSuppressedByQuietButForTheJsonFile) {
 
 TEST_F(Output, ReplacesAnOlderReport) {
   folder_.file("report.json", std::string(1'000'000, 'x'));
-  EXPECT_EQ(run({"identify", kProblem, "--json", "report.json"}).exit_code, 0);
+  EXPECT_EQ(run({"identify", kProblem, "--no-trace", "--json", "report.json"}).exit_code, 0);
   EXPECT_TRUE(nlohmann::json::accept(contents(path("report.json"))));
 }
 
@@ -59,31 +59,33 @@ TEST_F(Output, OnAFullDiskFailsWithAMessage) {
            {"--version"},
            {"identify", "--help"},
            {"effects"},
-           {"identify", kProblem},
-           {"identify", kProblem, "--json", "-"},
+           {"identify", kProblem, "--no-trace"},
+           {"identify", kProblem, "--no-trace", "--json", "-"},
            {"decompose", shipped("data/axis-ranking.csv"), "--out", "-"}})
     EXPECT_THAT(failure(run_program(arguments, full)),
                 testing::StartsWith("slideway: standard output: "));
-  EXPECT_THAT(failure(run({"identify", kProblem, "--json", "/dev/full"})),
+  EXPECT_THAT(failure(run({"identify", kProblem, "--no-trace", "--json", "/dev/full"})),
               testing::StartsWith("slideway: /dev/full: "));
   EXPECT_THAT(failure(run({"decompose", shipped("data/axis-ranking.csv"), "--out", "/dev/full"})),
               testing::StartsWith("slideway: /dev/full: "));
 }
 
 TEST_F(Output, IntoADirectoryThatIsNotThereFails) {
-  EXPECT_THAT(failure(run({"identify", kProblem, "--json", "gone/report.json"})),
+  EXPECT_THAT(failure(run({"identify", kProblem, "--no-trace", "--json", "gone/report.json"})),
               HasSubstr("gone/report.json: can not be written: No such file or directory"));
 }
 
 TEST_F(Output, IntoADirectoryThatTakesNoFilesFails) {
   if (!std::filesystem::exists("/proc/self")) GTEST_SKIP() << "no /proc on this system";
-  failure(run({"identify", kProblem, "--json", "/proc/report.json"}));  // not even root's
+  failure(
+      run({"identify", kProblem, "--no-trace", "--json", "/proc/report.json"}));  // not even root's
 }
 
 TEST_F(Output, OverADirectoryOrBehindAFileFails) {
   folder_.file("file", "x");
-  EXPECT_THAT(failure(run({"identify", kProblem, "--json", "."})), HasSubstr("Is a directory"));
-  EXPECT_THAT(failure(run({"identify", kProblem, "--json", "file/report.json"})),
+  EXPECT_THAT(failure(run({"identify", kProblem, "--no-trace", "--json", "."})),
+              HasSubstr("Is a directory"));
+  EXPECT_THAT(failure(run({"identify", kProblem, "--no-trace", "--json", "file/report.json"})),
               HasSubstr("Not a directory"));
   EXPECT_THAT(names_in(folder_.path()), testing::ElementsAre("file"));
 }
