@@ -124,12 +124,25 @@ void explain_scaling(const Fit& fit, FitResult& out) {
             "from Student's t for 95.45 %");
 }
 
+void explain_long_correlation(const Fit& fit, FitResult& out) {
+  for (std::size_t i = 0; i < fit.noise.size(); ++i) {
+    const Profile& profile = *fit.linear.observations[i]->profile;
+    const auto n = static_cast<double>(fit.linear.observations[i]->values.size());
+    if (fit.noise[i].correlation.long_run_ratio() >= n)
+      out.notes.push_back("profile '" + profile.name +
+                          "': the residual is correlated over the whole trace; all its values "
+                          "count as one observation, and a slow error that the model lacks would "
+                          "look the same");
+  }
+}
+
 }  // namespace
 
 void add_checks(const Model& model, const Fit& fit, FitResult& out) {
   if (const std::optional<double> gap = neglected_height(model, fit))
     out.neglected_um = *gap / kMicrometre;
   explain_scaling(fit, out);
+  explain_long_correlation(fit, out);
   check_plausibility(model, fit, out);
   for (const Observation& observation : model.observations)
     if (observation.low_band.resampled())

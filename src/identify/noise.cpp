@@ -12,7 +12,20 @@ namespace {
 constexpr int kMaxOrder = 6;
 constexpr Eigen::Index kValuesPerOrder = 10;  // residual values asked for per AR coefficient
 constexpr double kRefuted = 10.0;      // likelihood gain (as -2 ln) that overrules a declaration
-constexpr double kLargestAtanh = 3.0;  // |π| < 0.995
+constexpr double kLargestAtanh = 5.0;  // |π| < 0.9999: a hum sampled finely comes close to 1
+
+/// Largest Σ atanh π on n values, where the correlation length, Π (1 + π) / (1 - π) values, is that
+/// of eight traces: beyond it an offset and the noise are one. A random walk makes a slope 5 % more
+/// uncertain than this; with one trace for a limit it would be 45 %.
+double most_correlated(Eigen::Index n) { return 0.5 * std::log(8.0 * static_cast<double>(n)); }
+
+/// Noise parameters within their limits. An excess of Σ atanh π comes off the first.
+Eigen::VectorXd limited(Eigen::VectorXd parameters, Eigen::Index n) {
+  auto partial = parameters.head(parameters.size() - 1);
+  partial = partial.cwiseMin(kLargestAtanh).cwiseMax(-kLargestAtanh);
+  if (partial.size() > 0) partial[0] -= std::max(partial.sum() - most_correlated(n), 0.0);
+  return parameters;
+}
 
 /// Whitened cross products of a matrix of columns for any AR noise, from the lagged products of the
 /// columns: the cost of one evaluation does not depend on the number of rows.
@@ -132,10 +145,11 @@ void differentiate(const std::function<double(const Eigen::VectorXd&)>& f, const
   }
 }
 
-/// Minimises by damped Newton steps; `hessian` is left at the minimum.
-Eigen::VectorXd minimise(const std::function<double(const Eigen::VectorXd&)>& f, Eigen::VectorXd x,
-                         Eigen::MatrixXd& hessian) {
+/// Minimises by damped Newton steps.
+Eigen::VectorXd minimise(const std::function<double(const Eigen::VectorXd&)>& f,
+                         Eigen::VectorXd x) {
   Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
   double best = f(x);
   for (int iteration = 0; iteration < 20; ++iteration) {
     differentiate(f, x, gradient, hessian);
@@ -154,6 +168,41 @@ Eigen::VectorXd minimise(const std::function<double(const Eigen::VectorXd&)>& f,
     if (gain < 1e-8) break;
   }
   return x;
+}
+
+/// Directions in which noise parameters can move without crossing a limit they stand at.
+Eigen::MatrixXd free_directions(const Eigen::VectorXd& parameters, Eigen::Index n) {
+  constexpr double kAtLimit = 1e-9;
+  const Eigen::Index last = parameters.size() - 1;
+  const auto partial = parameters.head(last);
+  const bool whole_trace = last > 0 && partial.sum() > most_correlated(n) - kAtLimit;
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(last + 1, last + 1);
+  for (Eigen::Index j = whole_trace ? 1 : 0; j < last; ++j) {
+    if (std::abs(partial[j]) > kLargestAtanh - kAtLimit) continue;
+    directions(j, j) = 1.0;
+    if (whole_trace) directions(0, j) = -1.0;
+  }
+  directions(last, last) = 1.0;
+  const Eigen::Index free = (directions.diagonal().array() > 0.0).count();
+  Eigen::MatrixXd out(last + 1, free);
+  for (Eigen::Index j = 0, next = 0; j <= last; ++j)
+    if (directions(j, j) > 0.0) out.col(next++) = directions.col(j);
+  return out;
+}
+
+/// Covariance of noise parameters at the minimum of f = -2 ln likelihood; none across a limit.
+Eigen::MatrixXd covariance(const std::function<double(const Eigen::VectorXd&)>& f,
+                           const Eigen::VectorXd& parameters, Eigen::Index n) {
+  constexpr double kLeastInformation = 0.5;  // of atanh π where the data say nothing
+  const Eigen::MatrixXd directions = free_directions(parameters, n);
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+  differentiate([&](const Eigen::VectorXd& y) { return f(parameters + directions * y); },
+                Eigen::VectorXd::Zero(directions.cols()), gradient, hessian);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * hessian);
+  const Eigen::MatrixXd axes = directions * eigen.eigenvectors();
+  return axes * eigen.eigenvalues().cwiseMax(kLeastInformation).cwiseInverse().asDiagonal() *
+         axes.transpose();
 }
 
 int order_by_bic(const std::vector<double>& partial, Eigen::Index n) {
@@ -191,8 +240,7 @@ class Estimator {
       : profiles_(profiles),
         prior_(prior_information),
         parameters_(profiles.size()),
-        information_(profiles.size()),
-        hessian_(profiles.size()) {
+        information_(profiles.size()) {
     for (std::size_t i = 0; i < profiles.size(); ++i) start(i);
   }
 
@@ -236,8 +284,9 @@ class Estimator {
 
   void refine(std::size_t i) {
     const Eigen::MatrixXd rest = others(i);
-    const auto cost = [&](const Eigen::VectorXd& x) { return likelihood_[i](x, rest); };
-    parameters_[i] = minimise(cost, parameters_[i], hessian_[i]);
+    const Eigen::Index n = profiles_[i].residual.size();
+    const auto cost = [&](const Eigen::VectorXd& x) { return likelihood_[i](limited(x, n), rest); };
+    parameters_[i] = limited(minimise(cost, parameters_[i]), n);
     information_[i] = likelihood_[i].information(parameters_[i], nullptr);
   }
 
@@ -247,15 +296,13 @@ class Estimator {
         noise.correlation.long_run_ratio() < 1.0)
       noise = white(noise.standard_deviation());
     const Eigen::Index d = noise.correlation.order() + 1;
-    const Eigen::MatrixXd hessian = 0.5 * hessian_[i].bottomRightCorner(d, d);
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
-    noise.covariance = eigen.eigenvectors() *
-                       eigen.eigenvalues().cwiseMax(0.5).cwiseInverse().asDiagonal() *
-                       eigen.eigenvectors().transpose();
+    const Eigen::MatrixXd rest = others(i);
+    const auto cost = [&](const Eigen::VectorXd& x) { return likelihood_[i](x, rest); };
+    noise.covariance =
+        covariance(cost, parameters_[i], profiles_[i].residual.size()).bottomRightCorner(d, d);
     const std::optional<double>& declared = profiles_[i].declared;
     if (!declared) return noise;
-    const Eigen::MatrixXd rest = others(i);
-    const double n = static_cast<double>(profiles_[i].residual.size());
+    const auto n = static_cast<double>(profiles_[i].residual.size());
     const double gain = likelihood_[i](declared_parameters(i, *declared), rest) -
                         likelihood_[i](parameters_[i], rest);
     noise.overruled = gain > static_cast<double>(d) * std::log(n) + kRefuted &&
@@ -277,7 +324,6 @@ class Estimator {
   std::vector<RestrictedLikelihood> likelihood_;
   std::vector<Eigen::VectorXd> parameters_;
   std::vector<Eigen::MatrixXd> information_;
-  std::vector<Eigen::MatrixXd> hessian_;
 };
 
 }  // namespace

@@ -102,7 +102,7 @@ void add_noise(const Fit& fit, FitResult& out) {
     const Noise& noise = fit.noise[i];
     const Observation& observation = *fit.linear.observations[i];
     const auto n = static_cast<double>(observation.values.size());
-    const double ratio = noise.correlation.long_run_ratio();
+    const double ratio = std::min(noise.correlation.long_run_ratio(), n);  // the trace has no more
     const double deviation =
         in_micro(observation, noise.standard_deviation() * std::sqrt(n) / per_sample(observation));
     const double step =

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "identify/cases.hpp"
 #include "slideway/base/random.hpp"
@@ -154,6 +156,65 @@ TEST(Noise, OfTwoProfilesIsEachOnesOwn) {
   // errors: sqrt((1 - φ²)/n) / (1 - φ) of ln(1/(1 - φ)), and that of ln σ.
   EXPECT_NEAR(std::log(noise[1].weight_deviation() / 0.5), 0.0,
               4.0 * std::sqrt(0.36 / kValues / 0.04 + 0.5 / kValues));
+}
+
+TEST(Noise, ThatHumsLongAgainstItsSamplingIsKnown) {
+  // A decaying hum: φ1 = 2 ρ cos ω, φ2 = -ρ²; partial autocorrelations 0.9999 and -0.998.
+  constexpr Eigen::Index kValues = 20000;
+  constexpr double kDecay = 0.999, kOmega = 0.01;
+  const double phi1 = 2.0 * kDecay * std::cos(kOmega), phi2 = -kDecay * kDecay;
+  RandomStream random(7, "hum");
+  Eigen::VectorXd values(kValues);
+  double last = 0.0, before = 0.0;
+  for (Eigen::Index t = -20000; t < kValues; ++t) {  // the start has died away by then
+    const double next = phi1 * last + phi2 * before + random.normal();
+    before = std::exchange(last, next);
+    if (t >= 0) values[t] = next;
+  }
+  const Noise noise = estimated(fitted(values, cosines(kValues, 1)));
+  // The variance of 20000 values with a memory of 1/(1 - ρ) = 1000 is known to a third; the
+  // innovations to four times 1/sqrt(2n).
+  EXPECT_NEAR(std::log(noise.standard_deviation() / std::sqrt(values.squaredNorm() / kValues)), 0.0,
+              0.35);
+  EXPECT_NEAR(std::log(noise.innovation), 0.0, 4.0 / std::sqrt(2.0 * kValues));
+}
+
+TEST(Noise, OfARandomWalkEndsAtALimitThatStillMakesASlopeAsUncertain) {
+  constexpr Eigen::Index kValues = 150;
+  Eigen::MatrixXd walks = Eigen::MatrixXd::Zero(kValues, kValues);  // covariance of a random walk
+  Eigen::VectorXd slope(kValues);
+  for (Eigen::Index t = 0; t < kValues; ++t) {
+    slope[t] = static_cast<double>(t) - 0.5 * (kValues - 1);
+    for (Eigen::Index s = 0; s < kValues; ++s)
+      walks(t, s) = static_cast<double>(std::min(s, t) + 1);
+  }
+  slope.normalize();
+  int at_limit = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    RandomStream random(seed, "walk");
+    LinearProfile profile;
+    profile.nuisances = Eigen::MatrixXd::Ones(kValues, 1);
+    profile.columns.resize(kValues, 0);
+    profile.residual.resize(kValues);
+    double at = 0.0;
+    for (double& value : profile.residual) value = at += random.normal();
+    profile.residual.array() -= profile.residual.mean();
+    const Noise noise = estimated(profile);
+    const double length = noise.correlation.long_run_ratio() / (8.0 * kValues);
+    EXPECT_LE(length, 1.0 + 1e-9);  // rounding
+    if (length < 1.0 - 1e-9) continue;
+    ++at_limit;
+    // Across the limit nothing is estimated: what is left is the innovation, 1/sqrt(2n), and that
+    // to a few times its own relative error.
+    const Eigen::VectorXd spread = noise.covariance.diagonal().cwiseSqrt();
+    EXPECT_NEAR(spread[spread.size() - 1] * std::sqrt(2.0 * kValues), 1.0, 0.2);
+    if (noise.correlation.order() > 1) continue;
+    EXPECT_EQ(spread[0], 0.0);
+    const double ratio =
+        coloured(noise, slope).norm() / (noise.innovation * std::sqrt(slope.dot(walks * slope)));
+    EXPECT_NEAR(ratio, 0.95, 0.005);  // by summing both covariances in Python: 0.951
+  }
+  EXPECT_GE(at_limit, 3);  // about half of such walks look like walks
 }
 
 TEST(Uncertainty, OfAWeightedMeanCountsThatItsWeightsComeFromTheData) {

@@ -91,6 +91,14 @@ TEST_F(Real, GratingSubstrateHasTheDatabasesSlopeError) {
   EXPECT_NEAR(slope_error("real/mirror.toml"), 0.072352, 0.002 * 0.072352);  // DABAM 25, to 0.2 %
 }
 
+TEST_F(Real, GratingSubstrateIsCorrelatedOverTheWholeTrace) {
+  const Result result = identify_shipped("real/mirror.toml");
+  EXPECT_EQ(result.fit->noise.front().effective_observations, 1.0);
+  EXPECT_LE(result.fit->noise.front().correlation_mm, 200.0);
+  EXPECT_THAT(result.fit->notes, ::testing::Contains(::testing::HasSubstr("whole trace")));
+  EXPECT_FALSE(result.dominant.by_correlation);  // one candidate, and r = 0.0007
+}
+
 TEST_F(Real, PlaneMirrorHasTheDatabasesSlopeError) {
   EXPECT_NEAR(slope_error("real/mirror-plane.toml"), 0.31885, 0.002 * 0.31885);  // DABAM 12
 }
@@ -100,6 +108,10 @@ TEST_F(Real, TestBarKeepsItsRunOutUnderACubic) {
   EXPECT_EQ(result.inputs.front().samples, 17799U);
   // numpy.polyfit on the same samples: 9.4593 µm. The fit weighs its correlated noise.
   EXPECT_NEAR(residual_rms(result, "bar"), 9.459, 0.005);
+  // Run-out repeats every turn, so its standard deviation is that of the residual.
+  EXPECT_NEAR(*result.fit->noise.front().standard_deviation_um, 9.459, 0.1);
+  // 17799 values: Student's factor for many degrees of freedom.
+  EXPECT_NEAR(determined(result, "straightness.b2").coverage_factor, 2.0, 0.05);
 }
 
 }  // namespace

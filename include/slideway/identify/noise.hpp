@@ -15,7 +15,8 @@ struct Noise {
   double innovation = 1.0;  // mm or rad, of one low-band value
   bool declared = false;    // white, as the problem file has it; else estimated from the residual
   bool overruled = false;   // a declared uncertainty was there, and the residual refutes it
-  Eigen::MatrixXd covariance;  // of (atanh π_1 ... atanh π_p, ln innovation); empty if declared
+  Eigen::MatrixXd covariance;  // of (atanh π_1 ... atanh π_p, ln innovation); empty if declared,
+                               // 0 across a limit they stand at
 
   [[nodiscard]] double standard_deviation() const;
 
@@ -40,7 +41,7 @@ struct LinearProfile {
 
 /// Estimates the noise of every profile by restricted maximum likelihood, the parameters of the
 /// model left free (so that what the fit has taken out of the residual is put back), AR order by
-/// BIC.
+/// BIC, correlation length up to eight times the trace.
 ///
 /// Unless a profile asks for either sign, correlation is used only where it widens uncertainties: a
 /// residual that alternates does not make a smooth parameter better known than white noise would. A
