@@ -29,10 +29,10 @@ bool Command::setup(const std::vector<std::string>& arguments) {
     print(text.str());
     return false;
   }
+  check(given);
   for (const std::string& input : required_)
     if (given.count(input) == 0 || given[input].as<std::string>().empty())
       fail(input + " is missing; usage: " + usage());
-  check(given);
   return true;
 }
 

@@ -29,6 +29,8 @@ class RankCommand : public ProblemCommand {
 
  private:
   void check(const po::variables_map& given) override {
+    if (input().empty() && !candidates_.empty())
+      fail("FILE.csv is missing; put it first, --candidates takes every word behind it");
     options_ = low_band_.checked(0);
     if (!signal_.empty()) {
       if (candidates_.empty()) fail("--candidates COL... is missing");
@@ -50,12 +52,22 @@ class RankCommand : public ProblemCommand {
 
   [[nodiscard]] std::string text(const std::vector<ColumnRanking>& ranking) const {
     constexpr auto kText = TextTable::Column::name, kNumber = TextTable::Column::number;
-    TextTable table({"candidate", "raw", "low band", "lag", "at lag", "N_eff", "p"},
-                    {kText, kNumber, kNumber, kNumber, kNumber, kNumber, kNumber});
-    for (const ColumnRanking& row : ranking)
-      table.add({row.candidate, fixed_point(row.raw, 3), fixed_point(row.low_band, 3),
-                 std::to_string(row.lag), fixed_point(row.lag_coefficient, 3),
-                 fixed_point(row.effective_observations, 0), significant(row.p_value, 2)});
+    const bool filtered = options_.level > 0;
+    std::vector<std::string> headings{"candidate", "raw", "lag", "at lag", "N_eff", "p"};
+    std::vector<TextTable::Column> columns{kText, kNumber, kNumber, kNumber, kNumber, kNumber};
+    if (filtered) {
+      headings.insert(headings.begin() + 2, "low band");
+      columns.push_back(kNumber);
+    }
+    TextTable table(headings, columns);
+    for (const ColumnRanking& row : ranking) {
+      std::vector<std::string> cells{row.candidate, fixed_point(row.raw, 3)};
+      if (filtered) cells.push_back(fixed_point(row.low_band, 3));
+      cells.insert(cells.end(),
+                   {std::to_string(row.lag), fixed_point(row.lag_coefficient, 3),
+                    fixed_point(row.effective_observations, 0), significant(row.p_value, 2)});
+      table.add(std::move(cells));
+    }
     return "Correlation with column '" + signal_ + "' of " + input() + "\nLow band: " +
            (options_.level == 0 ? "none"
                                 : options_.wavelet + ", level " + std::to_string(options_.level) +

@@ -12,7 +12,7 @@ constexpr double kRankTolerance = 1e-9;  // of a unit column; columns carry roun
 constexpr double kAbsent = 1e-6;         // a coefficient this small in a null direction is rounding
 
 /// Which parameter of a null direction gives way: the higher the sooner. Offset and slope of a
-/// straightness are not straightness (ISO 230-1's reference line), c_1 is a squareness.
+/// straightness are fixed by convention, c_1 is a squareness.
 int gauge_order(const std::string& parameter) {
   if (parameter.ends_with(".b0")) return 5;
   if (parameter.ends_with(".b1")) return 4;
@@ -65,9 +65,7 @@ std::string advice(const std::vector<std::string>& names, const Model& model) {
   const auto of = [&](const std::string& effect) {
     return any([&](const std::string& n) { return n.starts_with(effect + "."); });
   };
-  const bool only_gauge =
-      std::all_of(names.begin(), names.end(), [](const auto& n) { return gauge_order(n) >= 4; });
-  if (only_gauge)
+  if (std::all_of(names.begin(), names.end(), fixed_by_convention))
     return "offset and slope of a straightness are fixed by its reference line (ISO 230-1), not by "
            "these data; no measurement is needed";
   if (has("squareness.dbeta_xz") && has("vertical_straightness.c1"))
@@ -98,6 +96,10 @@ std::string advice(const std::vector<std::string>& names, const Model& model) {
 }
 
 }  // namespace
+
+bool fixed_by_convention(const std::string& parameter) {
+  return parameter.ends_with(".b0") || parameter.ends_with(".b1");
+}
 
 Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale) {
   Rank rank;

@@ -5,6 +5,7 @@
 
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/fit.hpp"
+#include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/ranking.hpp"
 
 namespace slideway {
@@ -64,9 +65,13 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles, Sc
 }
 
 bool is_negative(const Result& result) {
+  const auto matters = [](const UndeterminedDirection& direction) {
+    return std::any_of(direction.combination.begin(), direction.combination.end(),
+                       [](const auto& part) { return !fixed_by_convention(part.first); });
+  };
   const bool undetermined =
-      result.fit && std::any_of(result.fit->parameters.begin(), result.fit->parameters.end(),
-                                [](const FittedParameter& p) { return !p.identifiable; });
+      result.fit && std::any_of(result.fit->identifiability.unidentifiable.begin(),
+                                result.fit->identifiability.unidentifiable.end(), matters);
   const bool inconsistent = result.squareness && result.squareness->verdict == "inconsistent";
   return undetermined || inconsistent || (result.fit && !result.fit->converged);
 }

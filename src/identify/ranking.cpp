@@ -4,9 +4,11 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "residual.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
 #include "slideway/profile/table.hpp"
 #include "slideway/signal/correlation.hpp"
 
@@ -16,6 +18,11 @@ namespace {
 constexpr std::size_t kRunningPoints = 200;
 constexpr std::size_t kMostLags = 200;  // of the low band, on either side
 constexpr double kAlike = 0.95;
+constexpr double kRounding = 1e-9;  // a signal this small beside the profile is rounding
+constexpr double kSignificant = 0.05;
+// Smaller leads come and go with the next profile.
+constexpr double kClearRest = 0.8;  // of the variance the next effect leaves unexplained
+constexpr double kClearShare = 0.2;
 
 std::span<const double> view(const Eigen::VectorXd& values) {
   return {values.data(), static_cast<std::size_t>(values.size())};
@@ -34,8 +41,13 @@ Signal signal_of(const Model& model, const Fit& fit, const ModelTerm& term,
   const auto shape = shapes_of(term, fit.estimate.shapes);
   Eigen::VectorXd amplitudes =
       fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
-  if (amplitudes.isZero(0.0) && amplitudes.size() == 1) amplitudes.setOnes();
-  Signal out{&term, effect_signal(model, term, *observation.profile, amplitudes, shape), {}};
+  const Profile& profile = *observation.profile;
+  Signal out{&term, effect_signal(model, term, profile, amplitudes, shape), {}};
+  const Eigen::Map<const Eigen::VectorXd> values(profile.values.data(), out.raw.size());
+  if (out.raw.norm() <= kRounding * values.norm()) {
+    amplitudes.setConstant(amplitudes.size() == 1 ? 1.0 : 0.0);
+    out.raw = effect_signal(model, term, profile, amplitudes, shape);
+  }
   out.low_band.resize(observation.low_band.values());
   observation.low_band.apply(view(out.raw),
                              {out.low_band.data(), static_cast<std::size_t>(out.low_band.size())});
@@ -71,6 +83,58 @@ void compare_candidates(const std::vector<Signal>& signals, const std::string& p
            pearson(view(signals[i].low_band), view(signals[j].low_band))});
 }
 
+/// Effects with the largest and the next largest mean score.
+struct Lead {
+  std::string first, second;
+  double score = 0.0, next = 0.0;
+};
+
+std::optional<Lead> lead(const std::map<std::string, double>& sums, std::size_t profiles) {
+  Lead out;
+  for (const auto& [effect, sum] : sums) {
+    const double score = sum / static_cast<double>(profiles);
+    if (score > out.score) {
+      out = {effect, out.first, score, out.score};
+    } else if (score >= out.next) {
+      out.second = effect;
+      out.next = score;
+    }
+  }
+  if (out.first.empty()) return std::nullopt;
+  return out;
+}
+
+/// Another effect whose share in the fit is a convention together with this one's.
+std::optional<std::string> untold_from(const std::string& effect, const Identifiability& what) {
+  for (const UndeterminedDirection& direction : what.unidentifiable) {
+    std::set<std::string> effects;
+    for (const auto& [parameter, factor] : direction.combination)
+      effects.insert(parameter.substr(0, parameter.rfind('.')));
+    if (effects.erase(effect) == 0 || effects.empty()) continue;
+    return *effects.begin();
+  }
+  return std::nullopt;
+}
+
+std::string doubt(const Lead& correlation, const Lead& share, const Identifiability& what) {
+  if (const std::optional<std::string> other = untold_from(share.first, what))
+    return "these data do not tell " + share.first + " from " + *other +
+           ", how the low band is shared out between them is a convention";
+  const auto rest = [](double coefficient) { return 1.0 - coefficient * coefficient; };
+  const bool correlates = rest(correlation.score) <= kClearRest * rest(correlation.next);
+  const bool outweighs = share.score - share.next >= kClearShare;
+  if (correlates && outweighs) return "";
+  const auto against = [](const Lead& lead, double scale, const std::string& unit, int digits) {
+    return joined(
+        std::vector<std::string>{"", significant(scale * lead.score, digits) + unit, "against",
+                                 lead.second, significant(scale * lead.next, digits) + unit},
+        " ");
+  };
+  return "no clear lead, by correlation " + correlation.first +
+         (correlates ? "" : against(correlation, 1.0, "", 3)) + ", by fit " + share.first +
+         (outweighs ? "" : against(share, 100.0, " %", 2));
+}
+
 }  // namespace
 
 RankingResult rank_effects(const Model& model, const Fit& fit) {
@@ -84,9 +148,11 @@ RankingResult rank_effects(const Model& model, const Fit& fit) {
     }
     compare_candidates(signals, observation.profile->name, out);
   }
-  out.notes.emplace_back(
-      "a coefficient above 0.95 selects nothing by itself: over half a face different effects "
-      "correlate with one another as strongly (cone and r^2: 0.968)");
+  if (model.terms.size() > 1)
+    out.notes.emplace_back(
+        "two different effects can both correlate above 0.95 with the same profile (over half a "
+        "face cone and r^2 correlate to 0.968 with one another): a high coefficient alone does not "
+        "select one");
   for (const CandidateCorrelation& pair : out.among_candidates)
     if (std::abs(pair.coefficient) > kAlike)
       out.notes.push_back("profile '" + pair.profile + "': " + pair.a + " and " + pair.b +
@@ -95,21 +161,28 @@ RankingResult rank_effects(const Model& model, const Fit& fit) {
 }
 
 Dominant dominant_effects(const RankingResult& ranking, const FitResult& fit) {
-  std::map<std::string, double> by_correlation, by_fit;
-  for (const Ranking& entry : ranking.entries)
-    by_correlation[entry.effect] += std::abs(entry.low_band);
-  for (const Contribution& contribution : fit.contributions)
-    by_fit[contribution.effect] += contribution.share;
-  const auto largest =
-      [](const std::map<std::string, double>& scores) -> std::optional<std::string> {
-    const auto best =
-        std::max_element(scores.begin(), scores.end(),
-                         [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (best == scores.end() || !(best->second > 0.0)) return std::nullopt;
-    return best->first;
-  };
-  Dominant out{largest(by_correlation), largest(by_fit), std::nullopt};
-  if (out.by_correlation && out.by_fit) out.agree = *out.by_correlation == *out.by_fit;
+  std::map<std::string, double> coefficients, shares;
+  std::set<std::string> profiles, fitted, significant_effects;
+  for (const Ranking& entry : ranking.entries) {
+    coefficients[entry.effect] += std::abs(entry.low_band);
+    profiles.insert(entry.profile);
+    if (entry.p_value < kSignificant) significant_effects.insert(entry.effect);
+  }
+  for (const Contribution& contribution : fit.contributions) {
+    shares[contribution.effect] += contribution.share;
+    fitted.insert(contribution.profile);
+  }
+  Dominant out;
+  const std::optional<Lead> by_correlation = lead(coefficients, profiles.size());
+  const std::optional<Lead> by_fit = lead(shares, fitted.size());
+  if (coefficients.size() < 2 || !by_correlation ||
+      !significant_effects.contains(by_correlation->first))
+    return out;
+  out.by_correlation = by_correlation->first;
+  if (!by_fit) return out;
+  out.by_fit = by_fit->first;
+  out.doubt = doubt(*by_correlation, *by_fit, fit.identifiability);
+  out.agree = out.doubt.empty() && by_correlation->first == by_fit->first;
   return out;
 }
 

@@ -55,7 +55,8 @@ std::string paragraph(std::string_view first, std::string_view words) {
   std::string text(first);
   std::size_t column = indent;
   const auto new_line = [&] {
-    text += "\n" + std::string(indent, ' ');
+    text += '\n';
+    text.append(indent, ' ');
     column = indent;
   };
   for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {

@@ -77,8 +77,10 @@ std::string with_uncertainty(double value, double uncertainty) {
   const int place = exponent_of(uncertainty, 1) - 1;
   const int exponent = exponent_of(magnitude, std::max(1, exponent_of(magnitude, 0) - place));
   const std::string power = in_format(std::pow(10.0, exponent), std::chars_format::scientific, 0);
-  return "(" + joined_pair(rounded(scaled(value, exponent), scaled(uncertainty, exponent))) + ")" +
-         power.substr(1);
+  std::string text = "(";
+  text += joined_pair(rounded(scaled(value, exponent), scaled(uncertainty, exponent)));
+  text += ")";
+  return text + power.substr(1);
 }
 
 }  // namespace slideway

@@ -28,6 +28,7 @@ namespace {
 
 using Column = TextTable::Column;
 constexpr std::size_t kLargest = 3;  // correlations listed
+constexpr double kBetter = 0.05;     // a coefficient at a lag worth telling
 
 std::string coefficient(double value) {
   return (value < 0.0 ? "-" : "+") + fixed_point(std::abs(value), 4);
@@ -41,6 +42,12 @@ std::string size_in(const std::optional<double>& um, const std::optional<double>
 
 std::string counted(std::size_t count, const std::string& singular) {
   return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+/// With a capital and a full stop; REQUIRES a first letter of ASCII.
+std::string sentence(std::string text) {
+  if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
+  return text.back() == '.' ? text : text + ".";
 }
 
 std::string title(const Result& result) {
@@ -88,19 +95,27 @@ std::string candidate_correlations(std::vector<CandidateCorrelation> pairs) {
   return text + table.text();
 }
 
+std::string better_when_shifted(const std::vector<Ranking>& entries) {
+  std::string text;
+  for (const Ranking& entry : entries)
+    if (std::abs(entry.lag_coefficient) > std::abs(entry.low_band) + kBetter)
+      text += " " + entry.effect + " on " + entry.profile + " " +
+              coefficient(entry.lag_coefficient) + " by " + number(entry.lag_mm, 3) + " mm,";
+  if (text.empty()) return text;
+  text.back() = '.';
+  return item("Correlation is larger when shifted:" + text);
+}
+
 std::string ranking(const RankingResult& ranking) {
   if (ranking.entries.empty()) return "";
-  TextTable table({"effect", "profile", "raw", "low band", "lag, mm", "N_eff", "p"},
+  TextTable table({"effect", "profile", "raw", "low band", "N_eff", "p"},
                   {Column::effect, Column::name, Column::number, Column::number, Column::number,
-                   Column::number, Column::number});
+                   Column::number});
   for (const Ranking& entry : ranking.entries)
     table.add({entry.effect, entry.profile, coefficient(entry.raw), coefficient(entry.low_band),
-               number(entry.lag_mm, 3), number(entry.effective_observations, 3),
-               probability(entry.p_value)});
+               number(entry.effective_observations, 3), probability(entry.p_value)});
   std::string text = heading("Ranking by correlation, Eqs. (6), (19), (20)") + table.text() +
-                     item(
-                         "Two different effects can both correlate above 0.95 with the same "
-                         "profile: a high coefficient alone does not select one.") +
+                     better_when_shifted(ranking.entries) +
                      candidate_correlations(ranking.among_candidates);
   for (const std::string& line : ranking.notes) text += note(line);
   return text;
@@ -108,6 +123,7 @@ std::string ranking(const RankingResult& ranking) {
 
 std::string dominant(const Dominant& dominant) {
   if (!dominant.by_correlation && !dominant.by_fit) return "";
+  if (!dominant.doubt.empty()) return heading("Dominant effect: " + dominant.doubt + ".");
   std::string text;
   if (dominant.by_correlation) text += " by correlation " + *dominant.by_correlation + ",";
   if (dominant.by_fit) text += " by fit " + *dominant.by_fit + ",";
@@ -175,8 +191,11 @@ std::string fit_table(const FitResult& fit) {
   head += ", " + counted(fit.observations, "value") + " (" + number(fit.effective_observations, 4) +
           " effective)";
   if (fit.rms_um) head += ", residual rms " + number(*fit.rms_um, 4) + " µm";
-  head += ", chi-square " + fixed_point(fit.chi_square, 0) + " at " +
-          fixed_point(fit.degrees_of_freedom, 0) + " degrees of freedom";
+  const bool declared = std::all_of(fit.noise.begin(), fit.noise.end(),
+                                    [](const auto& n) { return n.scaling == "declared"; });
+  if (declared)  // where noise is estimated, the two are equal by construction
+    head += ", chi-square " + fixed_point(fit.chi_square, 0) + " at " +
+            fixed_point(fit.degrees_of_freedom, 0) + " degrees of freedom";
   std::string text = heading(head) + parameters(fit.parameters, "parameter") +
                      parameters(fit.nuisances, "levelling of the traces") + standard_terms(fit) +
                      parameter_correlations(fit);
@@ -284,13 +303,8 @@ std::string squareness_of(const std::optional<double>& rad, const std::optional<
   return (U_rad ? with_uncertainty(*rad * 1e6, *U_rad * 1e6) : number(*rad * 1e6, 4)) + unit;
 }
 
-/// With a capital and a full stop; REQUIRES a first letter of ASCII.
-std::string sentence(std::string text) {
-  if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
-  return text.back() == '.' ? text : text + ".";
-}
-
 std::string crosscheck(const SquarenessCheck& check) {
+  if (!check.fit_rad && !check.indirect_rad) return "";
   std::string text =
       "Squareness by the fit: " + squareness_of(check.fit_rad, check.fit_U_rad) +
       "; by the run-out, Eq. (21): " + squareness_of(check.indirect_rad, check.indirect_U_rad) +
@@ -306,7 +320,8 @@ std::string crosscheck(const SquarenessCheck& check) {
   const auto amplitude = [](const std::optional<double>& um) {
     return um ? number(*um, 4) + " µm" : std::string("unknown");
   };
-  if (check.travel_mm && (check.fit_amplitude_um || check.indirect_amplitude_um))
+  const bool told = check.verdict == "inconsistent";  // in the reason
+  if (!told && check.travel_mm && (check.fit_amplitude_um || check.indirect_amplitude_um))
     text += "Over the travel of " + number(*check.travel_mm, 5) + " mm that is " +
             amplitude(check.fit_amplitude_um) + " by the fit and " +
             amplitude(check.indirect_amplitude_um) + " by the run-out.";

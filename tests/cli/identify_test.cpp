@@ -125,6 +125,13 @@ TEST_F(Identify, StrictReportsANegativeVerdictByItsExitCode) {
   EXPECT_EQ(run({"identify", kSmallFace, "--no-trace"}).exit_code, 0);
 }
 
+TEST_F(Identify, StrictIsContentWithWhatAConventionFixes) {
+  const std::string problem = shipped("problems/milling-machine-way/problem.toml");
+  const ProgramRun done = run({"identify", problem, "--no-trace", "--strict"});
+  EXPECT_EQ(done.exit_code, 0);
+  EXPECT_THAT(done.out, HasSubstr("not determined"));  // b0 and b1: the reference line
+}
+
 TEST_F(Identify, StrictIsNegativeWhereSomethingIsNotDetermined) {
   const std::string problem = shipped("problems/three-levels/problem.toml");
   EXPECT_EQ(run({"identify", problem, "--no-trace", "--strict"}).exit_code, 4);

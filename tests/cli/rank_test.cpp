@@ -47,6 +47,9 @@ TEST_F(Rank, PutsTheAxesOfAFileInTheOrderOfFig11) {
 
 TEST_F(Rank, WithoutALowBandHasOneCoefficient) {
   for (const json& row : ranking({})) EXPECT_EQ(row["raw"], row["low_band"]);
+  const ProgramRun done =
+      run({"rank", kColumns, "--signal", "measured", "--candidates", "error_z"});
+  EXPECT_THAT(done.out, testing::Not(HasSubstr("low band")));
 }
 
 TEST_F(Rank, PrintsTheColumnsOfAFileInOrder) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <fstream>
 
@@ -55,7 +56,8 @@ struct ConeCase {
   FitResult summary;
   RankingResult ranking;
 
-  ConeCase() {
+  /// @param curvature  of the straightness's amplitudes in the ranking, against those of the fit
+  explicit ConeCase(double curvature = 1.0) {
     const std::vector<double> radii = cases::spaced(0.0, 10.0, 640);
     std::vector<double> heights;
     for (const double r : radii) heights.push_back(-2e-5 * r - 1e-8 * r * r);
@@ -64,7 +66,10 @@ struct ConeCase {
         build_model(cases::problem(Lever::paper, 5,
                                    {cases::effect("straightness", 2), cases::effect("squareness")}),
                     profiles);
-    const Fit result = fit(model);
+    Fit result = fit(model);
+    const ModelTerm& straightness = model.terms.front();
+    result.estimate.amplitudes.segment(straightness.first_amplitude,
+                                       straightness.effect->amplitudes()) *= curvature;
     summary = summarise(model, result);
     ranking = rank_effects(model, result);
   }
@@ -92,6 +97,11 @@ TEST(Ranking, CanNotTellConeFromParabolaOverARadius) {
   EXPECT_NEAR(std::abs(cone.ranking.among_candidates[0].coefficient), std::sqrt(15.0) / 4.0, 2e-3);
 }
 
+TEST(Ranking, OfASignalThatIsOnlyRoundingIsZero) {
+  EXPECT_GT(std::abs(ConeCase(1e-3).of("straightness").low_band), 0.9);
+  EXPECT_EQ(ConeCase(1e-12).of("straightness").low_band, 0.0);
+}
+
 TEST(Dominant, IsTheEffectWithTheLargestShare) {
   const ConeCase cone;
   const Dominant dominant = dominant_effects(cone.ranking, cone.summary);
@@ -110,12 +120,63 @@ TEST(Dominant, IsNoneWithoutEntriesAndDisagreesWhereTheTwoDo) {
   ranking.entries[1].low_band = -0.5;  // sizes add up: 1.0
   ranking.entries[2].effect = "squareness";
   ranking.entries[2].low_band = 0.9;
+  for (Ranking& entry : ranking.entries) entry.profile = "a", entry.p_value = 0.01;
   FitResult fit;
   fit.contributions = {{"cup", "a", 1.0, 0.3}, {"squareness", "a", 2.0, 0.7}};
   const Dominant dominant = dominant_effects(ranking, fit);
   EXPECT_EQ(dominant.by_correlation, "cup");
   EXPECT_EQ(dominant.by_fit, "squareness");
   EXPECT_EQ(dominant.agree, false);
+  EXPECT_EQ(dominant.doubt, "");
+}
+
+/// Two effects on one profile: coefficients, shares, and what the data can not tell apart.
+Dominant dominant_of(std::array<double, 2> coefficients, std::array<double, 2> shares,
+                     double p_value = 0.01, const Combination& untold = {}) {
+  RankingResult ranking;
+  FitResult fit;
+  const std::array<const char*, 2> names{"cup", "squareness"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    ranking.entries.push_back({names[i], "a"});
+    ranking.entries.back().low_band = coefficients[i];
+    ranking.entries.back().p_value = p_value;
+    fit.contributions.push_back({names[i], "a", 1.0, shares[i]});
+  }
+  if (!untold.empty()) fit.identifiability.unidentifiable.push_back({untold, ""});
+  return dominant_effects(ranking, fit);
+}
+
+TEST(Dominant, AgreesOnlyWithAClearLead) {
+  EXPECT_EQ(dominant_of({0.9, 0.5}, {0.8, 0.2}).agree, true);
+  const Dominant half = dominant_of({0.908, 0.909}, {0.497, 0.503});
+  EXPECT_EQ(half.by_fit, "squareness");
+  EXPECT_EQ(half.agree, false);
+  EXPECT_EQ(half.doubt,
+            "no clear lead, by correlation squareness 0.909 against cup 0.908, by fit squareness "
+            "50 % against cup 50 %");
+  EXPECT_EQ(dominant_of({0.9, 0.5}, {0.51, 0.49}).agree, false);
+  EXPECT_EQ(dominant_of({0.9, 0.89}, {0.8, 0.2}).agree, false);
+}
+
+TEST(Dominant, IsDoubtedWhereItsShareIsAConvention) {
+  const Dominant dominant =
+      dominant_of({0.9, 0.5}, {0.8, 0.2}, 0.01, {{"cup.height", 0.7}, {"squareness.x", -0.7}});
+  EXPECT_EQ(dominant.agree, false);
+  EXPECT_THAT(dominant.doubt, ::testing::HasSubstr("do not tell cup from squareness"));
+  // An offset that the reference line takes is shared with nothing.
+  EXPECT_EQ(dominant_of({0.9, 0.5}, {0.8, 0.2}, 0.01, {{"cup.height", 1.0}}).agree, true);
+}
+
+TEST(Dominant, IsNoneWithoutASignificantCorrelationOrARival) {
+  EXPECT_FALSE(dominant_of({0.9, 0.5}, {0.8, 0.2}, 0.2).by_correlation);
+  EXPECT_FALSE(dominant_of({0.9, 0.5}, {0.8, 0.2}, 0.2).by_fit);
+  RankingResult one;
+  one.entries.push_back({"cup", "a"});
+  one.entries.back().low_band = 1.0;
+  one.entries.back().p_value = 0.0;
+  FitResult fit;
+  fit.contributions = {{"cup", "a", 1.0, 1.0}};
+  EXPECT_FALSE(dominant_effects(one, fit).by_correlation);
 }
 
 }  // namespace

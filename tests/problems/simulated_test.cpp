@@ -78,6 +78,8 @@ TEST(Paper600mm, HasNoMainErrorWhenEquation16IsTakenAtItsWord) {
   // By the true amplitudes, 0.481 and 0.485 µm rms: half each; 2 % in either moves it by 1 %.
   EXPECT_NEAR(mean_share(result, "squareness"), 0.5, 0.02);
   EXPECT_NEAR(mean_share(result, "straightness"), 0.5, 0.02);
+  EXPECT_EQ(result.dominant.agree, false);
+  EXPECT_THAT(result.dominant.doubt, HasSubstr("no clear lead"));
   // The fit tells them apart all the same.
   expect_recovered(result, "squareness.dbeta_xz", 2.8e-6);
   EXPECT_EQ(result.squareness->verdict, "consistent");
@@ -123,6 +125,10 @@ TEST(ThreeLevels, TellTheZCarriagesBendButOnlyTheSumOfItsLeanAndTheSquareness) {
   const DeterminedCombination& sum = result.fit->identifiability.determined.front();
   EXPECT_NEAR(sum.standard_uncertainty, 0.11e-6, 0.02e-6);
   EXPECT_EQ(result.squareness->verdict, "not_available");
+  EXPECT_EQ(result.dominant.agree, false);
+  EXPECT_THAT(result.dominant.doubt,
+              HasSubstr("do not tell squareness from vertical_straightness"));
+  EXPECT_EQ(ranked(result, "vertical_straightness", "z0").low_band, 0.0);  // no lever at z = 0
 }
 
 TEST(TwoOverhangs, TellThePitchFromTheStraightness) {

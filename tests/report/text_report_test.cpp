@@ -99,14 +99,47 @@ TEST(TextReport, AlignsColumnsByCharactersNotBytes) {
   EXPECT_EQ(column_of(line_with(text, "  c_1"), "not determined"), column);
 }
 
-TEST(TextReport, SaysNextToTheRankingHowLittleAHighCoefficientSelects) {
+TEST(TextReport, ListsTheStrongestCorrelationsOfTheCandidatesAndTheRankingsNotes) {
   const std::string text = on_one_line(text_report(sample_result()));
-  EXPECT_THAT(text, HasSubstr("Two different effects can both correlate above 0.95"));
+  EXPECT_THAT(text, HasSubstr("- constant profiles were passed over"));
   const auto strongest = text.find("squareness vertical_straightness feed2 +0.9700");
   const auto weaker = text.find("squareness straightness feed2 -0.2000");
   ASSERT_NE(strongest, std::string::npos);
   ASSERT_NE(weaker, std::string::npos);
   EXPECT_LT(strongest, weaker);
+}
+
+TEST(TextReport, ShowsALagOnlyWhereItsCoefficientIsClearlyLarger) {
+  Result result = sample_result();
+  EXPECT_THAT(text_report(result), Not(HasSubstr("shifted")));
+  result.ranking->entries[1].low_band = -0.6;
+  EXPECT_THAT(on_one_line(text_report(result)),
+              testing::ContainsRegex("larger when shifted: vertical_straightness on [^ ]* -0.9800 "
+                                     "by -1.5 mm[.]"));
+}
+
+TEST(TextReport, NamesNoDominantEffectWhereThereIsADoubt) {
+  Result result = sample_result();
+  EXPECT_THAT(text_report(result), HasSubstr("by fit squareness: the two agree."));
+  result.dominant.agree = false;
+  result.dominant.doubt = "no clear lead, by fit cup 51 % against step 49 %";
+  EXPECT_THAT(text_report(result),
+              HasSubstr("Dominant effect: no clear lead, by fit cup 51 % against step 49 %.\n"));
+}
+
+TEST(TextReport, GivesChiSquareOnlyWhereUncertaintiesAreDeclared) {
+  Result result = sample_result();
+  EXPECT_THAT(text_report(result), Not(HasSubstr("chi-square")));
+  result.fit->noise.front().scaling = "declared";
+  EXPECT_THAT(on_one_line(text_report(result)),
+              HasSubstr("chi-square 131 at 133 degrees of freedom"));
+}
+
+TEST(TextReport, HasNoCrossCheckWhereThereIsNothingToCheck) {
+  Result result = sample_result();
+  result.squareness = SquarenessCheck{};
+  result.squareness->reason = "the model declares no squareness";
+  EXPECT_THAT(text_report(result), Not(HasSubstr("Cross-check")));
 }
 
 TEST(TextReport, StatesTheCrossCheckWithEnAndTheAmplitudeOverTheTravel) {
@@ -123,6 +156,7 @@ TEST(TextReport, ShoutsAnInconsistentCrossCheckWithItsReason) {
   const std::string text = on_one_line(text_report(result));
   EXPECT_THAT(text, HasSubstr("E_n = 70: INCONSISTENT"));
   EXPECT_THAT(text, HasSubstr("(E_n is above 1). The fit asks for more than the run-out allows."));
+  EXPECT_THAT(text, Not(HasSubstr("Over the travel")));  // the library's reason has it
 }
 
 TEST(TextReport, SaysHowUncertaintiesWereScaledPerProfile) {

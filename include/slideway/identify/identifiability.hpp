@@ -40,6 +40,9 @@ struct NullDirections {
 NullDirections null_directions(const Model& model, const Eigen::MatrixXd& null_space,
                                const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& scale);
 
+/// Offset and slope of a straightness are not straightness: ISO 230-1's reference line takes them.
+bool fixed_by_convention(const std::string& parameter);
+
 /// The directions in words, with what to measure.
 std::vector<UndeterminedDirection> undetermined(const Model& model, const NullDirections& null);
 

@@ -12,12 +12,14 @@ namespace slideway {
 /// Correlates what each effect of a fitted model puts into each profile with the profile itself,
 /// before and after the low band: Eqs. (6), (19), (20) and Figs. 8, 9.
 ///
-/// The signal of an effect is that of the fit; where the data leave it no size (a squareness
-/// levelled away) and it has one amplitude, its shape alone.
+/// The signal of an effect is that of the fit; where that is rounding beside the profile (a
+/// squareness levelled away) and it has one amplitude, its shape alone; with more amplitudes
+/// nothing.
 RankingResult rank_effects(const Model& model, const Fit& fit);
 
-/// The effect whose |low-band coefficient|, averaged over the fitted profiles, is largest, and the
-/// one with the largest share of the fitted low band.
+/// The effect whose |low-band coefficient|, averaged over the profiles, is largest, and the one
+/// with the largest share of the fitted low band, with a doubt where the lead is small or where the
+/// data do not tell the effect from another.
 Dominant dominant_effects(const RankingResult& ranking, const FitResult& fit);
 
 /// One column held against the signal's column.

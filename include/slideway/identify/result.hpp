@@ -87,10 +87,10 @@ struct NoiseSummary {
       scaling;    // "declared" | "estimated" | "estimated: the declared uncertainty is too small"
   int order = 0;  // p of AR(p)
   std::optional<double> standard_deviation_um,
-      standard_deviation_urad;  // of one low-band value, as height
-  double correlation_mm = 0.0;  // integral correlation length
-  double effective_observations = 0.0;
-  double ljung_box_p = 1.0;  // of the whitened residual
+      standard_deviation_urad;          // of one low-band value, as height
+  double correlation_mm = 0.0;          // integral correlation length, at most that of the trace
+  double effective_observations = 0.0;  // at least 1
+  double ljung_box_p = 1.0;             // of the whitened residual
 };
 
 /// One effect's share of the low band at the fitted values.
@@ -134,9 +134,11 @@ struct FitResult {
   [[nodiscard]] const FittedParameter* find(const std::string& name) const;
 };
 
+/// None where there is one candidate only or none correlates significantly.
 struct Dominant {
   std::optional<std::string> by_correlation, by_fit;
-  std::optional<bool> agree;
+  std::optional<bool> agree;  // true only if both name one effect, without a doubt
+  std::string doubt;          // why none can be named, in words; "" if there is no doubt
 };
 
 struct SquarenessCheck {
@@ -160,7 +162,8 @@ struct Result {
   std::optional<SquarenessCheck> squareness;
 };
 
-/// True if the verdict is negative for `--strict`: inconsistent, not identifiable.
+/// True if the verdict is negative for `--strict`: inconsistent, not converged, or a parameter
+/// undetermined that no convention fixes.
 bool is_negative(const Result& result);
 
 }  // namespace slideway
