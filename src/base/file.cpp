@@ -135,6 +135,14 @@ std::string sha256(std::string_view bytes) {
   return text;
 }
 
+void make_directory(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (fs::is_directory(path)) return;
+  throw std::runtime_error(path.string() + ": can not be made a directory: " +
+                           (error ? error.message() : cause(ENOTDIR)));
+}
+
 void write_file(const fs::path& path, std::string_view contents) {
   struct stat status {};
   const bool exists = ::stat(path.c_str(), &status) == 0;

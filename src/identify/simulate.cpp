@@ -147,7 +147,7 @@ std::vector<Profile> simulate(const Problem& problem) {
 void write_simulation(const Problem& problem, const std::filesystem::path& directory) {
   keep_inputs(problem, directory);
   const std::vector<Profile> profiles = simulate(problem);
-  std::filesystem::create_directories(directory);
+  make_directory(directory);
   std::vector<std::string> files;
   for (const Profile& profile : profiles) {
     const bool slope = profile.setup.quantity == Quantity::slope;

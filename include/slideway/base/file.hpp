@@ -30,6 +30,10 @@ class FileBytes {
 /// SHA-256 of the bytes, 64 lower-case hexadecimal digits (FIPS 180-4).
 std::string sha256(std::string_view bytes);
 
+/// Makes a directory and those above it unless it is there.
+/// @throws std::runtime_error naming the path and the cause
+void make_directory(const std::filesystem::path& path);
+
 /// Writes a file whole or not at all: a temporary file beside it, then a rename. Devices and pipes
 /// are written directly.
 /// @throws std::runtime_error naming the path and the cause; the old file is then untouched.
