@@ -2,12 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cstdio>
 #include <cstdlib>
+#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
+#include "cli/run_program.hpp"
 #include "problems/shipped.hpp"
 #include "slideway/base/file.hpp"
 
@@ -15,16 +16,11 @@ namespace slideway {
 
 /// What the program writes to stdout, run at the root of the sources.
 inline std::string output_of(const std::string& arguments) {
-  const std::string command =
-      "cd '" + source_folder().string() + "' && '" + SLIDEWAY_PROGRAM + "' " + arguments;
-  std::FILE* pipe = ::popen(command.c_str(), "r");
-  if (pipe == nullptr) throw std::runtime_error("popen: " + command);
-  std::string text;
-  std::array<char, 4096> part{};
-  while (const std::size_t n = std::fread(part.data(), 1, part.size(), pipe))
-    text.append(part.data(), n);
-  if (::pclose(pipe) != 0) throw std::runtime_error("failed: " + command);
-  return text;
+  std::istringstream words(arguments);
+  const ProgramRun run =
+      run_program({std::istream_iterator<std::string>(words), {}}, {source_folder(), {}});
+  if (run.exit_code != 0) throw std::runtime_error(arguments + ": failed: " + run.err);
+  return run.out;
 }
 
 /// A document whose contents come from the program is up to date; with SLIDEWAY_UPDATE=1 in the
