@@ -101,7 +101,7 @@ void append_term(Model& model, const DeclaredEffect& declared, const TravelRange
       model.shapes(),  model.parameters()};
   const bool taken = std::any_of(model.terms.begin(), model.terms.end(),
                                  [&](const ModelTerm& other) { return other.name == term.name; });
-  if (taken) term.name += "[" + declared.options.body.value_or("") + "]";
+  if (taken) term.name.append("[").append(declared.options.body.value_or("")).append("]");
   for (const Observation& observation : model.observations)
     require_metadata(term, *observation.profile);
   model.terms.push_back(std::move(term));
