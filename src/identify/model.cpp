@@ -22,6 +22,9 @@ TravelRange travel_range(const std::vector<Profile>& profiles, const Machine& ma
       range.slide_min -= *profile.setup.base_mm / 2.0;
       range.slide_max += *profile.setup.base_mm / 2.0;
     }
+    if (profile.setup.feed_mm_per_min && profile.setup.spindle_rpm)
+      range.coarsest_feed_mm = std::max(
+          range.coarsest_feed_mm, *profile.setup.feed_mm_per_min / *profile.setup.spindle_rpm);
     range.z_min = std::min(range.z_min, profile.setup.z_mm);
     range.z_max = std::max(range.z_max, profile.setup.z_mm);
   }
@@ -109,6 +112,7 @@ void append_term(Model& model, const DeclaredEffect& declared, const TravelRange
 
 Model build_model(const Problem& problem, const std::vector<Profile>& profiles) {
   Model model{problem.machine(), travel_range(profiles, problem.machine()), {}, {}};
+  model.range.beam_span_mm = problem.beam_span_mm;
   for (const Profile& profile : profiles) {
     try {
       model.observations.push_back(observe(profile, problem.low_band));

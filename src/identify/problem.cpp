@@ -43,9 +43,10 @@ MachineDefaults read_machine(const Section& root, Problem& problem) {
   problem.bodies = Machine::paper_lathe();
   const std::optional<Section> section = root.table("machine");
   if (!section) return defaults;
-  section->accept("lever overhang_mm spindle_position_mm body");
+  section->accept("lever overhang_mm spindle_position_mm span_mm body");
   if (section->one_of("lever", "paper split") == "split") problem.lever = Lever::split;
   defaults.lever = problem.lever;
+  problem.beam_span_mm = section->positive("span_mm").value_or(0.0);
   defaults.overhang_mm = section->number("overhang_mm").value_or(0.0);
   check_overhang(*section, defaults.overhang_mm, problem.lever);
   defaults.spindle_position_mm = section->number("spindle_position_mm").value_or(0.0);
@@ -103,7 +104,8 @@ EffectOptions read_effect_options(const Section& section) {
 std::unique_ptr<Effect> made(const Section& section, const std::string& name,
                              const EffectOptions& options, const Problem& problem) {
   try {
-    return make_effect(name, options, problem.machine(), TravelRange{});
+    return make_effect(name, options, problem.machine(),
+                       TravelRange{.beam_span_mm = problem.beam_span_mm});
   } catch (const UsageError& error) {
     section.fail("", error.what());
   }

@@ -100,6 +100,23 @@ std::string limits(const TraceResult& trace) {
   return item("Sizes found with 80 % probability:") + table.text();
 }
 
+/// One line for each thing that is needed.
+std::string untestable(const TraceResult& trace) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> by_need;
+  for (const auto& [effect, needs] : trace.not_testable) {
+    const auto found = std::find_if(by_need.begin(), by_need.end(),
+                                    [&](const auto& entry) { return entry.first == needs; });
+    if (found == by_need.end())
+      by_need.push_back({needs, {effect}});
+    else
+      found->second.push_back(effect);
+  }
+  std::string text;
+  for (const auto& [needs, effects] : by_need)
+    text += note("Not testable: " + joined(effects) + "; needs " + needs + ".");
+  return text;
+}
+
 }  // namespace
 
 std::string trace_text(const TraceResult& trace) {
@@ -112,10 +129,9 @@ std::string trace_text(const TraceResult& trace) {
   for (const auto& [effect, same] : trace.not_separable)
     text += note(effect + " and " + same + " are one column here: not separable");
   for (const TriedEffect& effect : trace.refused)
-    if (!effect.refused.empty() && effect.delta_bic < 0.0)
+    if (!effect.refused.empty() && effect.delta_bic < -10.0)
       text += note(effect.effect + " was refused: " + effect.refused);
-  for (const auto& [effect, needs] : trace.not_testable)
-    text += note(effect + " is not testable: needs " + needs);
+  text += untestable(trace);
   return text + limits(trace);
 }
 

@@ -97,6 +97,12 @@ std::vector<std::vector<double>> shapes_near(const Refined& rival) {
           all.begin() + std::min(middle + kReach + 1, count)};
 }
 
+Eigen::Index linear_rows(const Linearisation& linear) {
+  Eigen::Index rows = linear.prior_rows.rows();
+  for (const Eigen::VectorXd& residual : linear.residuals) rows += residual.size();
+  return rows;
+}
+
 double predicted_separation(const Planned& planned, const Whitened& data, std::size_t like,
                             const Refined& effect, const Refined& rival) {
   std::vector<Noise> noise = data.noise();
@@ -112,7 +118,7 @@ double predicted_separation(const Planned& planned, const Whitened& data, std::s
     row += residual.size();
   }
   linear.prior_residuals.setZero();
-  const Whitened white(linear, noise);
+  const Whitened white(linear, noise, Eigen::MatrixXd(linear_rows(linear), 0));
   double most = 0.0;
   for (const std::vector<double>& shape : shapes_near(rival))
     most = std::max(

@@ -115,12 +115,14 @@ std::optional<LinearProfile> from_repeats(const Linearisation& linear, std::size
 }
 
 LinearProfile from_fine_band(const Linearisation& linear, std::size_t i,
+                             const Eigen::MatrixXd& loose,
                              const std::vector<Eigen::MatrixXd>& suspect) {
   const Observation& observation = *linear.observations[i];
   const Eigen::Index n = observation.values.size();
   Eigen::MatrixXd free = observation.nuisances;
   append(free, linear.columns[i]);
   append(free, slow_cosines(n, slow_cosine_count(n)));
+  append(free, loose);
   if (!suspect.empty()) append(free, suspect[i]);
   for (int found = 0; found < kMostLines; ++found) {
     const Eigen::MatrixXd basis = orthonormal(free);
@@ -148,12 +150,46 @@ Eigen::MatrixXd slow_cosines(Eigen::Index n, Eigen::Index count) {
   return out;
 }
 
-std::vector<Noise> background_noise(const Fit& fit, const std::vector<Eigen::MatrixXd>& suspect) {
+Eigen::MatrixXd loose_values(const Model& model, const Fit& fit) {
+  std::vector<Eigen::Index> rows;
+  Eigen::Index first = 0;
+  for (const Observation* observation : fit.linear.observations) {
+    const Setup& setup = observation->profile->setup;
+    const std::vector<double> positions =
+        observation->low_band.positions(observation->profile->positions);
+    const Stations stations(positions, setup, model.machine);
+    double reach = (setup.last_mm - setup.first_mm) / static_cast<double>(positions.size());
+    if (setup.feed_mm_per_min && setup.spindle_rpm)
+      reach = std::max(reach, *setup.feed_mm_per_min / *setup.spindle_rpm);
+    if (setup.kind == Kind::face)
+      for (Eigen::Index i = 0; i < stations.size(); ++i)
+        if (stations.radius(i) <= reach) rows.push_back(first + i);
+    for (const ModelTerm& term : model.terms)
+      for (std::size_t s = 0; s < term.effect->shapes().size(); ++s) {
+        if (!term.effect->shapes()[s].stepwise || !term.effect->applies_to(setup)) continue;
+        const double place = fit.estimate.shapes[term.first_shape + static_cast<Eigen::Index>(s)];
+        for (Eigen::Index i = 0; i < stations.size(); ++i)
+          if (std::abs(stations.radius(i) - place) <= reach) rows.push_back(first + i);
+      }
+    first += observation->values.size();
+  }
+  Eigen::MatrixXd out =
+      Eigen::MatrixXd::Zero(first + fit.linear.prior_rows.rows(), std::ssize(rows));
+  for (std::size_t j = 0; j < rows.size(); ++j) out(rows[j], static_cast<Eigen::Index>(j)) = 1.0;
+  return out;
+}
+
+std::vector<Noise> background_noise(const Fit& fit, const Eigen::MatrixXd& loose,
+                                    const std::vector<Eigen::MatrixXd>& suspect) {
   std::vector<Noise> out;
+  Eigen::Index first = 0;
   for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
     const std::optional<LinearProfile> repeats = from_repeats(fit.linear, i);
+    const Eigen::Index count = fit.linear.observations[i]->values.size();
+    const Eigen::MatrixXd own = loose.middleRows(first, count);
+    first += count;
     const std::vector<LinearProfile> one{repeats ? *repeats
-                                                 : from_fine_band(fit.linear, i, suspect)};
+                                                 : from_fine_band(fit.linear, i, own, suspect)};
     const Eigen::Index spare = one[0].residual.size() - one[0].nuisances.cols();
     const double least = kRounding * fit.linear.observations[i]->values.norm();
     const bool usable = spare >= kLeastSpare && one[0].residual.norm() > least;

@@ -10,6 +10,7 @@ namespace slideway {
 namespace {
 
 constexpr Eigen::Index kResamples = 99;
+constexpr double kMostSpread = 0.3;  // of atanh π and ln σ: a flat likelihood is no wider
 constexpr std::uint64_t kSeed = 20120712;
 
 /// Noise parameters as their estimate's covariance has them.
@@ -18,9 +19,9 @@ Noise drawn(const Noise& noise, RandomStream& random) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(noise.covariance);
   Eigen::VectorXd deviation(noise.covariance.rows());
   for (double& value : deviation) value = random.normal();
-  return noise.at(noise.parameters() +
-                  eigen.eigenvectors() *
-                      eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().cwiseProduct(deviation));
+  const Eigen::VectorXd spread =
+      eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().cwiseMin(kMostSpread);
+  return noise.at(noise.parameters() + eigen.eigenvectors() * spread.cwiseProduct(deviation));
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 namespace slideway {
 namespace {
 
-constexpr double kTold = 5.0;  // standard uncertainties of the effect in the profiles kept
+constexpr double kTold = 5.0;        // standard uncertainties of the effect in the profiles kept
+constexpr double kLeastShare = 0.1;  // of what all profiles know of it
 
 /// White columns [model, effect, residual] of one profile, free of its nuisances.
 Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, std::size_t i,
@@ -73,27 +74,28 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
     kept.bottomRightCorner(linear.prior_rows.rows(), 1) = linear.prior_residuals;
     const Solution without = least_squares(kept.leftCols(k), kept.col(k + a));
     const Solution with = least_squares(kept.leftCols(k + a), kept.col(k + a));
-    if (without.square - with.square < kTold * kTold) continue;
-    const Eigen::MatrixXd& own = rows[left_out];
-    const Eigen::VectorXd rest_before = own.col(k + a) - own.leftCols(k) * without.values;
-    const Eigen::VectorXd rest_after = own.col(k + a) - own.leftCols(k + a) * with.values;
-    before += rest_before.squaredNorm();
-    after += rest_after.squaredNorm();
-    values += static_cast<double>(own.rows());
+    const double gain = without.square - with.square;
+    if (gain < std::max(kTold * kTold, kLeastShare * candidate.projection.gain)) continue;
+    const Eigen::VectorXd carried = rows[left_out].middleCols(k, a) * with.values.tail(a);
+    if (carried.squaredNorm() < kTold * kTold) continue;
     const Observation& observation = *linear.observations[left_out];
-    if (observation.profile->setup.quantity != Quantity::height) continue;
-    Eigen::VectorXd raw_before =
+    Eigen::VectorXd rest_before =
         linear.residuals[left_out] - linear.columns[left_out] * without.values;
-    Eigen::VectorXd raw_after =
+    Eigen::VectorXd rest_after =
         linear.residuals[left_out] - linear.columns[left_out] * with.values.head(k) -
         candidate.columns.middleRows(data.first_row(left_out), data.count(left_out)) *
             with.values.tail(a);
     if (observation.nuisances.cols() > 0) {
-      raw_before -= observation.nuisances * fitted_nuisances(observation, raw_before);
-      raw_after -= observation.nuisances * fitted_nuisances(observation, raw_after);
+      rest_before -= observation.nuisances * fitted_nuisances(observation, rest_before);
+      rest_after -= observation.nuisances * fitted_nuisances(observation, rest_after);
     }
-    before_mm += raw_before.squaredNorm();
-    after_mm += raw_after.squaredNorm();
+    const double variance = std::pow(data.noise()[left_out].standard_deviation(), 2);
+    before += rest_before.squaredNorm() / variance;
+    after += rest_after.squaredNorm() / variance;
+    values += static_cast<double>(rest_before.size());
+    if (observation.profile->setup.quantity != Quantity::height) continue;
+    before_mm += rest_before.squaredNorm();
+    after_mm += rest_after.squaredNorm();
     samples += static_cast<double>(observation.low_band.samples());
   }
   if (values == 0.0) return std::nullopt;

@@ -14,7 +14,8 @@ struct HeldOut {
 
 /// Leaves out each fitted profile that shows the effect in turn, fits model and effect to the rest
 /// and carries the effect over by its clock; offset and tilt of the profile left out are fitted
-/// anew. Only folds whose rest tells the effect (5 standard uncertainties) are counted; none: no
+/// anew. Only folds are counted whose rest tells the effect (5 standard uncertainties, and a tenth
+/// of what all profiles know of it) and whose profile shows it (5 times its noise); none: no
 /// answer.
 std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened& data,
                                      const Refined& candidate);

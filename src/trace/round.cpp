@@ -12,7 +12,8 @@ namespace {
 constexpr double kEnough = -10.0;        // ΔBIC
 constexpr double kTied = 10.0;           // of BIC: no choice between these
 constexpr double kLeastSize = 5.0;       // standard uncertainties of its own size
-constexpr double kWorthRefining = 30.0;  // behind the best on the grid
+constexpr double kWorthRefining = 30.0;  // behind the best on the grid, or
+constexpr double kWorthShare = 0.6;      // of it: a line between two points of the grid loses some
 constexpr std::size_t kMostRefined = 8;
 constexpr int kNoiseRounds = 3;
 
@@ -21,10 +22,13 @@ const Finding& best_of(const std::vector<Finding>& findings) {
                            [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
 }
 
-/// Columns of a finding, profile by profile.
+/// Columns of a finding and of its neighbours on the grid (its shape lies between them), profile by
+/// profile.
 std::vector<Eigen::MatrixXd> columns_by_profile(const Whitened& data, const Finding& finding) {
   const Eigen::Index a = finding.candidate->amplitudes();
-  const auto columns = finding.candidate->columns.middleCols(finding.atom * a, a);
+  const Eigen::Index first = std::max<Eigen::Index>(finding.atom - 1, 0);
+  const Eigen::Index last = std::min(finding.atom + 1, finding.candidate->atoms() - 1);
+  const auto columns = finding.candidate->columns.middleCols(first * a, (last - first + 1) * a);
   std::vector<Eigen::MatrixXd> out;
   for (std::size_t i = 0; i < data.observations(); ++i)
     out.emplace_back(columns.middleRows(data.first_row(i), data.count(i)));
@@ -76,12 +80,14 @@ std::vector<std::size_t> Look::rivals(std::size_t chosen) const {
 
 Look look(const Model& model, const Fit& fit, const Candidates& candidates, double significance,
           std::optional<Calibration>& calibration) {
-  Look out{Whitened(fit.linear, background_noise(fit)), {}, {}, {}, {}};
+  const Eigen::MatrixXd loose = loose_values(model, fit);
+  Look out{Whitened(fit.linear, background_noise(fit, loose), loose), {}, {}, {}, {}};
   if (candidates.empty()) return out;
   std::vector<Finding> findings = search(out.data, candidates);
   for (int round = 0; round < kNoiseRounds && best_of(findings).delta_bic < 0.0; ++round) {
     const Finding suspect = best_of(findings);
-    out.data = Whitened(fit.linear, background_noise(fit, columns_by_profile(out.data, suspect)));
+    out.data = Whitened(fit.linear,
+                        background_noise(fit, loose, columns_by_profile(out.data, suspect)), loose);
     findings = search(out.data, candidates);
     if (best_of(findings).candidate == suspect.candidate) break;
   }
@@ -89,8 +95,9 @@ Look look(const Model& model, const Fit& fit, const Candidates& candidates, doub
   std::stable_sort(findings.begin(), findings.end(),
                    [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
   for (const Finding& finding : findings) {
+    const double best = findings.front().delta_bic;
     if (out.refined.size() == kMostRefined || finding.rank == 0 ||
-        finding.delta_bic > findings.front().delta_bic + kWorthRefining)
+        finding.delta_bic > std::max(best + kWorthRefining, kWorthShare * best))
       break;
     out.refined.push_back(refine(model, out.data, finding));
   }

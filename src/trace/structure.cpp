@@ -152,44 +152,18 @@ void locate(const Profile& profile, const std::vector<double>& positions,
   out.dominant_period_mm = dominant_period(profile, values);
 }
 
-}  // namespace
+/// A Gaussian process on the clock with the largest evidence.
+struct Structure {
+  Unnamed description;  // clock and evidence only
+  double log_evidence = -INFINITY;
+  std::vector<Eigen::MatrixXd> columns;  // per fitted profile
+  Eigen::VectorXd coefficients;
+};
 
-double lack_of_fit(const Whitened& data, const Linearisation& linear) {
-  Eigen::Index total = 0;
-  for (const Observation* observation : linear.observations)
-    total += slow_cosine_count(observation->values.size());
-  if (total == 0) return 1.0;
-  Eigen::Index next = 0;
-  Eigen::MatrixXd slow = stack(linear, total, [&](std::size_t i) {
-    const Eigen::Index n = linear.observations[i]->values.size(), own = slow_cosine_count(n);
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n, total);
-    rows.middleCols(next, own) = slow_cosines(n, own);
-    next += own;
-    return rows;
-  });
-  data.whiten(slow);
-  for (Eigen::Index j = 0; j < slow.cols(); ++j) slow.col(j).normalize();
-  slow -= data.basis() * (data.basis().transpose() * slow).eval();
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(1e-6);
-  qr.compute(slow);
-  const Eigen::MatrixXd basis =
-      qr.householderQ() * Eigen::MatrixXd::Identity(slow.rows(), qr.rank());
-  const double found = (basis.transpose() * data.residual()).squaredNorm();
-  const Eigen::VectorXd null =
-      (basis.transpose() * null_residuals(data, kResamples)).colwise().squaredNorm().transpose();
-  const double mean = null.mean();
-  const double variance =
-      (null.array() - mean).square().sum() / static_cast<double>(kResamples - 1);
-  if (!(variance > 0.0)) return 1.0;
-  return boost::math::gamma_q(mean * mean / variance, found * mean / variance);
-}
-
-Unnamed describe_structure(const Model& model, const Whitened& data, const Linearisation& linear) {
-  Unnamed out;
-  std::vector<Eigen::MatrixXd> best_columns;
-  Eigen::VectorXd best_coefficients;
-  double best_evidence = -INFINITY;
+Structure find_structure(const Model& model, const Whitened& data, const Linearisation& linear) {
+  Structure found;
+  Unnamed& out = found.description;
+  double& best_evidence = found.log_evidence;
   const auto consider = [&](const std::string& symbol, const std::string& unit, double range,
                             const std::vector<Eigen::MatrixXd>& columns, Eigen::Index copies) {
     const Process process = best_process(
@@ -197,8 +171,8 @@ Unnamed describe_structure(const Model& model, const Whitened& data, const Linea
     out.log_evidence.emplace_back(symbol, process.log_evidence);
     if (!(process.log_evidence > best_evidence)) return;
     best_evidence = process.log_evidence;
-    best_columns = columns;
-    best_coefficients = process.coefficients;
+    found.columns = columns;
+    found.coefficients = process.coefficients;
     out.clock = symbol;
     out.correlation_length = process.length * range;
     out.correlation_unit = unit;
@@ -231,10 +205,53 @@ Unnamed describe_structure(const Model& model, const Whitened& data, const Linea
     consider("per profile", "mm", range, columns, count);
   }
   for (auto& [symbol, evidence] : out.log_evidence) evidence -= best_evidence;
+  return found;
+}
+
+}  // namespace
+
+LackOfFit lack_of_fit(const Whitened& data, const Linearisation& linear) {
+  Eigen::Index total = 0;
+  for (const Observation* observation : linear.observations)
+    total += slow_cosine_count(observation->values.size());
+  if (total == 0) return {};
+  Eigen::Index next = 0;
+  Eigen::MatrixXd slow = stack(linear, total, [&](std::size_t i) {
+    const Eigen::Index n = linear.observations[i]->values.size(), own = slow_cosine_count(n);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n, total);
+    rows.middleCols(next, own) = slow_cosines(n, own);
+    next += own;
+    return rows;
+  });
+  data.whiten(slow);
+  for (Eigen::Index j = 0; j < slow.cols(); ++j) slow.col(j).normalize();
+  slow -= data.basis() * (data.basis().transpose() * slow).eval();
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(1e-6);
+  qr.compute(slow);
+  const Eigen::MatrixXd basis =
+      qr.householderQ() * Eigen::MatrixXd::Identity(slow.rows(), qr.rank());
+  const double found = (basis.transpose() * data.residual()).squaredNorm();
+  const Eigen::VectorXd null =
+      (basis.transpose() * null_residuals(data, kResamples)).colwise().squaredNorm().transpose();
+  const double mean = null.mean();
+  const double variance =
+      (null.array() - mean).square().sum() / static_cast<double>(kResamples - 1);
+  if (!(variance > 0.0)) return {};
+  return {boost::math::gamma_q(mean * mean / variance, found * mean / variance), found / mean};
+}
+
+double process_gain(const Model& model, const Whitened& data, const Linearisation& linear) {
+  return 2.0 * find_structure(model, data, linear).log_evidence;
+}
+
+Unnamed describe_structure(const Model& model, const Whitened& data, const Linearisation& linear) {
+  const Structure found = find_structure(model, data, linear);
+  Unnamed out = found.description;
   double largest = -1.0;
-  for (std::size_t i = 0; i < best_columns.size(); ++i) {
+  for (std::size_t i = 0; i < found.columns.size(); ++i) {
     const Observation& observation = *linear.observations[i];
-    Eigen::VectorXd values = best_columns[i] * best_coefficients;
+    Eigen::VectorXd values = found.columns[i] * found.coefficients;
     values.array() -= values.mean();
     values *= per_sample(observation);
     const double rms = values.norm() / std::sqrt(static_cast<double>(values.size()));

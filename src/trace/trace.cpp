@@ -13,7 +13,6 @@
 namespace slideway {
 namespace {
 
-constexpr double kLackOfFit = 1e-3;        // p below which what is left is structure
 constexpr std::size_t kMostValues = 2048;  // of a profile, in a search
 constexpr double kSuperfluous = -10.0;     // ΔBIC an effect must keep up to stay
 
@@ -76,11 +75,20 @@ class Loop {
     }
     exchange(state);
     last = look_at(state);
+    if (retract(state, last->data)) last = look_at(state);
     return report(state, *last);
   }
 
  private:
+  /// Its fit points into its model: moved, never copied.
   struct State {
+    State(std::vector<Added> effects, Model with_effects, Fit of_it)
+        : added(std::move(effects)), model(std::move(with_effects)), fit(std::move(of_it)) {}
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
+    State(State&&) = default;
+    State& operator=(State&&) = default;
+
     std::vector<Added> added;
     Model model;
     Fit fit;
@@ -185,9 +193,11 @@ class Loop {
   /// Earlier effects that the last one has made superfluous leave again.
   void drop_superfluous(State& state) {
     for (std::size_t i = 0; i + 1 < state.added.size();) {
-      const State without = make_state(all_but(state.added, i));
+      State without = make_state(all_but(state.added, i));
       const Added& effect = state.added[i];
-      const Whitened data(without.fit.linear, background_noise(state.fit));
+      const Eigen::MatrixXd loose = loose_values(without.model, without.fit);
+      const Whitened data(without.fit.linear,
+                          background_noise(state.fit, loose_values(state.model, state.fit)), loose);
       const Projection own =
           project(data, stacked_columns(without.model, effect.candidate->term, effect.shape,
                                         data.rows() - data.values()));
@@ -200,7 +210,7 @@ class Loop {
       }
       notes_.push_back(effect.candidate->name() + " was dropped again: " +
                        state.added.back().candidate->name() + " has made it superfluous");
-      state = without;
+      state = std::move(without);
     }
   }
 
@@ -242,6 +252,30 @@ class Loop {
     }
   }
 
+  /// Where structure is left, an effect stays only if it says more than an unnamed process alone
+  /// would: the least bad name is not given. @return true if one had to go
+  bool retract(State& state, const Whitened& data) {
+    if (!lack_of_fit(data, state.fit.linear).significant()) return false;
+    bool changed = false;
+    for (std::size_t i = state.added.size(); i-- > 0;) {
+      State without = make_state(all_but(state.added, i));
+      const Whitened with_it(state.fit.linear, data.noise(), loose_values(state.model, state.fit));
+      const Whitened without_it(without.fit.linear, data.noise(),
+                                loose_values(without.model, without.fit));
+      const double gain = (without_it.residual().squaredNorm() - with_it.residual().squaredNorm()) +
+                          process_gain(state.model, with_it, state.fit.linear) -
+                          process_gain(without.model, without_it, without.fit.linear);
+      const double cost = static_cast<double>(state.added[i].candidate->unknowns()) *
+                          std::log(static_cast<double>(data.values()));
+      if (gain - cost >= -kSuperfluous) continue;
+      notes_.push_back(state.added[i].candidate->name() +
+                       " was taken back: a smooth process without a name fits as well");
+      state = std::move(without);
+      changed = true;
+    }
+    return changed;
+  }
+
   static std::vector<Added> all_but(std::vector<Added> added, std::size_t i) {
     added.erase(added.begin() + static_cast<std::ptrdiff_t>(i));
     return added;
@@ -260,17 +294,19 @@ class Loop {
     }
     const Candidates beside = candidates_beside(state.added);
     out.refused = tried(last, std::nullopt);
-    out.lack_of_fit_p = lack_of_fit(last.data, state.fit.linear);
-    if (out.lack_of_fit_p < kLackOfFit) {
+    const LackOfFit left = lack_of_fit(last.data, state.fit.linear);
+    out.lack_of_fit_p = left.p_value;
+    if (left.significant()) {
       out.unnamed = describe_structure(state.model, last.data, state.fit.linear);
-      out.unnamed->p_value = out.lack_of_fit_p;
+      out.unnamed->p_value = left.p_value;
     }
     for (const Untestable& effect : dictionary_.not_testable)
       out.not_testable.emplace_back(effect.effect, effect.needs);
     out.not_separable = inseparable(state.model, state.fit, last.data, beside);
     if (calibration_)
-      out.detection_limits = detection_limits(state.model, last.data, beside, *calibration_,
-                                              problem_.trace.significance);
+      out.detection_limits = detection_limits(
+          base_, Whitened(first_fit_.linear, last.data.noise(), loose_values(base_, first_fit_)),
+          candidates_beside({}), *calibration_, problem_.trace.significance);
     out.advice = advice_;
     out.notes = notes_;
     out.verdict = verdict(out, after);

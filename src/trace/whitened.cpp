@@ -39,7 +39,8 @@ Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns) {
 
 }  // namespace
 
-Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise)
+Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
+                   const Eigen::MatrixXd& loose)
     : noise_(std::move(noise)) {
   for (const Observation* observation : linear.observations) {
     first_.push_back(values_);
@@ -47,7 +48,9 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise)
   }
   first_.push_back(values_);
   rows_ = values_ + linear.prior_rows.rows();
-  Eigen::MatrixXd span = model_span(linear);
+  const Eigen::MatrixXd model = model_span(linear);
+  Eigen::MatrixXd span(rows_, model.cols() + loose.cols());
+  span << model, loose;
   whiten(span);
   basis_ = orthonormal(std::move(span));
   residual_ = stack(linear, 1, [&](std::size_t i) { return linear.residuals[i]; });

@@ -17,7 +17,8 @@ class Whitened {
  public:
   /// @param linear  the model at its fit
   /// @param noise   per fitted observation
-  Whitened(const Linearisation& linear, std::vector<Noise> noise);
+  /// @param loose   further stacked columns that are left free (loose_values())
+  Whitened(const Linearisation& linear, std::vector<Noise> noise, const Eigen::MatrixXd& loose);
 
   [[nodiscard]] Eigen::Index rows() const { return rows_; }
   /// Values without the priors.

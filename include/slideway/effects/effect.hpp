@@ -62,6 +62,8 @@ struct ParameterValues {
 struct TravelRange {
   double slide_min = 0.0, slide_max = 1.0;  // mm, over all profiles
   double z_min = 0.0, z_max = 0.0;          // mm
+  double coarsest_feed_mm = 0.0;            // largest feed per turn; 0: unknown
+  double beam_span_mm = 0.0;                // between the supports of the cross-beam; 0: unknown
 };
 
 class Effect {

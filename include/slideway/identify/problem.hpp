@@ -68,6 +68,7 @@ struct Problem {
   std::string title;
   std::vector<Body> bodies;  // the paper's lathe unless the file lists its own
   Lever lever = Lever::paper;
+  double beam_span_mm = 0.0;  // between the supports of the cross-beam (gantry_sag); 0: unknown
   LowBandOptions low_band;
   std::vector<ProfileEntry> profiles;
   std::vector<DeclaredEffect> effects;

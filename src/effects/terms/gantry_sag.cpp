@@ -58,11 +58,12 @@ class GantrySag : public LinearEffect {
 
 std::unique_ptr<Effect> make_gantry_sag(const Request& request) {
   request.accept_only({"body", "span_mm"});
-  if (!request.options.span_mm || !(*request.options.span_mm > 0.0))
+  const double span = request.options.span_mm.value_or(request.range.beam_span_mm);
+  if (!(span > 0.0))
     throw UsageError(
         "effect gantry_sag: 'span_mm' is needed, the distance between the supports of the beam; "
         "accepted: a length above 0");
-  return std::make_unique<GantrySag>(request.carriage(Axis::x), *request.options.span_mm);
+  return std::make_unique<GantrySag>(request.carriage(Axis::x), span);
 }
 
 }  // namespace slideway

@@ -66,7 +66,9 @@ class SpindleRunout : public LinearEffect {
   [[nodiscard]] std::pair<double, double> search_range(int /*shape*/,
                                                        const Stations& stations) const override {
     const double rpm = *stations.setup().spindle_rpm;
-    return {rpm * (1.0 - kRpmReach), rpm * (1.0 + kRpmReach)};
+    // One groove per turn samples a face: another speed would be another alias, any slow line.
+    const double reach = stations.setup().kind == Kind::face ? 0.0 : kRpmReach;
+    return {rpm * (1.0 - reach), rpm * (1.0 + reach)};
   }
 
   [[nodiscard]] double resolution(int /*shape*/, double /*value*/,
