@@ -263,7 +263,9 @@ class Estimator {
     std::vector<double> partial =
         Autoregression::burg({profile.residual.data(), static_cast<std::size_t>(n)}, most);
     partial.resize(order_by_bic(partial, n));
-    if (!profile.either_sign && Autoregression(partial).long_run_ratio() < 1.0) partial.clear();
+    if (Autoregression(partial).long_run_ratio() < 1.0) partial.clear();
+    const auto least = static_cast<std::size_t>(std::min(profile.least_order, most));
+    partial.resize(std::max(partial.size(), least), 0.0);
     likelihood_.emplace_back(profile, static_cast<int>(partial.size()));
     Eigen::VectorXd x(partial.size() + 1);
     for (std::size_t j = 0; j < partial.size(); ++j) x[j] = std::atanh(partial[j]);
@@ -292,8 +294,7 @@ class Estimator {
 
   [[nodiscard]] Noise conclude(std::size_t i) const {
     Noise noise = make_noise(parameters_[i]);
-    if (!profiles_[i].either_sign && noise.correlation.order() > 0 &&
-        noise.correlation.long_run_ratio() < 1.0)
+    if (noise.correlation.order() > 0 && noise.correlation.long_run_ratio() < 1.0)
       noise = white(noise.standard_deviation());
     const Eigen::Index d = noise.correlation.order() + 1;
     const Eigen::MatrixXd rest = others(i);

@@ -29,10 +29,11 @@ void mirror(Profile& profile) {
   profile.setup.last_mm = profile.positions.back();
 }
 
-/// What can be made of a face: each differs from it in one thing.
+/// What can be made of a face or a reading: each differs from it in one thing.
 std::vector<Measurement> measurements_like(const Profile& face) {
   std::vector<Measurement> out;
   const Setup& setup = face.setup;
+  const std::string made = setup.kind == Kind::face ? "a cut" : "a pass";
   const auto add = [&](std::string what, auto&& change) {
     Profile profile = face;
     profile.name = "to come";
@@ -43,21 +44,21 @@ std::vector<Measurement> measurements_like(const Profile& face) {
   };
   if (setup.feed_mm_per_min)
     for (const double factor : {0.25, 4.0})
-      add("a cut at " + significant(factor * *setup.feed_mm_per_min, 3) + " mm/min",
+      add(made + " at " + significant(factor * *setup.feed_mm_per_min, 3) + " mm/min",
           [&](Profile& p) { p.setup.feed_mm_per_min = factor * *setup.feed_mm_per_min; });
   if (setup.cut_direction) {
     const bool inward = *setup.cut_direction == CutDirection::inward;
-    add(inward ? "a cut outward" : "a cut inward", [&](Profile& p) {
+    add(made + (inward ? " outward" : " inward"), [&](Profile& p) {
       p.setup.cut_direction = inward ? CutDirection::outward : CutDirection::inward;
     });
   }
   if (setup.spindle_rpm)
-    add("a cut at " + significant(1.5 * *setup.spindle_rpm, 3) + " rev/min",
+    add(made + " at " + significant(1.5 * *setup.spindle_rpm, 3) + " rev/min",
         [&](Profile& p) { p.setup.spindle_rpm = 1.5 * *setup.spindle_rpm; });
   if (setup.traverse_mm_per_s)
     add("a trace at " + significant(0.5 * *setup.traverse_mm_per_s, 3) + " mm/s",
         [&](Profile& p) { p.setup.traverse_mm_per_s = 0.5 * *setup.traverse_mm_per_s; });
-  if (setup.first_mm >= setup.center_mm)
+  if (setup.kind == Kind::face && setup.first_mm >= setup.center_mm)
     add("a trace over the whole diameter", [](Profile& p) { mirror(p); });
   return out;
 }
@@ -136,7 +137,6 @@ std::string separating_measurement(const Problem& problem, const std::vector<Pro
   double best = 0.0;
   std::string name;
   for (std::size_t i = 0; i < fitted.size(); ++i) {
-    if (fitted[i]->profile->setup.kind != Kind::face) continue;
     for (const Measurement& measurement : measurements_like(*fitted[i]->profile)) {
       const Planned planned = plan(problem, profiles, model, fit, measurement);
       const double separation = predicted_separation(planned, data, i, effect, rival);

@@ -14,6 +14,7 @@ constexpr Eigen::Index kSlowCosines = 16;  // to 8 cycles a profile
 constexpr Eigen::Index kValuesPerCosine = 10;
 constexpr Eigen::Index kLeastSpare = 6;  // values beyond what is free, else the fit's noise
 constexpr double kRounding = 1e-13;      // of the values: no noise, only rounding
+constexpr int kLeastOrder = 1;           // BIC on the fine band alone overlooks a short correlation
 constexpr int kMostLines = 6;
 constexpr double kFalseLine = 1e-3;       // chance that a spectrum of noise is given one line
 constexpr Eigen::Index kNeighbours = 15;  // on either side, for the level of a spectrum
@@ -95,7 +96,7 @@ LinearProfile linear_profile(const Eigen::MatrixXd& free, Eigen::VectorXd residu
   Eigen::MatrixXd basis = orthonormal(free);
   residual -= basis * (basis.transpose() * residual).eval();
   return {std::move(basis), Eigen::MatrixXd(residual.size(), 0), std::move(residual), declared,
-          true};
+          kLeastOrder};
 }
 
 /// Deviations of observation i from the mean of those that repeat it, of the size its noise has.

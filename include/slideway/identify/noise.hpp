@@ -36,14 +36,14 @@ struct LinearProfile {
   Eigen::MatrixXd columns;         // #values by r
   Eigen::VectorXd residual;        // at the current estimate
   std::optional<double> declared;  // standard uncertainty of one value, mm or rad
-  bool either_sign = false;        // use correlation that narrows uncertainties too
+  int least_order = 0;             // of the autoregression, whatever BIC says
 };
 
 /// Estimates the noise of every profile by restricted maximum likelihood, the parameters of the
 /// model left free (so that what the fit has taken out of the residual is put back), AR order by
 /// BIC, correlation length up to eight times the trace.
 ///
-/// Unless a profile asks for either sign, correlation is used only where it widens uncertainties: a
+/// Correlation is used only where it widens uncertainties: a
 /// residual that alternates does not make a smooth parameter better known than white noise would. A
 /// declared uncertainty stands unless the residual refutes it (likelihood gain over 10 beyond BIC,
 /// and a larger long-run variance).
