@@ -16,174 +16,14 @@
 #include <vector>
 
 #include "slideway/base/text.hpp"
-#include "slideway/effects/catalogue.hpp"
 #include "slideway/trace/trace.hpp"
-#include "support/turning.hpp"
+#include "support/hidden_effect.hpp"
 
 namespace {
 
 using namespace slideway;           // NOLINT(google-build-using-namespace): the whole program
 using namespace slideway::turning;  // NOLINT(google-build-using-namespace)
 using Json = nlohmann::ordered_json;
-
-constexpr double kRadius = 10.0;  // mm
-constexpr double kRpm = 110.0;
-constexpr double kTraverse = 0.5;    // mm/s
-constexpr double kNoise = 0.010e-3;  // mm, correlated part
-constexpr double kWhite = 0.005e-3;
-constexpr double kSquareness = 2.0e-5;
-
-/// Something the model does not know: an error of the tool, or of the instrument.
-struct Hidden {
-  std::string name;
-  Error tool = nullptr;
-  std::function<double(double, double)> datum = nullptr;
-};
-
-double between(RandomStream& random, double low, double high) {
-  return low + (high - low) * random.uniform();
-}
-
-double log_between(RandomStream& random, double low, double high) {
-  return low * std::pow(high / low, random.uniform());
-}
-
-/// The effect `name` of the catalogue as the process has it, of size A (mm).
-Hidden make_hidden(const std::string& name, double A, RandomStream& random) {
-  const double phase = between(random, -kPi, kPi);
-  if (name == "linear_drift") return {name, [=](const ToolPoint& p) { return A * p.t / 300.0; }};
-  if (name == "thermal_drift") {
-    const double tau = log_between(random, 20.0, 200.0);
-    return {name, [=](const ToolPoint& p) { return A * (1.0 - std::exp(-p.t / tau)); }};
-  }
-  if (name == "time_periodic") {
-    const double period = log_between(random, 5.0, 80.0);
-    return {name,
-            [=](const ToolPoint& p) { return A * std::cos(2.0 * kPi * p.t / period + phase); }};
-  }
-  if (name == "tool_wear") return {name, [=](const ToolPoint& p) { return A * p.s / 17.3e3; }};
-  if (name == "tool_running_in") {
-    const double distance = log_between(random, 0.5e3, 8e3);
-    return {name, [=](const ToolPoint& p) { return A * (1.0 - std::exp(-p.s / distance)); }};
-  }
-  if (name == "slide_periodic") {
-    const double length = log_between(random, 0.5, 6.0);
-    return {name,
-            [=](const ToolPoint& p) { return A * std::cos(2.0 * kPi * p.x / length + phase); }};
-  }
-  if (name == "revolution_periodic") {
-    const double cycles = log_between(random, 0.02, 0.3);
-    return {name,
-            [=](const ToolPoint& p) { return A * std::cos(2.0 * kPi * cycles * p.k + phase); }};
-  }
-  if (name == "step") {
-    const double place = between(random, 1.0, 9.0);
-    return {name, [=](const ToolPoint& p) { return p.r < place ? A : 0.0; }};
-  }
-  if (name == "centre_height") {
-    const double h = log_between(random, 0.1, 1.0);
-    return {name, [=](const ToolPoint& p) { return A * (std::hypot(p.r, h) - std::abs(p.r)) / h; }};
-  }
-  if (name == "speed_effect") {
-    const double m = between(random, 0.1, 0.5);
-    return {name, [=](const ToolPoint& p) {
-              return A * (std::pow(std::max(std::abs(p.r), 0.02) / kRadius, -m) - 1.0);
-            }};
-  }
-  if (name == "edge_roll_off") {
-    const double w = log_between(random, 0.1, 0.5);
-    return {name, [=](const ToolPoint& p) { return A * std::exp((p.r - kRadius) / w); }};
-  }
-  if (name == "cup")
-    return {name, [=](const ToolPoint& p) { return A * p.r * p.r / (kRadius * kRadius); }};
-  if (name == "traverse_datum")
-    return {name, nullptr, [=](double X, double) {
-              const double u = X / kRadius;
-              return A * (u * u * u - 0.6 * u);
-            }};
-  if (name == "centre_step")
-    return {name, nullptr, [=](double X, double) { return X < 0.0 ? -A : A; }};
-  if (name == "traverse_periodic") {
-    const double hz = log_between(random, 0.2, 3.0);
-    return {name, nullptr,
-            [=](double, double m) { return A * std::cos(2.0 * kPi * hz * m + phase); }};
-  }
-  // Shapes in no catalogue.
-  if (name == "stretched_exponential")
-    return {name, [=](const ToolPoint& p) { return A * (1.0 - std::exp(-std::sqrt(p.t / 40.0))); }};
-  if (name == "chirp")
-    return {name, [=](const ToolPoint& p) {
-              const double u = p.x / kRadius;
-              return A * std::cos(2.0 * kPi * (1.5 * u + 2.0 * u * u) + phase);
-            }};
-  if (name == "double_bump")
-    return {name, [=](const ToolPoint& p) {
-              const auto bump = [&](double at) {
-                return std::exp(-0.5 * std::pow((p.r - at) / 0.7, 2));
-              };
-              return A * (bump(3.2) - 0.7 * bump(6.9));
-            }};
-  if (name == "switched_drift")
-    return {name, [=](const ToolPoint& p) { return A * std::max(0.0, p.t - 20.0) / 55.0; }};
-  return {name};
-}
-
-struct Design {
-  double feed;
-  bool inward;
-};
-
-constexpr std::array<Design, 3> kDesigns{{{2.0, true}, {8.0, true}, {2.0, false}}};
-
-Problem declared_problem() {
-  Problem problem;
-  problem.bodies = Machine::paper_lathe();
-  problem.lever = Lever::paper;
-  problem.effects = {{"squareness", {}, {}}, {"straightness", {std::nullopt, 3, std::nullopt}, {}}};
-  for (const std::string& name : effect_names())
-    if (!is_carriage_effect(name)) problem.trace.candidates.push_back(name);
-  return problem;
-}
-
-std::vector<Profile> make_faces(const Hidden& hidden, int cuts, double nose_radius_mm,
-                                std::uint64_t seed) {
-  std::vector<Profile> out;
-  for (int c = 0; c < cuts; ++c) {
-    const Design& design = kDesigns[static_cast<std::size_t>(c)];
-    Cut cut;
-    cut.radius_mm = kRadius;
-    cut.feed_mm_per_min = design.feed;
-    cut.spindle_rpm = kRpm;
-    cut.inward = design.inward;
-    cut.nose_radius_mm = nose_radius_mm;
-    const Carriage carriage{{0.0, 0.0, 2e-7, -6e-9}, {}, kSquareness, 0.0, 0.0};
-    std::vector<Error> errors{[=](const ToolPoint& p) { return one_lever(carriage, p); }};
-    if (hidden.tool) errors.push_back(hidden.tool);
-    RandomStream random(seed, "stylus" + std::to_string(c));
-    Stylus stylus;
-    stylus.center_mm = kRadius;
-    stylus.traverse_mm_per_s = kTraverse;
-    stylus.offset_mm = 1e-3 * between(random, -1.0, 1.0);
-    stylus.tilt = 1e-5 * between(random, -1.0, 1.0);
-    stylus.datum = hidden.datum;
-    stylus.noise = {.white = kWhite, .correlated = kNoise, .correlation_mm = 0.1};
-    Profile profile;
-    profile.name = "cut" + std::to_string(c + 1);
-    for (int i = 0; i < 20000; ++i) profile.positions.push_back(0.001 * i);
-    profile.values = trace(Face(cut, sum(errors)), profile.positions, stylus, random);
-    Setup& setup = profile.setup;
-    setup.center_mm = kRadius;
-    setup.feed_mm_per_min = design.feed;
-    setup.spindle_rpm = kRpm;
-    setup.cut_direction = design.inward ? CutDirection::inward : CutDirection::outward;
-    setup.cut_radius_mm = kRadius;
-    setup.traverse_mm_per_s = kTraverse;
-    setup.first_mm = profile.positions.front();
-    setup.last_mm = profile.positions.back();
-    out.push_back(std::move(profile));
-  }
-  return out;
-}
 
 double squareness_of(const std::vector<FittedParameter>& parameters, double* uncertainty) {
   for (const FittedParameter& p : parameters)
@@ -197,10 +37,10 @@ double squareness_of(const std::vector<FittedParameter>& parameters, double* unc
 Json run_case(const std::string& name, int cuts, double size, double nose_radius_mm,
               std::uint64_t seed) {
   RandomStream random(seed, name);
-  const double amplitude = size * kNoise;
+  const double amplitude = size * kFaceNoise;
   const Hidden hidden = make_hidden(name, amplitude, random);
   const std::vector<Profile> faces = make_faces(hidden, cuts, nose_radius_mm, seed);
-  const Problem problem = declared_problem();
+  const Problem problem = face_problem();
   const TraceResult result = close_loop(problem, faces);
   Json json{{"truth", name},
             {"cuts", cuts},
@@ -221,8 +61,8 @@ Json run_case(const std::string& name, int cuts, double size, double nose_radius
     json["unnamed_um"] = result.unnamed->rms_um;
   }
   double u_before = 0.0, u_after = 0.0;
-  json["bias_before"] = squareness_of(result.before, &u_before) - kSquareness;
-  json["bias_after"] = squareness_of(result.after, &u_after) - kSquareness;
+  json["bias_before"] = squareness_of(result.before, &u_before) - kFaceSquareness;
+  json["bias_after"] = squareness_of(result.after, &u_after) - kFaceSquareness;
   json["u_before"] = u_before;
   json["u_after"] = u_after;
   json["amplitude_um"] = amplitude / kMicrometre;
@@ -257,8 +97,8 @@ int main(int argc, char** argv) {
     for (int i = 0; i < std::stoi(option["--cases"]); ++i) {
       const std::uint64_t own = seed + static_cast<std::uint64_t>(i);
       RandomStream random(own, "size");
-      const double size =
-          option["--size"] == "any" ? log_between(random, 0.5, 50.0) : std::stod(option["--size"]);
+      const double size = option["--size"] == "any" ? 0.5 * std::pow(100.0, random.uniform())
+                                                    : std::stod(option["--size"]);
       std::cout << run_case(option["--effect"], std::stoi(option["--design"]), size,
                             std::stod(option["--nose"]), own)
                 << std::endl;
