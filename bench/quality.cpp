@@ -1,6 +1,7 @@
-// quality [--cases N] [--design 1|2|3] [--effect NAME] [--seed S] [--json FILE]
+// quality [--effect NAME] [--cases N] [--design 1|2|3] [--seed S] [--size N|any] [--nose MM]
 //
-// How good the closed loop is: faces made by the process (tests/support/turning.hpp), with an
+// One JSON object a line for every case; bench/quality_table.py makes docs/quality.md of them. How
+// good the closed loop is: faces made by the process (tests/support/turning.hpp), with an
 // effect the model does not declare, given to the loop, and what it says held against the truth.
 // Off-grid shapes, amplitudes from half to fifty times the noise, one to three cuts.
 
@@ -66,6 +67,9 @@ Json run_case(const std::string& name, int cuts, double size, double nose_radius
   json["u_before"] = u_before;
   json["u_after"] = u_after;
   json["amplitude_um"] = amplitude / kMicrometre;
+  // In the unit of the effect's parameter: the process counts rates over the first cut.
+  const double per = name == "linear_drift" ? 5.0 : name == "tool_wear" ? 17.3 : 1.0;
+  json["truth_value"] = amplitude / kMicrometre / per;
   for (const TraceRound& round : result.rounds)
     if (round.accepted == name && !round.parameters.empty())
       json["found_um"] = {round.parameters[0].value.value_or(0.0),

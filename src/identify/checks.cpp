@@ -100,11 +100,11 @@ void check_plausibility(const Model& model, const Fit& fit, FitResult& out) {
   const double part = travel / kGoodTravel;
   const double good = kGoodStraightness * (part < 1.0 ? part * part : part);
   if (!face || found < kImplausible * good) return;
-  out.notes.push_back("the fitted straightness is " + significant(found / kMicrometre, 2) +
-                      " um over " + significant(travel, 4) +
-                      " mm; a slide of 1 um per 200 mm makes " +
-                      significant(good / kMicrometre, 2) +
-                      " um there: look for another cause before blaming the slide");
+  out.implausible = "the fitted straightness is " + significant(found / kMicrometre, 2) +
+                    " um over " + significant(travel, 4) +
+                    " mm; a slide of 1 um per 200 mm makes " + significant(good / kMicrometre, 2) +
+                    " um there";
+  out.notes.push_back(out.implausible + ": look for another cause before blaming the slide");
 }
 
 void explain_scaling(const Fit& fit, FitResult& out) {

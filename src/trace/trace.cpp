@@ -8,6 +8,7 @@
 #include "detection.hpp"
 #include "round.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/identify/crosscheck.hpp"
 #include "structure.hpp"
 
 namespace slideway {
@@ -73,8 +74,7 @@ class Loop {
       if (!choice || !try_adding(state, *last, *choice)) break;
       drop_superfluous(state);
     }
-    exchange(state);
-    last = look_at(state);
+    if (exchange(state)) last = look_at(state);
     if (retract(state, last->data)) last = look_at(state);
     return report(state, *last);
   }
@@ -215,8 +215,9 @@ class Loop {
   }
 
   /// Each effect once more against all others, the rest of the model as it now is: a better one
-  /// takes its place, and those that are as good are its rivals.
-  void exchange(State& state) {
+  /// takes its place, and those that are as good are its rivals. @return true if one did
+  bool exchange(State& state) {
+    bool changed = false;
     for (std::size_t i = 0; i < state.added.size(); ++i) {
       const State without = make_state(all_but(state.added, i));
       const Look seen = look_at(without);
@@ -239,6 +240,7 @@ class Loop {
           state.added[i].round.p_value = seen.p_values[own];
           state.added[i].round.candidates = tried(seen, own);
           state = make_state(state.added);
+          changed = true;
         }
       }
       TraceRound& round = state.added[i].round;
@@ -250,6 +252,7 @@ class Loop {
                                                  seen.refined[rival]));
       }
     }
+    return changed;
   }
 
   /// Where structure is left, an effect stays only if it says more than an unnamed process alone
@@ -309,12 +312,33 @@ class Loop {
           candidates_beside({}), *calibration_, problem_.trace.significance);
     out.advice = advice_;
     out.notes = notes_;
-    out.verdict = verdict(out, after);
+    const std::string other_cause = form_of_another_cause(out, state, after);
+    if (!other_cause.empty()) out.advice.insert(out.advice.begin(), other_cause);
+    out.verdict = verdict(out, !other_cause.empty());
     return out;
   }
 
-  static std::string verdict(const TraceResult& out, const FitResult& /*fit*/) {
+  /// Form that the fit puts into the carriages although they can not have made it: the run-out or
+  /// a good slide speak against it, and other effects make the same columns.
+  [[nodiscard]] std::string form_of_another_cause(const TraceResult& out, const State& state,
+                                                  const FitResult& fit) const {
+    if (out.not_separable.empty()) return "";
+    const SquarenessCheck check = check_squareness(state.model, problem_.runout, fit);
+    const bool too_large =
+        check.verdict == "inconsistent" && std::abs(*check.fit_rad) > std::abs(*check.indirect_rad);
+    if (!too_large && fit.implausible.empty()) return "";
+    std::vector<std::string> others;
+    for (const auto& [effect, same] : out.not_separable) others.push_back(effect);
+    return "the carriages can not have made this form: " +
+           (too_large ? check.reason : fit.implausible) + "; the same columns are made by " +
+           joined(others) +
+           ", and nothing here tells them apart: read the straightness along the slide "
+           "(autocollimator), or cut and trace otherwise";
+  }
+
+  static std::string verdict(const TraceResult& out, bool other_cause) {
     if (out.unnamed) return "unnamed";
+    if (other_cause) return "not_identifiable";
     const bool ambiguous = std::any_of(out.rounds.begin(), out.rounds.end(),
                                        [](const auto& r) { return !r.ambiguous_with.empty(); });
     if (ambiguous) return "ambiguous";

@@ -108,10 +108,6 @@ struct ResidualSummary {
   std::string unit;  // "um" or "urad"
 };
 
-struct GuidewayBound {  // plausibility of a fitted straightness coefficient
-  std::string text;
-};
-
 struct FitResult {
   bool converged = false;
   std::string message;           // the solver's, where it did not converge
@@ -129,6 +125,7 @@ struct FitResult {
   double degrees_of_freedom = 0.0;
   std::optional<double>
       neglected_um;                // largest |exact - first order| of Eq. (5) at the fitted values
+  std::string implausible;         // why no slide makes the fitted straightness; "": one might
   std::vector<std::string> notes;  // how uncertainties were scaled, plausibility, what was done
 
   [[nodiscard]] const FittedParameter* find(const std::string& name) const;

@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""quality_table.py CASES.jsonl: docs/quality.md from what bench/quality printed."""
+
+import collections
+import json
+import statistics
+import sys
+
+CATALOGUE = """linear_drift thermal_drift time_periodic tool_wear tool_running_in slide_periodic
+revolution_periodic step centre_height speed_effect edge_roll_off traverse_datum centre_step
+traverse_periodic""".split()
+OPEN = "stretched_exponential chirp double_bump switched_drift".split()
+CLOCK = {"stretched_exponential": "t", "switched_drift": "t", "chirp": "r", "double_bump": "r"}
+ON_CLOCK = {"t": {"linear_drift", "thermal_drift", "time_periodic", "revolution_periodic"},
+            "r": {"slide_periodic", "step", "centre_height", "speed_effect", "edge_roll_off", "cup"}}
+SIGNATURE = {"feed_marks"}  # every turned face has them: finding them is not a false alarm
+TWIN = {"time_periodic": "revolution_periodic", "revolution_periodic": "time_periodic"}
+
+
+def share(part, whole):
+    return f"{part}/{whole}" + (f" ({100 * part / whole:.0f} %)" if whole else "")
+
+
+def named(case):
+    return [name for name in case["accepted"] if name not in SIGNATURE]
+
+
+def row(name, cases):
+    above = [c for c in cases if c.get("limit") and c["truth_value"] >= 2 * c["limit"]]
+    in_set = [c for c in above if name in c["accepted"] + c["rivals"]]
+    alone = [c for c in above if name in c["accepted"] and not c["rivals"]]
+    wrong = [c for c in cases if not c["rivals"] and set(named(c)) - {name, TWIN.get(name)}]
+    near = [c for c in cases if c.get("limit") and 0.8 <= c["truth_value"] / c["limit"] < 1.25]
+    found_near = [c for c in near if name in c["accepted"] + c["rivals"]]
+    z = [(c["found_um"][0] - c["truth_value"]) / c["found_um"][1] for c in above
+         if "found_um" in c and c["found_um"][1] > 0]
+    bent = [c for c in in_set if abs(c["bias_before"]) > 5 * c["u_after"]]
+    fall = [1 - abs(c["bias_after"]) / abs(c["bias_before"]) for c in bent]
+    return [f"`{name}`", str(len(cases)), share(len(in_set), len(above)),
+            share(len(alone), len(above)), share(len(wrong), len(cases)),
+            share(len(found_near), len(near)),
+            f"{sum(abs(x) <= 2 for x in z)}/{len(z)}" if z else "",
+            f"{100 * statistics.median(fall):.0f} %" if fall else ""]
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(r) + " |" for r in rows])
+
+
+def main():
+    cases = [json.loads(line) for line in open(sys.argv[1])]
+    groups = collections.defaultdict(list)
+    for case in cases:
+        groups[case["cuts"], case["truth"]].append(case)
+    print(__doc__ and open("bench/quality_head.md").read())
+    for cuts in sorted({c["cuts"] for c in cases}, reverse=True):
+        print(f"## {cuts} cut{'s' if cuts > 1 else ''}\n")
+        clean = groups[cuts, "clean"]
+        false = [c for c in clean if named(c)]
+        unnamed = [c for c in clean if c["verdict"] == "unnamed"]
+        print(f"Nothing hidden: {share(len(false), len(clean))} named an effect that is not there "
+              f"(feed marks apart), {share(len(unnamed), len(clean))} called noise structure.\n")
+        head = ["hidden effect", "cases", "in the set, >= 2 limits", "named alone, >= 2 limits",
+                "wrong name alone", "found at 0.8 to 1.25 limits", "within 2 u", "bias removed"]
+        print(table(head, [row(n, groups[cuts, n]) for n in CATALOGUE if groups[cuts, n]]) + "\n")
+        rows = []
+        for name in OPEN:
+            own = [c for c in groups[cuts, name] if c["size"] >= 5]
+            if not own:
+                continue
+            no_name = [c for c in own if c["verdict"] == "unnamed"]
+            right = [c for c in own if c["verdict"] != "unnamed" and named(c)
+                     and set(named(c)) <= ON_CLOCK[CLOCK[name]]]
+            rows.append([f"`{name}`", str(len(own)), share(len(no_name), len(own)),
+                         share(len(right), len(own))])
+        if rows:
+            print("Shapes in no catalogue, from 5 times the noise up:\n")
+            print(table(["shape", "cases", "unnamed", "named on the right clock"], rows) + "\n")
+
+
+if __name__ == "__main__":
+    main()
