@@ -200,14 +200,15 @@ TEST(SearchRange, StaysWithinWhatTheProfileShows) {
   const Stations stations(profile.positions, profile.setup, lathe());
   const auto near = [](std::pair<double, double> range, double low, double high) {
     // Sums of a thousand steps.
-    EXPECT_NEAR(range.first, low, 1e-9 * low);
-    EXPECT_NEAR(range.second, high, 1e-9 * high);
+    EXPECT_NEAR(range.first, low, 2e-9 * low);
+    EXPECT_NEAR(range.second, high, 2e-9 * high);
   };
   near(make("time_periodic")->search_range(0, stations), 1.2, 600.0);
   near(make("thermal_drift")->search_range(0, stations), 1.2, 3000.0);
   near(make("slide_periodic")->search_range(0, stations), 0.1, 10.0);
   near(make("revolution_periodic")->search_range(0, stations), 1.0 / 1100.0, 0.5);
-  near(make("spindle_runout")->search_range(0, stations), 110 * 0.98, 110 * 1.02);
+  // One groove per turn samples a face: another speed would be another alias.
+  near(make("spindle_runout")->search_range(0, stations), 110.0, 110.0);
   near(make("step")->search_range(0, stations), 0.01, 9.99);
 }
 

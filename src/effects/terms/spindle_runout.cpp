@@ -10,7 +10,8 @@ namespace {
 
 constexpr int kHarmonics = 2;
 constexpr int kAmplitudes = 4 * kHarmonics;  // cos, sin and their growth
-constexpr double kRpmReach = 0.02;           // share of the nominal speed that is searched
+constexpr double kRpmNoReach = 1e-9;
+constexpr double kRpmReach = 0.02;  // share of the nominal speed that is searched
 
 std::vector<Parameter> runout_parameters() {
   std::vector<Parameter> list;
@@ -67,7 +68,7 @@ class SpindleRunout : public LinearEffect {
                                                        const Stations& stations) const override {
     const double rpm = *stations.setup().spindle_rpm;
     // One groove per turn samples a face: another speed would be another alias, any slow line.
-    const double reach = stations.setup().kind == Kind::face ? 0.0 : kRpmReach;
+    const double reach = stations.setup().kind == Kind::face ? kRpmNoReach : kRpmReach;
     return {rpm * (1.0 - reach), rpm * (1.0 + reach)};
   }
 

@@ -1,0 +1,76 @@
+// An effect the carriage's own polynomial imitates: one column on a face, a conflict between a face
+// and a reading of the slide.
+
+#include "trace/faces.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace faces;  // NOLINT(google-build-using-namespace)
+using ::testing::HasSubstr;
+using ::testing::Pair;
+using turning::ToolPoint;
+
+turning::Hidden cup() {
+  return {"cup", [](const ToolPoint& p) { return 0.5e-3 * p.r * p.r / 100.0; }};
+}
+
+TEST(Conflict, CupIsOneColumnWithTheStraightnessOfAFace) {
+  const TraceResult result = close_loop(problem_of(), turning::make_faces(cup(), 1, kBlunt, 2));
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ::testing::IsEmpty());
+  EXPECT_THAT(result.not_separable, ::testing::Contains(Pair("cup", HasSubstr("straightness.b2"))));
+}
+
+/// The straightness of make_faces() as an autocollimator reads it on the slide, to 0.02 µrad.
+Profile autocollimator() {
+  Profile profile;
+  profile.name = "autocollimator";
+  profile.setup.kind = Kind::slide;
+  profile.setup.quantity = Quantity::slope;
+  profile.setup.base_mm = 1.0;
+  for (int i = 0; i <= 90; ++i) profile.positions.push_back(0.5 + 0.1 * i);
+  profile.setup.first_mm = profile.positions.front();
+  profile.setup.last_mm = profile.positions.back();
+  profile.free_tilt = false;
+  const turning::Carriage carriage{{0.0, 0.0, 2e-7, -6e-9}, {}, 0.0, 0.0, 0.0};
+  turning::Pass pass;
+  pass.zero = 3e-6;
+  pass.noise.white = 2e-8;
+  RandomStream random(2, "autocollimator");
+  profile.values = turning::slide_slopes(
+      [&](const ToolPoint& p) { return turning::polynomial(carriage.b, p.x); }, profile.positions,
+      1.0, pass, random);
+  return profile;
+}
+
+TEST(Conflict, CupStandsOutAgainstAReadingOfTheSlide) {
+  std::vector<Profile> profiles = turning::make_faces(cup(), 1, kBlunt, 2);
+  profiles.push_back(autocollimator());
+  Problem problem = problem_of();
+  problem.low_band.level = 0;
+  for (Profile& profile : profiles) {
+    if (profile.setup.kind != Kind::face) continue;
+    std::vector<double> positions, values;  // level 0 for both: every 32 samples their mean
+    for (std::size_t i = 0; i + 32 <= profile.positions.size(); i += 32) {
+      double position = 0.0, value = 0.0;
+      for (std::size_t j = i; j < i + 32; ++j)
+        position += profile.positions[j] / 32.0, value += profile.values[j] / 32.0;
+      positions.push_back(position);
+      values.push_back(value);
+    }
+    profile.positions = positions;
+    profile.values = values;
+    profile.setup.first_mm = positions.front();
+    profile.setup.last_mm = positions.back();
+  }
+  const TraceResult result = close_loop(problem, profiles);
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ::testing::ElementsAre("cup"));
+  const TraceRound* round = round_of(result, "cup");
+  ASSERT_NE(round, nullptr);
+  expect_within_4u(round->parameters, "cup.sag_um", 0.5);
+}
+
+}  // namespace
+}  // namespace slideway

@@ -1,0 +1,116 @@
+// What is held out, what can not be tested, what may be searched.
+
+#include <cmath>
+
+#include "trace/faces.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace faces;  // NOLINT(google-build-using-namespace)
+using ::testing::HasSubstr;
+using ::testing::Pair;
+using turning::ToolPoint;
+
+const turning::Hidden& drift() {
+  static const turning::Hidden kDrift{"linear_drift",
+                                      [](const ToolPoint& p) { return 0.6e-3 * p.t / 300.0; }};
+  return kDrift;
+}
+
+Problem small_problem() { return problem_of({"linear_drift", "slide_periodic", "centre_step"}); }
+
+std::vector<double> values_of(const std::vector<FittedParameter>& parameters) {
+  std::vector<double> out;
+  for (const FittedParameter& p : parameters) out.push_back(p.value.value_or(NAN));
+  return out;
+}
+
+TEST(HeldOut, ProfileIsPredictedAndNeverFitted) {
+  std::vector<Profile> cuts = turning::make_faces(drift(), 3, kBlunt, 5);
+  cuts[2].role = Role::holdout;
+  const TraceResult result = close_loop(small_problem(), cuts);
+  SCOPED_TRACE(story(result));
+  const TraceRound* round = round_of(result, "linear_drift");
+  ASSERT_NE(round, nullptr);
+  ASSERT_TRUE(round->before_holdout_rms_um && round->after_holdout_rms_um);
+  EXPECT_LT(*round->after_holdout_rms_um, *round->before_holdout_rms_um);
+
+  RandomStream random(1, "other noise");
+  for (double& value : cuts[2].values) value += 0.005e-3 * random.normal();
+  const TraceResult other = close_loop(small_problem(), cuts);
+  EXPECT_EQ(values_of(other.before), values_of(result.before));
+  EXPECT_EQ(values_of(other.after), values_of(result.after));
+  const TraceRound* again = round_of(other, "linear_drift");
+  ASSERT_NE(again, nullptr);
+  EXPECT_EQ(again->delta_bic, round->delta_bic);
+  EXPECT_EQ(again->before_rms_um, round->before_rms_um);
+  EXPECT_EQ(again->after_rms_um, round->after_rms_um);
+  EXPECT_NE(*again->after_holdout_rms_um, *round->after_holdout_rms_um);
+}
+
+TEST(HeldOut, EachProfileInTurnWhereNoneIs) {
+  const TraceResult result =
+      close_loop(small_problem(), turning::make_faces(drift(), 3, kBlunt, 5));
+  SCOPED_TRACE(story(result));
+  const TraceRound* round = round_of(result, "linear_drift");
+  ASSERT_NE(round, nullptr);
+  ASSERT_TRUE(round->before_holdout_rms_um && round->after_holdout_rms_um);
+  EXPECT_LT(*round->after_holdout_rms_um, *round->before_holdout_rms_um);
+}
+
+TEST(Testable, NeedsTheMetadataOfTheClock) {
+  std::vector<Profile> cut = turning::make_faces({"clean"}, 1, kBlunt, 1);
+  cut[0].setup.feed_mm_per_min.reset();
+  cut[0].setup.traverse_mm_per_s.reset();
+  const TraceResult result = close_loop(
+      problem_of({"thermal_drift", "tool_wear", "traverse_periodic", "centre_step"}), cut);
+  EXPECT_THAT(result.not_testable, ::testing::UnorderedElementsAre(
+                                       Pair("thermal_drift", HasSubstr("feed_mm_per_min")),
+                                       Pair("tool_wear", HasSubstr("feed_mm_per_min")),
+                                       Pair("traverse_periodic", HasSubstr("traverse_mm_per_s"))));
+}
+
+TEST(Testable, NeedsAProfileThatShowsIt) {
+  std::vector<Profile> cut = turning::make_faces({"clean"}, 1, kBlunt, 1);
+  cut.push_back(cut[0]);
+  cut[0].role = Role::holdout;
+  cut[1].name = "fitted";
+  cut[1].setup.kind = Kind::slide;
+  Problem problem = problem_of({"cup"});
+  problem.effects = {{"straightness", {std::nullopt, 3, std::nullopt}, {}}};
+  const TraceResult result = close_loop(problem, cut);
+  EXPECT_THAT(result.not_testable, ::testing::ElementsAre(Pair("cup", HasSubstr("reading"))));
+}
+
+TEST(Search, LooksOnlyAtItsCandidates) {
+  const TraceResult result = close_loop(problem_of({"slide_periodic", "centre_step"}),
+                                        turning::make_faces(drift(), 2, kBlunt, 5));
+  SCOPED_TRACE(story(result));
+  EXPECT_EQ(round_of(result, "linear_drift"), nullptr);
+  for (const DetectionLimit& limit : result.detection_limits)
+    EXPECT_THAT(limit.effect, ::testing::AnyOf("slide_periodic", "centre_step"));
+  for (const TriedEffect& tried : result.refused)
+    EXPECT_THAT(tried.effect, ::testing::AnyOf("slide_periodic", "centre_step"));
+}
+
+TEST(Search, AddsNothingWhereNothingMayBeAdded) {
+  Problem problem = small_problem();
+  problem.trace.max_effects = 0;
+  const TraceResult result = close_loop(problem, turning::make_faces(drift(), 2, kBlunt, 5));
+  EXPECT_THAT(result.rounds, ::testing::IsEmpty());
+  EXPECT_EQ(values_of(result.after), values_of(result.before));
+}
+
+TEST(Search, RefusesByItsSignificance) {
+  Problem problem = small_problem();
+  const std::vector<Profile> cuts = turning::make_faces({"clean"}, 2, kBlunt, 5);
+  const TraceResult result = close_loop(problem, cuts);
+  SCOPED_TRACE(story(result));
+  EXPECT_EQ(result.verdict, "nothing_missing");
+  EXPECT_EQ(result.detection_limits.size(), 3U);
+  for (const DetectionLimit& limit : result.detection_limits) EXPECT_GT(limit.value, 0.0);
+}
+
+}  // namespace
+}  // namespace slideway

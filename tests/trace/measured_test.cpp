@@ -1,0 +1,52 @@
+// The closed loop on data that were really measured.
+
+#include "problems/shipped.hpp"
+#include "trace/faces.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace faces;  // NOLINT(google-build-using-namespace)
+
+TraceResult close_on(const std::string& name) {
+  const Problem problem = shipped_problem(name);
+  return close_loop(problem, read_profiles(problem));
+}
+
+class Measured : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(measured_data()))
+      GTEST_SKIP() << "no " << measured_data().string() << "; set SLIDEWAY_DATA";
+  }
+};
+
+TEST_F(Measured, TestBarRunsOut) {
+  const TraceResult result = close_on("real/test-bar.toml");
+  SCOPED_TRACE(story(result));
+  ASSERT_FALSE(result.rounds.empty());
+  const TraceRound& first = result.rounds.front();
+  EXPECT_EQ(first.accepted, "spindle_runout");
+  EXPECT_NEAR(first.before_rms_um, 9.46, 0.01);  // numpy.polyfit: 9.459
+  // Least squares apart from this: 7.16 µm with a constant amplitude, 4.94 with one linear in z,
+  // 4.6 with the speed refined.
+  EXPECT_LE(first.after_rms_um, 4.95);
+  const FittedParameter* speed = find(first.parameters, "spindle_runout.rpm");
+  ASSERT_NE(speed, nullptr);
+  EXPECT_NEAR(*speed->value, 2.56, 0.01);  // the same fit: 2.5626
+}
+
+TEST_F(Measured, LatheBedHasNoEffectOfTheSlide) {
+  const TraceResult result = close_on("real/lathe-bed.toml");
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(result.rounds, ::testing::IsEmpty());
+}
+
+TEST(Shipped, ThreeLevelsLackNothing) {
+  const TraceResult result = close_on("three-levels/problem.toml");
+  SCOPED_TRACE(story(result));
+  EXPECT_EQ(result.verdict, "nothing_missing");
+}
+
+}  // namespace
+}  // namespace slideway

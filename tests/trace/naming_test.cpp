@@ -1,0 +1,113 @@
+// Effects of the catalogue with a clock of their own get their one name, with the shape they had.
+
+#include <cmath>
+
+#include "slideway/base/units.hpp"
+#include "trace/faces.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace faces;  // NOLINT(google-build-using-namespace)
+using ::testing::HasSubstr;
+using turning::Hidden;
+using turning::ToolPoint;
+
+TraceResult close_on(const Hidden& hidden, int cuts, double nose_radius, std::uint64_t seed) {
+  return close_loop(problem_of(), turning::make_faces(hidden, cuts, nose_radius, seed));
+}
+
+void expect_only(const TraceResult& result, const std::string& effect) {
+  EXPECT_THAT(named(result), ::testing::ElementsAre(effect));
+  const TraceRound* round = round_of(result, effect);
+  ASSERT_NE(round, nullptr);
+  EXPECT_THAT(round->ambiguous_with, ::testing::IsEmpty());
+  EXPECT_LT(round->after_rms_um, round->before_rms_um);
+  EXPECT_LE(round->delta_bic, -10.0);
+  EXPECT_LE(round->p_value, 0.01);
+}
+
+TEST(Named, StepAtTheSampleWhereItIs) {
+  const double place = 4.3717;
+  const TraceResult result = close_on(
+      {"step", [=](const ToolPoint& p) { return p.r < place ? 0.1e-3 : 0.0; }}, 2, kSharp, 3);
+  SCOPED_TRACE(story(result));
+  expect_only(result, "step");
+  const TraceRound* round = round_of(result, "step");
+  ASSERT_NE(round, nullptr);
+  // A cut has it between two grooves of its own (8 mm/min: 0.073 mm, 2 mm/min: 0.018 mm), and a
+  // low-band value is 32 samples long.
+  const FittedParameter* position = find(round->parameters, "step.position_mm");
+  ASSERT_NE(position, nullptr);
+  EXPECT_NEAR(*position->value, place, 2.0 / 110.0 + 0.032);
+  expect_within_4u(round->parameters, "step.height_um", 0.1);
+}
+
+TEST(Named, SlidePeriodicOfAPeriodOffTheGrid) {
+  const double period = 2.7183;
+  const TraceResult result = close_on(
+      {"slide_periodic",
+       [=](const ToolPoint& p) { return 0.1e-3 * std::cos(2.0 * kPi * p.x / period + 0.4); }},
+      2, kBlunt, 4);
+  SCOPED_TRACE(story(result));
+  expect_only(result, "slide_periodic");
+  const TraceRound* round = round_of(result, "slide_periodic");
+  ASSERT_NE(round, nullptr);
+  expect_within_4u(round->parameters, "slide_periodic.period_mm", period);
+  expect_within_4u(round->parameters, "slide_periodic.amplitude_um", 0.1);
+}
+
+TEST(Named, CentreStep) {
+  const TraceResult result = close_on(
+      {"centre_step", nullptr, [](double X, double) { return X < 0.0 ? -0.05e-3 : 0.05e-3; }}, 2,
+      kBlunt, 5);
+  SCOPED_TRACE(story(result));
+  expect_only(result, "centre_step");
+  const TraceRound* round = round_of(result, "centre_step");
+  ASSERT_NE(round, nullptr);
+  expect_within_4u(round->parameters, "centre_step.height_um", 0.05);
+}
+
+TEST(Named, TraverseDatum) {
+  const TraceResult result = close_on({"traverse_datum", nullptr,
+                                       [](double X, double) {
+                                         const double u = X / 10.0;
+                                         return 0.1e-3 * u * u * u;
+                                       }},
+                                      2, kBlunt, 6);
+  SCOPED_TRACE(story(result));
+  expect_only(result, "traverse_datum");
+  const TraceRound* round = round_of(result, "traverse_datum");
+  ASSERT_NE(round, nullptr);
+  expect_within_4u(round->parameters, "traverse_datum.amplitude_um", 0.1);
+}
+
+TEST(Named, EdgeRollOff) {
+  const TraceResult result = close_on(
+      {"edge_roll_off", [](const ToolPoint& p) { return -0.3e-3 * std::exp((p.r - 10.0) / 0.23); }},
+      3, kSharp, 8);
+  SCOPED_TRACE(story(result));
+  expect_only(result, "edge_roll_off");
+  const TraceRound* round = round_of(result, "edge_roll_off");
+  ASSERT_NE(round, nullptr);
+  expect_within_4u(round->parameters, "edge_roll_off.width_mm", 0.23);
+}
+
+// One spindle speed in all cuts: time and revolutions are one clock.
+TEST(Named, TimeAndRevolutionsAreOneClockAtOneSpeed) {
+  const TraceResult result = close_on(
+      {"time_periodic",
+       [](const ToolPoint& p) { return 0.1e-3 * std::cos(2.0 * kPi * p.t / 27.18 + 0.9); }},
+      2, kBlunt, 9);
+  SCOPED_TRACE(story(result));
+  EXPECT_EQ(result.verdict, "ambiguous");
+  ASSERT_EQ(named(result).size(), 1U);
+  const std::string name = named(result)[0];
+  const std::string other = name == "time_periodic" ? "revolution_periodic" : "time_periodic";
+  EXPECT_THAT(name, ::testing::AnyOf("time_periodic", "revolution_periodic"));
+  EXPECT_THAT(round_of(result, name)->ambiguous_with, ::testing::Contains(other));
+  EXPECT_THAT(result.advice, ::testing::Contains(HasSubstr("rev/min")));
+}
+
+}  // namespace
+}  // namespace slideway

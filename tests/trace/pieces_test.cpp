@@ -1,0 +1,202 @@
+// Parts of the search against what is known of them from outside.
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "background.hpp"
+#include "calibration.hpp"
+#include "refine.hpp"
+#include "slideway/base/units.hpp"
+#include "structure.hpp"
+#include "trace/faces.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace faces;  // NOLINT(google-build-using-namespace)
+
+constexpr double kRounding = 1e-9;  // some hundred operations on numbers of order one
+
+Noise first_order(double rho, double innovation) {
+  Noise noise;
+  noise.correlation = Autoregression({rho});
+  noise.innovation = innovation;
+  return noise;
+}
+
+/// One cut of 160 low-band values, its model and the noise it is whitened with.
+struct Bench {
+  explicit Bench(const turning::Hidden& hidden = {"clean"}, std::uint64_t seed = 3)
+      : problem(make_problem()),
+        profiles(turning::make_faces(hidden, 1, kBlunt, seed)),
+        model(build_model(problem, profiles)),
+        fitted(fit(model)) {}
+
+  static Problem make_problem() {
+    Problem problem = problem_of();
+    problem.low_band.level = 7;
+    return problem;
+  }
+
+  [[nodiscard]] Whitened white(const Noise& noise) const {
+    return {fitted.linear, {noise}, loose_values(model, fitted)};
+  }
+  [[nodiscard]] Whitened white() const { return white(first_order(0.4, 5e-5)); }
+
+  Problem problem;
+  std::vector<Profile> profiles;
+  Model model;
+  Fit fitted;
+};
+
+TEST(Whitened, TurnsTheCovarianceOfAFirstOrderNoiseIntoTheUnitMatrix) {
+  const double rho = 0.7, innovation = 0.3;
+  const Bench bench;
+  const Whitened data = bench.white(first_order(rho, innovation));
+  const Eigen::Index n = data.rows();
+  ASSERT_EQ(n, data.values());
+  Eigen::MatrixXd w = Eigen::MatrixXd::Identity(n, n);
+  data.whiten(w);
+  // Textbook covariance of AR(1): σ² ρ^|i-j| / (1 - ρ²).
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      covariance(i, j) = innovation * innovation *
+                         std::pow(rho, std::abs(static_cast<double>(i - j))) / (1.0 - rho * rho);
+  EXPECT_LT(
+      (w * covariance * w.transpose() - Eigen::MatrixXd::Identity(n, n)).cwiseAbs().maxCoeff(),
+      kRounding);
+}
+
+TEST(Whitened, ResidualLiesOutsideAnOrthonormalBasis) {
+  const Whitened data = Bench().white();
+  const Eigen::MatrixXd& b = data.basis();
+  EXPECT_LT(
+      (b.transpose() * b - Eigen::MatrixXd::Identity(b.cols(), b.cols())).cwiseAbs().maxCoeff(),
+      kRounding);
+  EXPECT_LT((b.transpose() * data.residual()).norm(), kRounding * data.residual().norm());
+}
+
+TEST(Projection, GainIsTheFallOfTheSumOfSquares) {
+  const Bench bench;
+  const Whitened data = bench.white();
+  RandomStream random(4, "columns");
+  Eigen::MatrixXd columns(data.rows(), 3);
+  for (double& value : columns.reshaped()) value = random.normal();
+  const Projection projection = project(data, columns);
+  EXPECT_EQ(projection.rank, 3);
+
+  // Without the columns the residual is data.residual(); with them, by one QR over everything.
+  Eigen::MatrixXd white = columns;
+  data.whiten(white);
+  Eigen::MatrixXd all(data.rows(), data.basis().cols() + 3);
+  all << data.basis(), white;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(all);
+  const Eigen::VectorXd solution = qr.solve(data.residual());
+  const double left = (data.residual() - all * solution).squaredNorm();
+  const double before = data.residual().squaredNorm();
+  EXPECT_NEAR(projection.gain, before - left, kRounding * before);
+  EXPECT_LT((projection.amplitudes - solution.tail(3)).norm(), 1e-7 * solution.tail(3).norm());
+}
+
+TEST(Projection, ColumnsOfTheModelGainNothing) {
+  const Bench bench;
+  const Whitened data = bench.white();
+  const Projection projection =
+      project(data, stacked_columns(bench.model, bench.model.terms[0], {}, 0));
+  EXPECT_EQ(projection.rank, 0);
+  EXPECT_EQ(projection.gain, 0.0);
+}
+
+TEST(Refine, FindsTheBestShapeAScanFinds) {
+  const double period = 3.1416;
+  const Bench bench({"slide_periodic", [=](const turning::ToolPoint& p) {
+                       return 0.1e-3 * std::cos(2.0 * kPi * p.x / period);
+                     }});
+  const Whitened data = bench.white();
+  const Dictionary dictionary = make_dictionary(bench.model, {"slide_periodic"}, 0);
+  ASSERT_EQ(dictionary.candidates.size(), 1U);
+  const std::vector<Finding> findings = search(data, {&dictionary.candidates[0]});
+  const Refined refined = refine(bench.model, data, findings[0]);
+  ASSERT_EQ(refined.shape.size(), 1U);
+  EXPECT_GE(refined.projection.gain, findings[0].gain);
+  double best = 0.0, at = 0.0;
+  const double step = 1e-4 * period;
+  for (int i = -300; i <= 300; ++i) {
+    const double shape = period + step * i;
+    const double gain =
+        project(data, stacked_columns(bench.model, refined.candidate->term, {&shape, 1}, 0)).gain;
+    if (gain > best) best = gain, at = shape;
+  }
+  EXPECT_NEAR(refined.shape[0], at, step);
+  EXPECT_GE(refined.projection.gain, best * (1.0 - 1e-6));  // never below a point of the scan
+}
+
+TEST(Calibration, PValueAndThresholdAreInverse) {
+  const Calibration calibration{-7.5, 3.25};
+  for (const double p : {1e-6, 0.01, 0.2, 0.9})
+    EXPECT_NEAR(calibration.p_value(calibration.threshold(p)), p, 1e-12);
+  // Gumbel distribution: 1 - exp(-1) of it lies above its location.
+  EXPECT_NEAR(calibration.p_value(calibration.location), 1.0 - std::exp(-1.0), 1e-12);
+}
+
+TEST(NullResiduals, AreOutsideTheModelAndRepeat) {
+  const Whitened data = Bench().white();
+  const Eigen::MatrixXd null = null_residuals(data, 5);
+  EXPECT_LT((data.basis().transpose() * null).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_EQ(null, null_residuals(data, 5));
+  EXPECT_NE(null.col(0), null.col(1));
+}
+
+// Noise as known: the squares of null residuals are χ² with as many degrees of freedom as there
+// are rows beside the basis.
+TEST(NullResiduals, HaveTheSizeOfWhiteNoise) {
+  const Whitened data = Bench().white();
+  const Eigen::Index count = 200;
+  const auto freedom = static_cast<double>(data.rows() - data.basis().cols());
+  const double mean = null_residuals(data, count).colwise().squaredNorm().mean();
+  // Five standard deviations of the mean of 200: 6e-7 of correct programs fail.
+  EXPECT_NEAR(mean, freedom, 5.0 * std::sqrt(2.0 * freedom / static_cast<double>(count)));
+}
+
+// Kolmogorov-Smirnov on 60 p-values of pure noise with known correlation: distance 0.21 is exceeded
+// with a probability of 1 % if they are uniform. The p-values themselves come from 99 resamples.
+TEST(LackOfFit, HasUniformPValuesWhereNothingIsMissing) {
+  const Bench bench;
+  const Noise noise = first_order(0.4, 5e-5);
+  Linearisation linear = bench.fitted.linear;
+  std::vector<double> p_values;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    RandomStream random(seed, "lack of fit");
+    Eigen::MatrixXd rows(linear.residuals[0].size(), 1);
+    for (double& value : rows.reshaped()) value = noise.innovation * random.normal();
+    noise.correlation.colour(rows);
+    linear.residuals[0] = rows.col(0);
+    const Whitened data(linear, {noise}, Eigen::MatrixXd(rows.rows(), 0));
+    p_values.push_back(lack_of_fit(data, linear).p_value);
+  }
+  std::sort(p_values.begin(), p_values.end());
+  double distance = 0.0;
+  for (std::size_t i = 0; i < p_values.size(); ++i) {
+    const double n = static_cast<double>(p_values.size());
+    distance = std::max({distance, std::abs(p_values[i] - static_cast<double>(i) / n),
+                         std::abs(p_values[i] - static_cast<double>(i + 1) / n)});
+  }
+  EXPECT_LT(distance, 0.21);
+}
+
+TEST(LackOfFit, SeesASlowWave) {
+  const Bench bench;
+  const Noise noise = first_order(0.4, 5e-5);
+  Linearisation linear = bench.fitted.linear;
+  const Eigen::Index n = linear.residuals[0].size();
+  for (Eigen::Index i = 0; i < n; ++i)
+    linear.residuals[0][i] =
+        5e-4 * std::cos(10.0 * kPi * static_cast<double>(i) / static_cast<double>(n));
+  const LackOfFit found = lack_of_fit(Whitened(linear, {noise}, Eigen::MatrixXd(n, 0)), linear);
+  EXPECT_TRUE(found.significant());
+}
+
+}  // namespace
+}  // namespace slideway
