@@ -8,7 +8,8 @@
 namespace slideway {
 namespace {
 
-constexpr Eigen::Index kReach = 20;  // atoms of a rival on either side of its best
+constexpr double kReach = 4.0;       // standard uncertainties a rival's shape may move, in
+constexpr int kSteps = 20;           // steps on either side
 constexpr double kSeparates = 10.0;  // predicted ΔBIC that tells two effects apart
 
 struct Measurement {
@@ -88,14 +89,21 @@ Planned plan(const Problem& problem, const std::vector<Profile>& profiles, const
   return out;
 }
 
-/// Atoms of a rival around its best shape.
-std::vector<std::vector<double>> shapes_near(const Refined& rival) {
-  if (rival.shape.empty()) return {{}};
-  const auto& all = rival.candidate->shapes;
-  const auto at = std::lower_bound(all.begin(), all.end(), rival.shape);
-  const Eigen::Index middle = at - all.begin(), count = std::ssize(all);
-  return {all.begin() + std::max<Eigen::Index>(middle - kReach, 0),
-          all.begin() + std::min(middle + kReach + 1, count)};
+/// A rival with a grid of its own around the shape it was fitted at: a longer clock resolves more
+/// than the grid of the search.
+Candidate near_fitted(const Refined& rival) {
+  const Effect& effect = *rival.candidate->term.effect;
+  Candidate out{rival.candidate->term, rival.candidate->options, {rival.shape}, {}};
+  if (rival.shape.empty()) return out;
+  const auto index = static_cast<std::size_t>(effect.shapes()[0].parameter);
+  const Parameter& parameter = effect.parameters()[index];
+  const double step = kReach / kSteps * rival.uncertainties[static_cast<Eigen::Index>(index)];
+  out.shapes.clear();
+  for (int i = -kSteps; i <= kSteps; ++i) {
+    const double shape = rival.shape[0] + i * step;
+    if (shape > parameter.lower && shape < parameter.upper) out.shapes.push_back({shape});
+  }
+  return out;
 }
 
 Eigen::Index linear_rows(const Linearisation& linear) {
@@ -120,11 +128,14 @@ double predicted_separation(const Planned& planned, const Whitened& data, std::s
   }
   linear.prior_residuals.setZero();
   const Whitened white(linear, noise, Eigen::MatrixXd(linear_rows(linear), 0));
-  double most = 0.0;
-  for (const std::vector<double>& shape : shapes_near(rival))
-    most = std::max(
-        most,
-        project(white, stacked_columns(planned.model, rival.candidate->term, shape, priors)).gain);
+  const Candidate near = near_fitted(rival);
+  Finding best{&near};
+  for (Eigen::Index atom = 0; atom < near.atoms(); ++atom) {
+    const double gain =
+        project(white, stacked_columns(planned.model, near.term, near.shapes[atom], priors)).gain;
+    if (gain > best.gain) best.gain = gain, best.atom = atom;
+  }
+  const double most = refine(planned.model, white, best).projection.gain;
   return white.residual().squaredNorm() - most;
 }
 

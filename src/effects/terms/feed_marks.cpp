@@ -8,24 +8,23 @@ namespace slideway {
 namespace {
 
 Description describe() {
-  return {
-      .name = "feed_marks",
-      .standard_name = "kinematic roughness, scallop height f²/(8 r_ε)",
-      .formula =
-          "A (f/f_max)² (4u² - 1/3), u in [-1/2, 1/2] across each groove of width f; f_max the "
-          "coarsest feed per turn of the problem",
-      .source = "A = f²/(8 r_ε) for nose radius r_ε and feed per turn f",
-      .cause = "the nose of the tool leaves one groove per turn",
-      .typical =
-          "8 to 83 nm at 18 µm per turn, 0.1 to 1.3 µm at 73 µm per turn (nose "
-          "radius 5 to 0.5 mm)",
-      .clock = Clock::revolution,
-      .confounded_with =
-          "nothing if the grooves are resolved; averaged over blocks "
-          "of a similar width it returns as a long alias",
-      .separated_by =
-          "its period is exactly the feed per turn and its height goes "
-          "with the square of the feed"};
+  return {.name = "feed_marks",
+          .standard_name = "kinematic roughness, scallop height f²/(8 r_ε)",
+          .formula =
+              "A (f/f_max)² (4u² - 1/3), u in [-1/2, 1/2] across each groove of width f; f_max the "
+              "coarsest feed per turn of the problem",
+          .source = "A = f²/(8 r_ε) for nose radius r_ε and feed per turn f",
+          .cause = "the nose of the tool leaves one groove per turn",
+          .typical =
+              "8 to 83 nm at 18 µm per turn, 0.1 to 1.3 µm at 73 µm per turn (nose "
+              "radius 5 to 0.5 mm)",
+          .clock = Clock::revolution,
+          .confounded_with =
+              "nothing if the grooves are resolved; averaged over blocks "
+              "of a similar width it returns as a long alias",
+          .separated_by =
+              "its period is exactly the feed per turn and its height goes "
+              "with the square of the feed"};
 }
 
 // Parabola of the tool nose in each groove, mean zero. Groove centres lie at whole turns after the
