@@ -16,7 +16,7 @@ turning::Hidden cup() {
 }
 
 TEST(Conflict, CupIsOneColumnWithTheStraightnessOfAFace) {
-  const TraceResult result = close_loop(problem_of(), turning::make_faces(cup(), 1, kBlunt, 2));
+  const TraceResult result = close_loop(problem_of(), quarter_faces(cup(), 1, kBlunt, 2));
   SCOPED_TRACE(story(result));
   EXPECT_THAT(named(result), ::testing::IsEmpty());
   EXPECT_THAT(result.not_separable, ::testing::Contains(Pair("cup", HasSubstr("straightness.b2"))));
@@ -45,17 +45,17 @@ Profile autocollimator() {
 }
 
 TEST(Conflict, CupStandsOutAgainstAReadingOfTheSlide) {
-  std::vector<Profile> profiles = turning::make_faces(cup(), 1, kBlunt, 2);
+  std::vector<Profile> profiles = quarter_faces(cup(), 1, kBlunt, 2);
   profiles.push_back(autocollimator());
   Problem problem = problem_of();
   problem.low_band.level = 0;
   for (Profile& profile : profiles) {
     if (profile.setup.kind != Kind::face) continue;
-    std::vector<double> positions, values;  // level 0 for both: every 32 samples their mean
-    for (std::size_t i = 0; i + 32 <= profile.positions.size(); i += 32) {
+    std::vector<double> positions, values;  // level 0 for both: every 8 samples their mean
+    for (std::size_t i = 0; i + 8 <= profile.positions.size(); i += 8) {
       double position = 0.0, value = 0.0;
-      for (std::size_t j = i; j < i + 32; ++j)
-        position += profile.positions[j] / 32.0, value += profile.values[j] / 32.0;
+      for (std::size_t j = i; j < i + 8; ++j)
+        position += profile.positions[j] / 8.0, value += profile.values[j] / 8.0;
       positions.push_back(position);
       values.push_back(value);
     }

@@ -1,6 +1,6 @@
 // What is held out, what can not be tested, what may be searched.
 
-#include <cmath>
+#include <optional>
 
 #include "trace/faces.hpp"
 
@@ -20,14 +20,14 @@ const turning::Hidden& drift() {
 
 Problem small_problem() { return problem_of({"linear_drift", "slide_periodic", "centre_step"}); }
 
-std::vector<double> values_of(const std::vector<FittedParameter>& parameters) {
-  std::vector<double> out;
-  for (const FittedParameter& p : parameters) out.push_back(p.value.value_or(NAN));
+std::vector<std::optional<double>> values_of(const std::vector<FittedParameter>& parameters) {
+  std::vector<std::optional<double>> out;
+  for (const FittedParameter& p : parameters) out.push_back(p.value);
   return out;
 }
 
 TEST(HeldOut, ProfileIsPredictedAndNeverFitted) {
-  std::vector<Profile> cuts = turning::make_faces(drift(), 3, kBlunt, 5);
+  std::vector<Profile> cuts = quarter_faces(drift(), 3, kBlunt, 5);
   cuts[2].role = Role::holdout;
   const TraceResult result = close_loop(small_problem(), cuts);
   SCOPED_TRACE(story(result));
@@ -50,8 +50,7 @@ TEST(HeldOut, ProfileIsPredictedAndNeverFitted) {
 }
 
 TEST(HeldOut, EachProfileInTurnWhereNoneIs) {
-  const TraceResult result =
-      close_loop(small_problem(), turning::make_faces(drift(), 3, kBlunt, 5));
+  const TraceResult result = close_loop(small_problem(), quarter_faces(drift(), 3, kBlunt, 5));
   SCOPED_TRACE(story(result));
   const TraceRound* round = round_of(result, "linear_drift");
   ASSERT_NE(round, nullptr);
@@ -60,7 +59,7 @@ TEST(HeldOut, EachProfileInTurnWhereNoneIs) {
 }
 
 TEST(Testable, NeedsTheMetadataOfTheClock) {
-  std::vector<Profile> cut = turning::make_faces({"clean"}, 1, kBlunt, 1);
+  std::vector<Profile> cut = quarter_faces({"clean"}, 1, kBlunt, 1);
   cut[0].setup.feed_mm_per_min.reset();
   cut[0].setup.traverse_mm_per_s.reset();
   const TraceResult result = close_loop(
@@ -72,7 +71,7 @@ TEST(Testable, NeedsTheMetadataOfTheClock) {
 }
 
 TEST(Testable, NeedsAProfileThatShowsIt) {
-  std::vector<Profile> cut = turning::make_faces({"clean"}, 1, kBlunt, 1);
+  std::vector<Profile> cut = quarter_faces({"clean"}, 1, kBlunt, 1);
   cut.push_back(cut[0]);
   cut[0].role = Role::holdout;
   cut[1].name = "fitted";
@@ -85,7 +84,7 @@ TEST(Testable, NeedsAProfileThatShowsIt) {
 
 TEST(Search, LooksOnlyAtItsCandidates) {
   const TraceResult result = close_loop(problem_of({"slide_periodic", "centre_step"}),
-                                        turning::make_faces(drift(), 2, kBlunt, 5));
+                                        quarter_faces(drift(), 2, kBlunt, 5));
   SCOPED_TRACE(story(result));
   EXPECT_EQ(round_of(result, "linear_drift"), nullptr);
   for (const DetectionLimit& limit : result.detection_limits)
@@ -97,14 +96,14 @@ TEST(Search, LooksOnlyAtItsCandidates) {
 TEST(Search, AddsNothingWhereNothingMayBeAdded) {
   Problem problem = small_problem();
   problem.trace.max_effects = 0;
-  const TraceResult result = close_loop(problem, turning::make_faces(drift(), 2, kBlunt, 5));
+  const TraceResult result = close_loop(problem, quarter_faces(drift(), 2, kBlunt, 5));
   EXPECT_THAT(result.rounds, ::testing::IsEmpty());
   EXPECT_EQ(values_of(result.after), values_of(result.before));
 }
 
 TEST(Search, RefusesByItsSignificance) {
   Problem problem = small_problem();
-  const std::vector<Profile> cuts = turning::make_faces({"clean"}, 2, kBlunt, 5);
+  const std::vector<Profile> cuts = quarter_faces({"clean"}, 2, kBlunt, 5);
   const TraceResult result = close_loop(problem, cuts);
   SCOPED_TRACE(story(result));
   EXPECT_EQ(result.verdict, "nothing_missing");

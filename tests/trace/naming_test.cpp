@@ -14,7 +14,7 @@ using turning::Hidden;
 using turning::ToolPoint;
 
 TraceResult close_on(const Hidden& hidden, int cuts, double nose_radius, std::uint64_t seed) {
-  return close_loop(problem_of(), turning::make_faces(hidden, cuts, nose_radius, seed));
+  return close_loop(problem_of(), quarter_faces(hidden, cuts, nose_radius, seed));
 }
 
 void expect_only(const TraceResult& result, const std::string& effect) {
@@ -29,8 +29,11 @@ void expect_only(const TraceResult& result, const std::string& effect) {
 
 TEST(Named, StepAtTheSampleWhereItIs) {
   const double place = 4.3717;
-  const TraceResult result = close_on(
-      {"step", [=](const ToolPoint& p) { return p.r < place ? 0.1e-3 : 0.0; }}, 2, kSharp, 3);
+  Problem problem = problem_of();
+  problem.low_band.level = 5;
+  const turning::Hidden step{"step",
+                             [=](const ToolPoint& p) { return p.r < place ? 0.1e-3 : 0.0; }};
+  const TraceResult result = close_loop(problem, turning::make_faces(step, 2, kSharp, 3));
   SCOPED_TRACE(story(result));
   expect_only(result, "step");
   const TraceRound* round = round_of(result, "step");

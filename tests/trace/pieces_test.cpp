@@ -29,13 +29,13 @@ Noise first_order(double rho, double innovation) {
 struct Bench {
   explicit Bench(const turning::Hidden& hidden = {"clean"}, std::uint64_t seed = 3)
       : problem(make_problem()),
-        profiles(turning::make_faces(hidden, 1, kBlunt, seed)),
+        profiles(quarter_faces(hidden, 1, kBlunt, seed)),
         model(build_model(problem, profiles)),
         fitted(fit(model)) {}
 
   static Problem make_problem() {
     Problem problem = problem_of();
-    problem.low_band.level = 7;
+    problem.low_band.level = 5;
     return problem;
   }
 

@@ -15,7 +15,7 @@ using namespace faces;  // NOLINT(google-build-using-namespace)
 TEST(SameBytes, RunForRun) {
   RandomStream random(1, "slide_periodic");
   const turning::Hidden hidden = turning::make_hidden("slide_periodic", 0.1e-3, random);
-  const std::vector<Profile> cut = turning::make_faces(hidden, 1, kBlunt, 1);
+  const std::vector<Profile> cut = quarter_faces(hidden, 1, kBlunt, 1);
   const Problem problem = problem_of();
   const auto report = [&] {
     const TraceResult trace = close_loop(problem, cut);

@@ -10,7 +10,7 @@ using namespace faces;  // NOLINT(google-build-using-namespace)
 TraceResult close_on(const std::string& shape) {
   RandomStream random(11, shape);
   const turning::Hidden hidden = turning::make_hidden(shape, 0.2e-3, random);
-  return close_loop(problem_of(), turning::make_faces(hidden, 2, kBlunt, 11));
+  return close_loop(problem_of(), quarter_faces(hidden, 2, kBlunt, 11));
 }
 
 TEST(Unnamed, TwoBumpsLiveOnTheRadius) {
