@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "../linear_effect.hpp"
 #include "../locus.hpp"
@@ -76,7 +77,13 @@ class Straightness : public LinearEffect {
       : LinearEffect(describe(), parameters_of(degree, range),
                      powers_from_legendre(degree, interval_of(range))),
         body_(body),
-        interval_(interval_of(range)) {}
+        interval_(interval_of(range)) {
+    for (int k = 0; k < degree || k == 0; ++k) {
+      ahead_.push_back((2.0 * k + 1.0) / (k + 1.0));
+      back_.push_back(k / (k + 1.0));
+      rise_.push_back((2.0 * k + 1.0) / interval_.half);
+    }
+  }
 
   [[nodiscard]] bool applies_to(const Setup& setup) const override { return sees_carriage(setup); }
 
@@ -88,11 +95,10 @@ class Straightness : public LinearEffect {
       slope[0] = 0.0;
       if (value.size() == 1) return;
       value[1] = u;
-      slope[1] = 1.0 / interval_.half;
+      slope[1] = rise_[0];
       for (Eigen::Index k = 1; k + 1 < value.size(); ++k) {
-        const auto order = static_cast<double>(k);
-        value[k + 1] = ((2.0 * order + 1.0) * u * value[k] - order * value[k - 1]) / (order + 1.0);
-        slope[k + 1] = slope[k - 1] + (2.0 * order + 1.0) * value[k] / interval_.half;
+        value[k + 1] = ahead_[k] * u * value[k] - back_[k] * value[k - 1];
+        slope[k + 1] = slope[k - 1] + rise_[k] * value[k];
       }
     };
     fill_from_locus(stations, carriage_reading(stations, body_, 1.0), legendre, out);
@@ -110,6 +116,8 @@ class Straightness : public LinearEffect {
  private:
   int body_;
   Interval interval_;
+  // Legendre's recurrence: (k+1) P_(k+1) = (2k+1) u P_k - k P_(k-1), and its derivative by x.
+  std::vector<double> ahead_, back_, rise_;
 };
 
 }  // namespace
