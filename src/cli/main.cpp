@@ -23,12 +23,12 @@ namespace {
 using Maker = std::unique_ptr<Command> (*)();
 
 const std::vector<std::pair<std::string, Maker>>& commands() {
-  static const std::vector<std::pair<std::string, Maker>> list{
+  static const std::vector<std::pair<std::string, Maker>> kList{
 #define SLIDEWAY_COMMAND(name) {#name, make_##name},
 #include "command_list.inc"
 #undef SLIDEWAY_COMMAND
   };
-  return list;
+  return kList;
 }
 
 std::string help() {

@@ -12,6 +12,7 @@ namespace {
 /// A good slide: 1 µm of straightness over 200 mm (air-bearing makers' figures).
 constexpr double kGoodStraightness = 1.0 * kMicrometre;
 constexpr double kGoodTravel = 200.0;
+constexpr double kTold = 5.0;          // standard uncertainties
 constexpr double kImplausible = 10.0;  // times the good slide's
 
 /// Σ_k p_k x^k and its derivative, from the parameters `prefix`0, 1, ... of a term ("b", "c").
@@ -88,6 +89,16 @@ double straightness_error(const Polynomial& curve, double low, double high) {
   return y.maxCoeff() - y.minCoeff();
 }
 
+/// Whether a curvature of the straightness is told from zero.
+bool is_curved(const FitResult& out) {
+  return std::any_of(out.parameters.begin(), out.parameters.end(), [](const FittedParameter& p) {
+    const bool curvature =
+        p.name.starts_with("straightness") && !p.name.ends_with(".b0") && !p.name.ends_with(".b1");
+    return curvature && p.value && p.standard_uncertainty &&
+           std::abs(*p.value) > kTold * *p.standard_uncertainty;
+  });
+}
+
 void check_plausibility(const Model& model, const Fit& fit, FitResult& out) {
   const ModelTerm* term = find_term(model, "straightness");
   const double travel = model.range.slide_max - model.range.slide_min;
@@ -99,7 +110,7 @@ void check_plausibility(const Model& model, const Fit& fit, FitResult& out) {
       straightness_error(polynomial(term, fit, 0), model.range.slide_min, model.range.slide_max);
   const double part = travel / kGoodTravel;
   const double good = kGoodStraightness * (part < 1.0 ? part * part : part);
-  if (!face || found < kImplausible * good) return;
+  if (!face || found < kImplausible * good || !is_curved(out)) return;
   out.implausible = "the fitted straightness is " + significant(found / kMicrometre, 2) +
                     " um over " + significant(travel, 4) +
                     " mm; a slide of 1 um per 200 mm makes " + significant(good / kMicrometre, 2) +

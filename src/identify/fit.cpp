@@ -112,8 +112,7 @@ Fit fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   require_enough_data(model);
   Fit out;
   out.weights = first_weights(model);
-  Estimate start = initial_estimate(model);
-  if (shapes) start.shapes = *shapes;
+  const Estimate start = initial_estimate(model, shapes);
   out.linear = linearise(model, start);
   SolveSummary solved = solve(model, out.linear, out.weights, start, !shapes);
   for (int round = 0; round < kMaxRounds; ++round) {

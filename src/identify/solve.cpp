@@ -84,12 +84,13 @@ void run_ceres(const Residual& residual, Eigen::VectorXd& x, SolveSummary& out) 
 
 }  // namespace
 
-Estimate initial_estimate(const Model& model) {
+Estimate initial_estimate(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   Estimate start;
   start.amplitudes = Eigen::VectorXd::Zero(model.amplitudes());
   start.shapes.resize(model.shapes());
+  if (shapes) start.shapes = *shapes;
   for (const ModelTerm& term : model.terms)
-    for (int s = 0; s < static_cast<int>(term.effect->shapes().size()); ++s) {
+    for (int s = 0; !shapes && s < static_cast<int>(term.effect->shapes().size()); ++s) {
       const std::vector<double> grid = shape_grid(model, term, s);
       start.shapes[term.first_shape + s] = grid[grid.size() / 2];
     }

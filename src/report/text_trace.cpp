@@ -103,13 +103,13 @@ std::string limits(const TraceResult& trace) {
 /// One line for each thing that is needed.
 std::string untestable(const TraceResult& trace) {
   std::vector<std::pair<std::string, std::vector<std::string>>> by_need;
-  for (const auto& [effect, needs] : trace.not_testable) {
+  for (const auto& entry : trace.not_testable) {
     const auto found = std::find_if(by_need.begin(), by_need.end(),
-                                    [&](const auto& entry) { return entry.first == needs; });
+                                    [&](const auto& known) { return known.first == entry.second; });
     if (found == by_need.end())
-      by_need.push_back({needs, {effect}});
+      by_need.push_back({entry.second, {entry.first}});
     else
-      found->second.push_back(effect);
+      found->second.push_back(entry.first);
   }
   std::string text;
   for (const auto& [needs, effects] : by_need)

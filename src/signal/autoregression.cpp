@@ -133,7 +133,7 @@ std::vector<double> Autoregression::burg(std::span<const double> series, int p) 
 }
 
 double ljung_box_p_value(std::span<const double> series, int lags, int fitted) {
-  const double n = static_cast<double>(series.size());
+  const auto n = static_cast<double>(series.size());
   const std::vector<double> r = autocorrelation(series, lags);
   double sum = 0.0;
   for (int k = 1; k <= lags && k < std::ssize(series); ++k)

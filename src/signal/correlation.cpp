@@ -142,7 +142,7 @@ Lag best_lag(std::span<const double> x, std::span<const double> y, int max_lag) 
     const Eigen::Index size = n - std::abs(lag);
     const Eigen::Index from_x = std::max<Eigen::Index>(0, -lag);
     const Eigen::Index from_y = std::max<Eigen::Index>(0, lag);
-    const double count = static_cast<double>(size);
+    const auto count = static_cast<double>(size);
     const double sum_x = x_sums.sum[from_x + size] - x_sums.sum[from_x];
     const double sum_y = y_sums.sum[from_y + size] - y_sums.sum[from_y];
     const double xx =
@@ -179,7 +179,7 @@ double effective_observations(std::span<const double> x, std::span<const double>
   const Eigen::VectorXd dx = centred(x);
   const Eigen::VectorXd dy = centred(y);
   const double scale = dx.squaredNorm() * dy.squaredNorm();
-  const double n = static_cast<double>(dx.size());
+  const auto n = static_cast<double>(dx.size());
   constexpr Eigen::Index kDirect = 32;  // few lags are cheaper than a transform
   std::vector<std::complex<double>> products;
   double sum = 0.0;

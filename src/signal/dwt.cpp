@@ -73,8 +73,8 @@ class Extension {
     const double first = x_[0];
     const double last = x_[n_ - 1];
     const double rise = 2.0 * (last - first);
-    return (k < n_ ? x_[k] : 2.0 * last - x_[period - k]) +
-           static_cast<double>((i - k) / period) * rise;
+    const Index periods = (i - k) / period;
+    return (k < n_ ? x_[k] : 2.0 * last - x_[period - k]) + static_cast<double>(periods) * rise;
   }
 
   const double* x_;

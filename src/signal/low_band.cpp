@@ -129,13 +129,14 @@ std::vector<double> LowBand::positions(std::span<const double> sample_positions)
 
 std::vector<double> LowBand::reconstruct(std::span<const double> coefficients) const {
   std::vector<std::size_t> lengths;
-  for (std::size_t n = static_cast<std::size_t>(samples_); std::ssize(lengths) < options_.level;
+  for (auto n = static_cast<std::size_t>(samples_); std::ssize(lengths) < options_.level;
        n = dwt_length(n, wavelet_.taps(), options_.boundary))
     lengths.push_back(n);
   std::vector<double> band(coefficients.begin(), coefficients.end());
   std::vector<double> finer;
-  for (auto n = lengths.rbegin(); n != lengths.rend(); ++n) {
-    inverse_dwt(wavelet_, options_.boundary, band, {}, *n, finer);
+  std::ranges::reverse(lengths);
+  for (const std::size_t n : lengths) {
+    inverse_dwt(wavelet_, options_.boundary, band, {}, n, finer);
     band.swap(finer);
   }
   return band;

@@ -15,6 +15,8 @@ namespace slideway {
 namespace {
 
 constexpr std::size_t kMostValues = 2048;  // of a profile, in a search
+constexpr double kLeastJointSize = 3.0;    // of an effect in the joint fit, in
+constexpr double kLeastSize = 5.0;         // standard uncertainties
 constexpr double kSuperfluous = -10.0;     // ΔBIC an effect must keep up to stay
 
 /// The problem with the low band in which effects are searched: the declared one, or the first
@@ -32,8 +34,6 @@ struct Added {
   std::vector<double> shape;
   TraceRound round;
 };
-
-std::optional<double> rms_um(const FitResult& fit) { return fit.rms_um; }
 
 std::optional<double> holdout_rms_um(const FitResult& fit) {
   double squares = 0.0;
@@ -75,8 +75,9 @@ class Loop {
       drop_superfluous(state);
     }
     if (exchange(state)) last = look_at(state);
-    if (retract(state, last->data)) last = look_at(state);
-    return report(state, *last);
+    const bool retracted = retract(state, last->data);
+    if (retracted) last = look_at(state);
+    return report(state, *last, retracted);
   }
 
  private:
@@ -118,6 +119,10 @@ class Loop {
 
   /// The report's numbers, at the declared level.
   [[nodiscard]] FitResult summary_of(const State& state) const {
+    const auto level = [](const Model& model) {
+      return model.observations.front().low_band.options().level;
+    };
+    if (level(base_) == level(declared_)) return summarise(state.model, state.fit);
     const Model model = with(declared_, state.added);
     return summarise(model, fit(model, shapes_of(state.added)));
   }
@@ -147,10 +152,16 @@ class Loop {
     std::vector<Added> added = state.added;
     added.push_back(std::move(next));
     State extended = make_state(std::move(added));
+    if (is_small(extended, extended.added.size() - 1, kLeastJointSize)) {
+      notes_.push_back(refined.candidate->name() +
+                       " was refused: in the joint fit it is below three of its standard "
+                       "uncertainties");
+      return false;
+    }
     const FitResult after = summary_of(extended);
     TraceRound& round = extended.added.back().round;
-    round.before_rms_um = rms_um(before).value_or(0.0);
-    round.after_rms_um = rms_um(after).value_or(0.0);
+    round.before_rms_um = before.rms_um.value_or(0.0);
+    round.after_rms_um = after.rms_um.value_or(0.0);
     round.before_holdout_rms_um = holdout_rms_um(before);
     round.after_holdout_rms_um = holdout_rms_um(after);
     if (round.before_holdout_rms_um) {
@@ -255,12 +266,29 @@ class Loop {
     return changed;
   }
 
+  /// Whether an effect of one amplitude is below so many standard uncertainties in the joint fit.
+  [[nodiscard]] static bool is_small(const State& state, std::size_t i, double limit) {
+    const std::string& name = state.added[i].candidate->name();
+    const std::vector<FittedParameter> own = parameters_of(summarise(state.model, state.fit), name);
+    const bool single = state.added[i].candidate->amplitudes() <= 2;
+    if (!single || own.empty() || !own[0].value || !own[0].standard_uncertainty) return false;
+    return std::abs(*own[0].value) < limit * *own[0].standard_uncertainty;
+  }
+
   /// Where structure is left, an effect stays only if it says more than an unnamed process alone
   /// would: the least bad name is not given. @return true if one had to go
   bool retract(State& state, const Whitened& data) {
     if (!lack_of_fit(data, state.fit.linear).significant()) return false;
     bool changed = false;
     for (std::size_t i = state.added.size(); i-- > 0;) {
+      if (is_small(state, i, kLeastSize)) {
+        notes_.push_back(state.added[i].candidate->name() +
+                         " was taken back: beside what has no name it is no longer five of its "
+                         "standard uncertainties");
+        state = make_state(all_but(state.added, i));
+        changed = true;
+        continue;
+      }
       State without = make_state(all_but(state.added, i));
       const Whitened with_it(state.fit.linear, data.noise(), loose_values(state.model, state.fit));
       const Whitened without_it(without.fit.linear, data.noise(),
@@ -284,19 +312,25 @@ class Loop {
     return added;
   }
 
-  TraceResult report(const State& state, const Look& last) {
+  TraceResult report(const State& state, const Look& last, bool retracted) {
     TraceResult out;
     const FitResult after = summary_of(state);
     out.before = before_->parameters;
     out.after = after.parameters;
-    out.before_rms_um = rms_um(*before_);
-    out.after_rms_um = rms_um(after);
+    out.before_rms_um = before_->rms_um;
+    out.after_rms_um = after.rms_um;
     for (const Added& effect : state.added) {
       out.rounds.push_back(effect.round);
       out.rounds.back().parameters = parameters_of(after, effect.candidate->name());
     }
     const Candidates beside = candidates_beside(state.added);
     out.refused = tried(last, std::nullopt);
+    for (TriedEffect& effect : out.refused)
+      if (effect.refused.empty())
+        effect.refused = retracted ? "a process without a name fits as well"
+                         : static_cast<int>(state.added.size()) >= problem_.trace.max_effects
+                             ? "max_effects effects are in the model"
+                             : "the joint fit does not bear it out";
     const LackOfFit left = lack_of_fit(last.data, state.fit.linear);
     out.lack_of_fit_p = left.p_value;
     if (left.significant()) {
@@ -339,9 +373,8 @@ class Loop {
   static std::string verdict(const TraceResult& out, bool other_cause) {
     if (out.unnamed) return "unnamed";
     if (other_cause) return "not_identifiable";
-    const bool ambiguous = std::any_of(out.rounds.begin(), out.rounds.end(),
-                                       [](const auto& r) { return !r.ambiguous_with.empty(); });
-    if (ambiguous) return "ambiguous";
+    for (const TraceRound& round : out.rounds)
+      if (!round.ambiguous_with.empty()) return "ambiguous";
     return out.rounds.empty() ? "nothing_missing" : "explained";
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,8 @@ struct SolveSummary {
   std::vector<bool> shape_at_bound;
 };
 
-/// Starting values: shapes in the middle of their range, all else zero.
-Estimate initial_estimate(const Model& model);
+/// Starting values: the given shapes, or each in the middle of its grid; all else zero.
+Estimate initial_estimate(const Model& model, const std::optional<Eigen::VectorXd>& shapes = {});
 
 /// The observations with Role::fit, in order.
 std::vector<const Observation*> fitted_observations(const Model& model);
