@@ -6,6 +6,7 @@
 #include "advice.hpp"
 #include "background.hpp"
 #include "detection.hpp"
+#include "fit_numbers.hpp"
 #include "round.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/crosscheck.hpp"
@@ -35,21 +36,9 @@ struct Added {
   TraceRound round;
 };
 
-std::optional<double> holdout_rms_um(const FitResult& fit) {
-  double squares = 0.0;
-  int count = 0;
-  for (const ResidualSummary& residual : fit.residuals)
-    if (residual.role == "holdout" && residual.unit == "um")
-      squares += residual.rms_um * residual.rms_um, ++count;
-  if (count == 0) return std::nullopt;
-  return std::sqrt(squares / count);
-}
-
-std::vector<FittedParameter> parameters_of(const FitResult& fit, const std::string& effect) {
-  std::vector<FittedParameter> out;
-  for (const FittedParameter& parameter : fit.parameters)
-    if (parameter.name.starts_with(effect + ".")) out.push_back(parameter);
-  return out;
+std::vector<Added> all_but(std::vector<Added> added, std::size_t i) {
+  added.erase(std::next(added.begin(), static_cast<std::ptrdiff_t>(i)));
+  return added;
 }
 
 class Loop {
@@ -270,8 +259,9 @@ class Loop {
   [[nodiscard]] static bool is_small(const State& state, std::size_t i, double limit) {
     const std::string& name = state.added[i].candidate->name();
     const std::vector<FittedParameter> own = parameters_of(summarise(state.model, state.fit), name);
-    const bool single = state.added[i].candidate->amplitudes() <= 2;
-    if (!single || own.empty() || !own[0].value || !own[0].standard_uncertainty) return false;
+    if (state.added[i].candidate->amplitudes() > 2 || own.empty() || !own[0].value ||
+        !own[0].standard_uncertainty)
+      return false;
     return std::abs(*own[0].value) < limit * *own[0].standard_uncertainty;
   }
 
@@ -305,11 +295,6 @@ class Loop {
       changed = true;
     }
     return changed;
-  }
-
-  static std::vector<Added> all_but(std::vector<Added> added, std::size_t i) {
-    added.erase(added.begin() + static_cast<std::ptrdiff_t>(i));
-    return added;
   }
 
   TraceResult report(const State& state, const Look& last, bool retracted) {
