@@ -16,6 +16,15 @@ constexpr double kEnough = 10.0;          // -ΔBIC
 constexpr double kLeastSize = 5.0;
 constexpr double kNegligible = 0.02;  // of a column's size: not worth a name
 
+/// Distribution of a gain where there is an effect, in plain doubles; not finite instead of an
+/// exception where it can not be evaluated.
+namespace policies = boost::math::policies;
+using Quiet = policies::policy<policies::domain_error<policies::ignore_error>,
+                               policies::evaluation_error<policies::ignore_error>,
+                               policies::overflow_error<policies::ignore_error>,
+                               policies::promote_double<false>>;
+using GainOfEffect = boost::math::non_central_chi_squared_distribution<double, Quiet>;
+
 std::span<const double> middle_shape(const Candidate& candidate) {
   return candidate.shapes[candidate.shapes.size() / 2];
 }
@@ -78,14 +87,15 @@ std::optional<double> detection_limit(const Model& model, const Whitened& data,
   const Eigen::MatrixXd columns =
       stacked_columns(model, candidate.term, shape, data.rows() - data.values());
   const Projection own = project(data, columns);
-  if (own.rank == 0) return std::nullopt;
+  if (own.rank == 0 || candidate.amplitudes() > 2) return std::nullopt;
   const auto unknowns =
       static_cast<double>(candidate.unknowns() - candidate.amplitudes() + own.rank);
   const double penalty = unknowns * std::log(static_cast<double>(data.values()));
   const double enough = std::max(
       {penalty + std::max(kEnough, calibration.threshold(significance)), kLeastSize * kLeastSize});
-  const double noncentrality = boost::math::non_central_chi_squared::find_non_centrality(
-      static_cast<double>(own.rank), enough, 1.0 - kPower);
+  const double noncentrality =
+      GainOfEffect::find_non_centrality(static_cast<double>(own.rank), enough, 1.0 - kPower);
+  if (!std::isfinite(noncentrality)) return std::nullopt;
   const Effect& effect = *candidate.term.effect;
   const Eigen::Index a = candidate.amplitudes();
   Eigen::VectorXd values =
@@ -97,7 +107,7 @@ std::optional<double> detection_limit(const Model& model, const Whitened& data,
                       effect.from_parameters(values).head(a).squaredNorm();
   if (!(gain > 0.0)) return std::nullopt;
   const double limit = std::sqrt(noncentrality / gain);
-  if (a > 2 || shape.empty()) return limit;
+  if (shape.empty()) return limit;
   values[0] = limit;
   const Eigen::VectorXd inner = effect.from_parameters(values);
   Eigen::MatrixXd joint(data.rows(), a + 1);

@@ -14,7 +14,7 @@ std::vector<DetectionLimit> detection_limits(const Model& model, const Whitened&
                                              const Calibration& calibration, double significance);
 
 /// Size of one effect at a given shape that is found with 80 % probability, in the unit of its
-/// first parameter; none if the model spans it.
+/// first parameter; none if the model spans it or its size is not one number.
 std::optional<double> detection_limit(const Model& model, const Whitened& data,
                                       const Candidate& candidate, std::span<const double> shape,
                                       const Calibration& calibration, double significance);
