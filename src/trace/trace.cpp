@@ -63,7 +63,8 @@ class Loop {
       if (!choice || !try_adding(state, *last, *choice)) break;
       drop_superfluous(state);
     }
-    if (exchange(state)) last = look_at(state);
+    const bool exchanged = exchange(state);
+    if (drop_small(state, kLeastJointSize) || exchanged) last = look_at(state);
     const bool retracted = retract(state, last->data);
     if (retracted) last = look_at(state);
     return report(state, *last, retracted);
@@ -141,12 +142,6 @@ class Loop {
     std::vector<Added> added = state.added;
     added.push_back(std::move(next));
     State extended = make_state(std::move(added));
-    if (is_small(extended, extended.added.size() - 1, kLeastJointSize)) {
-      notes_.push_back(refined.candidate->name() +
-                       " was refused: in the joint fit it is below three of its standard "
-                       "uncertainties");
-      return false;
-    }
     const FitResult after = summary_of(extended);
     TraceRound& round = extended.added.back().round;
     round.before_rms_um = before.rms_um.value_or(0.0);
@@ -256,29 +251,35 @@ class Loop {
   }
 
   /// Whether an effect of one amplitude is below so many standard uncertainties in the joint fit.
-  [[nodiscard]] static bool is_small(const State& state, std::size_t i, double limit) {
+  [[nodiscard]] bool is_small(const State& state, std::size_t i, double limit) const {
     const std::string& name = state.added[i].candidate->name();
-    const std::vector<FittedParameter> own = parameters_of(summarise(state.model, state.fit), name);
+    const std::vector<FittedParameter> own = parameters_of(summary_of(state), name);
     if (state.added[i].candidate->amplitudes() > 2 || own.empty() || !own[0].value ||
         !own[0].standard_uncertainty)
       return false;
     return std::abs(*own[0].value) < limit * *own[0].standard_uncertainty;
   }
 
+  /// Effects that the joint fit does not bear out leave. @return true if one did
+  bool drop_small(State& state, double limit) {
+    bool changed = false;
+    for (std::size_t i = state.added.size(); i-- > 0;) {
+      if (!is_small(state, i, limit)) continue;
+      notes_.push_back(state.added[i].candidate->name() +
+                       " was taken back: in the joint fit it is below " + significant(limit, 1) +
+                       " of its standard uncertainties");
+      state = make_state(all_but(state.added, i));
+      changed = true;
+    }
+    return changed;
+  }
+
   /// Where structure is left, an effect stays only if it says more than an unnamed process alone
   /// would: the least bad name is not given. @return true if one had to go
   bool retract(State& state, const Whitened& data) {
     if (!lack_of_fit(data, state.fit.linear).significant()) return false;
-    bool changed = false;
+    bool changed = drop_small(state, kLeastSize);
     for (std::size_t i = state.added.size(); i-- > 0;) {
-      if (is_small(state, i, kLeastSize)) {
-        notes_.push_back(state.added[i].candidate->name() +
-                         " was taken back: beside what has no name it is no longer five of its "
-                         "standard uncertainties");
-        state = make_state(all_but(state.added, i));
-        changed = true;
-        continue;
-      }
       State without = make_state(all_but(state.added, i));
       const Whitened with_it(state.fit.linear, data.noise(), loose_values(state.model, state.fit));
       const Whitened without_it(without.fit.linear, data.noise(),
@@ -294,7 +295,7 @@ class Loop {
       state = std::move(without);
       changed = true;
     }
-    return changed;
+    return drop_small(state, kLeastSize) || changed;
   }
 
   TraceResult report(const State& state, const Look& last, bool retracted) {
