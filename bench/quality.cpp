@@ -59,7 +59,7 @@ Json run_case(const std::string& name, int cuts, double size, double nose_radius
     if (limit.effect == name) json["limit"] = limit.value;
   if (result.unnamed) {
     json["clock"] = result.unnamed->clock;
-    json["unnamed_um"] = result.unnamed->rms_um;
+    json["unnamed_um"] = result.unnamed->rms;
   }
   double u_before = 0.0, u_after = 0.0;
   json["bias_before"] = squareness_of(result.before, &u_before) - kFaceSquareness;

@@ -1,5 +1,7 @@
 #include "output.hpp"
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <iostream>
 #include <stdexcept>
@@ -32,6 +34,15 @@ void keep_input(const std::filesystem::path& input, const std::filesystem::path&
       std::filesystem::equivalent(input, output, ignored))
     throw UsageError(output.string() +
                      ": is the input, which would be lost; accepted: another name");
+}
+
+ProgressLine::ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) == 1) {}
+
+ProgressLine::~ProgressLine() { show(""); }
+
+void ProgressLine::show(std::string_view stage) const {
+  constexpr std::string_view kEraseLine = "\r\033[K";
+  if (shown_) std::cerr << kEraseLine << stage << std::flush;
 }
 
 void say(std::string_view message) {

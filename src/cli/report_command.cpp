@@ -49,7 +49,11 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
   const Result result = in_problem<UsageError>(
       [&] { return in_problem<DataError>([&] { return identify(problem, profiles, scope); }); });
   std::optional<TraceResult> trace;
-  if (closes_loop) trace = close_loop(problem, profiles);
+  if (closes_loop) {
+    const ProgressLine line(!is_quiet());
+    trace = close_loop(problem, profiles,
+                       [&](const std::string& stage) { line.show("closing the loop: " + stage); });
+  }
   const TraceResult* found = trace ? &*trace : nullptr;
   report([&] { return text_report(result, found); }, [&] { return json_report(result, found); });
   const bool negative = is_negative(result) || (trace && is_negative(*trace));

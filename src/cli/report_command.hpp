@@ -19,6 +19,7 @@ class ReportCommand : public Command {
               const std::function<std::string()>& json) const;
 
   [[nodiscard]] const std::string& json_file() const { return json_; }
+  [[nodiscard]] bool is_quiet() const { return quiet_; }
 
  private:
   std::string json_;

@@ -12,6 +12,7 @@ namespace slideway {
 #define SLIDEWAY_EFFECT(name) std::unique_ptr<Effect> make_##name(const Request& request);
 #include "effect_list.inc"
 #undef SLIDEWAY_EFFECT
+std::unique_ptr<Effect> make_straightness_terms(int first, const Request& request);
 
 namespace {
 
@@ -46,6 +47,11 @@ std::unique_ptr<Effect> make_effect(const std::string& name, const EffectOptions
     throw UsageError("no effect '" + name + "'" + did_you_mean(name, names) + "; there are " +
                      joined(names));
   return kFactories[found - names.begin()]({name, options, machine, range});
+}
+
+std::unique_ptr<Effect> make_straightness_terms(int first, const EffectOptions& options,
+                                                const Machine& machine, const TravelRange& range) {
+  return make_straightness_terms(first, {"straightness", options, machine, range});
 }
 
 }  // namespace slideway

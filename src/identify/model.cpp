@@ -110,6 +110,17 @@ void append_term(Model& model, const DeclaredEffect& declared, const TravelRange
   model.terms.push_back(std::move(term));
 }
 
+void remake_term(Model& model, const std::string& name, const EffectOptions& options) {
+  const auto term = std::find_if(model.terms.begin(), model.terms.end(),
+                                 [&](const ModelTerm& each) { return each.name == name; });
+  term->effect = make_effect(name, options, model.machine, model.range);
+  for (auto next = std::next(term); next != model.terms.end(); ++next) {
+    const ModelTerm& before = *std::prev(next);
+    next->first_amplitude = before.first_amplitude + before.effect->amplitudes();
+    next->first_parameter = before.first_parameter + std::ssize(before.effect->parameters());
+  }
+}
+
 Model build_model(const Problem& problem, const std::vector<Profile>& profiles) {
   Model model{problem.machine(), travel_range(profiles, problem.machine()), {}, {}};
   model.range.beam_span_mm = problem.beam_span_mm;

@@ -174,14 +174,11 @@ std::optional<Runout> read_runout(const Section& root) {
 
 TraceOptions read_trace(const Section& root) {
   TraceOptions options;
-  std::vector<std::string> all;
-  for (const std::string& name : effect_names())
-    if (!is_carriage_effect(name)) all.push_back(name);
-  options.candidates = all;
+  options.candidates = effect_names();
   const std::optional<Section> section = root.table("trace");
   if (!section) return options;
   section->accept("candidates max_effects significance");
-  std::vector<std::string> accepted = all;
+  std::vector<std::string> accepted = effect_names();
   accepted.emplace_back("all");
   const auto named = section->some_of("candidates", accepted);
   if (named && std::find(named->begin(), named->end(), "all") == named->end())

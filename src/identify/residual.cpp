@@ -12,13 +12,6 @@ double slope_of_outer(double outer, const Shape& kind) { return kind.logarithmic
 
 }  // namespace
 
-double to_inner(double shape, const Shape& kind) {
-  return kind.logarithmic ? std::log(shape) : shape;
-}
-double to_outer(double inner, const Shape& kind) {
-  return kind.logarithmic ? std::exp(inner) : inner;
-}
-
 Eigen::MatrixXd nuisance_basis(const Observation& observation) {
   const Eigen::MatrixXd& nuisances = observation.nuisances;
   if (nuisances.cols() == 0) return nuisances;
@@ -143,7 +136,7 @@ Estimate Residual::estimate(const Eigen::VectorXd& x) const {
   for (std::size_t s = 0; s < shapes_.size(); ++s) {
     const auto& [term, which] = shapes_[s];
     out.shapes[term->first_shape + which] =
-        to_outer(x[rank() + amplitudes_.size() + s], term->effect->shapes()[which]);
+        term->effect->shapes()[which].outer(x[rank() + amplitudes_.size() + s]);
   }
   return out;
 }
@@ -153,7 +146,7 @@ Eigen::VectorXd Residual::linear_optimum(const Eigen::VectorXd& shapes, double* 
   for (std::size_t s = 0; s < shapes_.size(); ++s) {
     const auto& [term, which] = shapes_[s];
     x[rank() + amplitudes_.size() + s] =
-        to_inner(shapes[term->first_shape + which], term->effect->shapes()[which]);
+        term->effect->shapes()[which].inner(shapes[term->first_shape + which]);
   }
   Eigen::VectorXd residual(num_residuals());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(num_residuals(), size());

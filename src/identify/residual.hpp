@@ -21,10 +21,6 @@ void project_out(const Eigen::MatrixXd& basis, Eigen::Ref<Eigen::MatrixXd> colum
 /// Index of a parameter within its effect. @throws UsageError if there is none of that name
 Eigen::Index parameter_index(const ModelTerm& term, const std::string& name);
 
-/// The optimiser's view of a shape: its logarithm where it is logarithmic.
-double to_inner(double shape, const Shape& kind);
-double to_outer(double inner, const Shape& kind);
-
 /// The least-squares problem Ceres sees. Unknowns x = [w, v, u]: w orthonormal coordinates of the
 /// columns that do not move (nuisances already out), v amplitudes of the terms with shapes, u the
 /// shapes themselves. Residuals: [w + Q'(M v - y)], then the part of M v - y orthogonal to the

@@ -37,9 +37,9 @@ void bound_shapes(const Residual& residual, ceres::Problem& problem, double* x) 
     const Parameter& parameter = term->effect->parameters()[kind.parameter];
     const int index = static_cast<int>(first + static_cast<Eigen::Index>(s));
     if (std::isfinite(parameter.lower) && !(kind.logarithmic && parameter.lower <= 0.0))
-      problem.SetParameterLowerBound(x, index, to_inner(parameter.lower, kind));
+      problem.SetParameterLowerBound(x, index, kind.inner(parameter.lower));
     if (std::isfinite(parameter.upper))
-      problem.SetParameterUpperBound(x, index, to_inner(parameter.upper, kind));
+      problem.SetParameterUpperBound(x, index, kind.inner(parameter.upper));
   }
 }
 

@@ -17,7 +17,7 @@ bool is_slope(const Observation& observation) {
 
 /// mm to µm, rad to µrad.
 double in_micro(const Observation& observation, double value) {
-  return is_slope(observation) ? value * 1e6 : value / kMicrometre;
+  return is_slope(observation) ? value / kMicroradian : value / kMicrometre;
 }
 
 /// A low-band value as a height (or slope): the orthonormal transform scales it by sqrt(2)^level.
@@ -134,16 +134,21 @@ void add_noise(const Fit& fit, FitResult& out) {
 }
 
 void add_residuals(const Model& model, const Fit& fit, FitResult& out) {
-  double squares = 0.0, samples = 0.0;
+  struct Sum {
+    double squares = 0.0, samples = 0.0;
+    [[nodiscard]] std::optional<double> rms(double unit) const {
+      if (samples == 0.0) return std::nullopt;
+      return std::sqrt(squares / samples) / unit;
+    }
+  } heights, slopes;
   std::size_t fitted = 0;
   for (const Observation& observation : model.observations) {
     Eigen::VectorXd residual;
     if (observation.profile->role == Role::fit) {
       residual = fit.linear.residuals[fitted++];
-      if (!is_slope(observation)) {
-        squares += residual.squaredNorm();
-        samples += static_cast<double>(observation.low_band.samples());
-      }
+      Sum& sum = is_slope(observation) ? slopes : heights;
+      sum.squares += residual.squaredNorm();
+      sum.samples += static_cast<double>(observation.low_band.samples());
     } else {
       residual = observation.values - model_values(model, observation, fit.estimate);
       if (observation.nuisances.cols() > 0)
@@ -151,7 +156,8 @@ void add_residuals(const Model& model, const Fit& fit, FitResult& out) {
     }
     out.residuals.push_back(residual_summary(observation, residual));
   }
-  if (samples > 0.0) out.rms_um = std::sqrt(squares / samples) / kMicrometre;
+  out.rms_um = heights.rms(kMicrometre);
+  out.rms_urad = slopes.rms(kMicroradian);
 }
 
 void add_contributions(const Model& model, const Fit& fit, FitResult& out) {

@@ -124,6 +124,7 @@ Json fit_json(const FitResult& fit, const Result& result) {
   return {{"converged", fit.converged},
           {"message", fit.message},
           {"rms_um", or_null(fit.rms_um)},
+          {"rms_urad", or_null(fit.rms_urad)},
           {"observations", fit.observations},
           {"effective_observations", fit.effective_observations},
           {"chi_square", fit.chi_square},
@@ -195,8 +196,10 @@ std::string json_report(const Result& result, const TraceResult* trace) {
   report["trace"] = trace ? trace_json(*trace) : Json(nullptr);
   if (trace) {
     report["before"] = {{"rms_um", or_null(trace->before_rms_um)},
+                        {"rms_urad", or_null(trace->before_rms_urad)},
                         {"parameters", array_of(trace->before, parameter_json)}};
     report["after"] = {{"rms_um", or_null(trace->after_rms_um)},
+                       {"rms_urad", or_null(trace->after_rms_urad)},
                        {"parameters", array_of(trace->after, parameter_json)}};
   }
   require_finite(report, "");

@@ -7,7 +7,7 @@ Json tried(const TriedEffect& effect) {
   return {{"effect", effect.effect},
           {"delta_bic", effect.delta_bic},
           {"p_value", effect.p_value},
-          {"rms_um", effect.rms_um},
+          {"rms_um", or_null(effect.rms_um)},
           {"parameters", array_of(effect.parameters, parameter_json)},
           {"refused", effect.refused.empty() ? Json(nullptr) : Json(effect.refused)}};
 }
@@ -15,8 +15,10 @@ Json tried(const TriedEffect& effect) {
 Json round(const TraceRound& round) {
   return {{"accepted", round.accepted},
           {"ambiguous_with", round.ambiguous_with},
-          {"before_rms_um", round.before_rms_um},
-          {"after_rms_um", round.after_rms_um},
+          {"before_rms_um", or_null(round.before_rms_um)},
+          {"after_rms_um", or_null(round.after_rms_um)},
+          {"before_rms_urad", or_null(round.before_rms_urad)},
+          {"after_rms_urad", or_null(round.after_rms_urad)},
           {"before_holdout_rms_um", or_null(round.before_holdout_rms_um)},
           {"after_holdout_rms_um", or_null(round.after_holdout_rms_um)},
           {"delta_bic", round.delta_bic},
@@ -28,8 +30,8 @@ Json round(const TraceRound& round) {
 Json unnamed(const Unnamed& left) {
   Json evidence = Json::object();
   for (const auto& [clock, value] : left.log_evidence) evidence[clock] = value;
-  return {{"rms_um", left.rms_um},
-          {"pv_um", left.pv_um},
+  return {{"rms_" + left.unit, left.rms},
+          {"pv_" + left.unit, left.pv},
           {"p_value", left.p_value},
           {"profile", left.profile},
           {"from_mm", left.from_mm},

@@ -23,8 +23,17 @@ std::string value_of(const FittedParameter& p) {
 
 std::string last_name(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
-std::string change(double before, double after) {
-  return number(before, 4) + " -> " + number(after, 4) + " µm";
+std::string change(double before, double after, const std::string& unit) {
+  return number(before, 4) + " -> " + number(after, 4) + unit;
+}
+
+std::string residual_change(const TraceRound& round) {
+  std::vector<std::string> out;
+  if (round.before_rms_um && round.after_rms_um)
+    out.push_back(change(*round.before_rms_um, *round.after_rms_um, " µm"));
+  if (round.before_rms_urad && round.after_rms_urad)
+    out.push_back(change(*round.before_rms_urad, *round.after_rms_urad, " µrad"));
+  return joined(out);
 }
 
 std::string verdict(const TraceResult& trace) {
@@ -42,16 +51,15 @@ std::string verdict(const TraceResult& trace) {
 }
 
 std::string round(const TraceRound& round, std::size_t index) {
-  std::string text =
-      item(std::to_string(index + 1) + ". " + round.accepted +
-           (round.ambiguous_with.empty() ? "" : " or " + joined(round.ambiguous_with, " or ")) +
-           ": residual " + change(round.before_rms_um, round.after_rms_um) +
-           ", difference in BIC " + number(round.delta_bic, 3) + ", p " +
-           (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value));
+  std::string text = item(
+      std::to_string(index + 1) + ". " + round.accepted +
+      (round.ambiguous_with.empty() ? "" : " or " + joined(round.ambiguous_with, " or ")) +
+      ": residual " + residual_change(round) + ", difference in BIC " + number(round.delta_bic, 3) +
+      ", p " + (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value));
   if (round.before_holdout_rms_um && round.after_holdout_rms_um)
-    text +=
-        paragraph("     ", "on profiles left out of the fit " +
-                               change(*round.before_holdout_rms_um, *round.after_holdout_rms_um));
+    text += paragraph("     ",
+                      "on profiles left out of the fit " +
+                          change(*round.before_holdout_rms_um, *round.after_holdout_rms_um, " µm"));
   for (const FittedParameter& p : round.parameters)
     text += paragraph("     ", last_name(p.name) + " = " + value_of(p));
   return text;
@@ -76,8 +84,9 @@ std::string bent(const TraceResult& trace) {
 }
 
 std::string left_over(const Unnamed& left) {
-  std::string text = "Left without a name: " + number(left.rms_um, 3) + " µm rms, " +
-                     number(left.pv_um, 3) + " µm peak to valley on " + left.profile +
+  const std::string unit = left.unit == "um" ? " µm" : " µrad";
+  std::string text = "Left without a name: " + number(left.rms, 3) + unit + " rms, " +
+                     number(left.pv, 3) + unit + " peak to valley on " + left.profile +
                      " (lack of fit p " + (left.p_value < 1e-4 ? "" : "= ") +
                      probability(left.p_value) + "), largest from " + number(left.from_mm, 4) +
                      " to " + number(left.to_mm, 4) + " mm";

@@ -93,7 +93,7 @@ Planned plan(const Problem& problem, const std::vector<Profile>& profiles, const
 /// than the grid of the search.
 Candidate near_fitted(const Refined& rival) {
   const Effect& effect = *rival.candidate->term.effect;
-  Candidate out{rival.candidate->term, rival.candidate->options, {rival.shape}, {}};
+  Candidate out{rival.candidate->term, {}, false, {rival.shape}, {}};
   if (rival.shape.empty()) return out;
   const auto index = static_cast<std::size_t>(effect.shapes()[0].parameter);
   const Parameter& parameter = effect.parameters()[index];
@@ -106,16 +106,10 @@ Candidate near_fitted(const Refined& rival) {
   return out;
 }
 
-Eigen::Index linear_rows(const Linearisation& linear) {
-  Eigen::Index rows = linear.prior_rows.rows();
-  for (const Eigen::VectorXd& residual : linear.residuals) rows += residual.size();
-  return rows;
-}
-
-double predicted_separation(const Planned& planned, const Whitened& data, std::size_t like,
-                            const Refined& effect, const Refined& rival) {
+double predicted_separation(const Planned& planned, const Whitened& data, const Refined& effect,
+                            const Refined& rival) {
   std::vector<Noise> noise = data.noise();
-  noise.push_back(noise[like]);
+  noise.push_back(noise.front());
   Linearisation linear = planned.linear;
   const Eigen::Index priors = linear.prior_rows.rows();
   const Eigen::VectorXd signal =
@@ -127,7 +121,7 @@ double predicted_separation(const Planned& planned, const Whitened& data, std::s
     row += residual.size();
   }
   linear.prior_residuals.setZero();
-  const Whitened white(linear, noise, Eigen::MatrixXd(linear_rows(linear), 0));
+  const Whitened white(linear, noise, Eigen::MatrixXd(signal.size(), 0));
   const Candidate near = near_fitted(rival);
   Finding best{&near};
   for (Eigen::Index atom = 0; atom < near.atoms(); ++atom) {
@@ -144,18 +138,16 @@ double predicted_separation(const Planned& planned, const Whitened& data, std::s
 std::string separating_measurement(const Problem& problem, const std::vector<Profile>& profiles,
                                    const Model& model, const Fit& fit, const Whitened& data,
                                    const Refined& effect, const Refined& rival) {
-  const std::vector<const Observation*> fitted = fitted_observations(model);
+  // The other profiles differ from the first in the few things that are tried.
+  const Profile& like = *fitted_observations(model).front()->profile;
   double best = 0.0;
   std::string name;
-  for (std::size_t i = 0; i < fitted.size(); ++i) {
-    for (const Measurement& measurement : measurements_like(*fitted[i]->profile)) {
-      const Planned planned = plan(problem, profiles, model, fit, measurement);
-      const double separation = predicted_separation(planned, data, i, effect, rival);
-      if (separation <= best) continue;
-      best = separation;
-      name = measurement.what + " (like " + fitted[i]->profile->name + ")";
-    }
-    break;  // the others differ from it in the same few things
+  for (const Measurement& measurement : measurements_like(like)) {
+    const Planned planned = plan(problem, profiles, model, fit, measurement);
+    const double separation = predicted_separation(planned, data, effect, rival);
+    if (separation <= best) continue;
+    best = separation;
+    name = measurement.what + " (like " + like.name + ")";
   }
   const std::string pair = effect.candidate->name() + " and " + rival.candidate->name();
   if (best < kSeparates)

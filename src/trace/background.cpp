@@ -1,10 +1,10 @@
 #include "background.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 
+#include "linear_algebra.hpp"
 #include "slideway/base/units.hpp"
 
 namespace slideway {
@@ -18,6 +18,8 @@ constexpr int kLeastOrder = 1;           // BIC on the fine band alone overlooks
 constexpr int kMostLines = 6;
 constexpr double kFalseLine = 1e-3;       // chance that a spectrum of noise is given one line
 constexpr Eigen::Index kNeighbours = 15;  // on either side, for the level of a spectrum
+constexpr double kNoseRadius = 2.0;       // mm, of a large finishing tool
+constexpr double kMostLost = 0.1;         // of the radius of the face
 
 bool same_cut(const Observation& a, const Observation& b) {
   const Setup &s = a.profile->setup, &t = b.profile->setup;
@@ -28,12 +30,6 @@ bool same_cut(const Observation& a, const Observation& b) {
          s.feed_mm_per_min == t.feed_mm_per_min && s.spindle_rpm == t.spindle_rpm &&
          s.cut_direction == t.cut_direction && s.cut_radius_mm == t.cut_radius_mm &&
          s.start_s == t.start_s && s.traverse_mm_per_s == t.traverse_mm_per_s;
-}
-
-Eigen::MatrixXd orthonormal(const Eigen::MatrixXd& columns) {
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
-  qr.setThreshold(1e-10);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
 }
 
 Eigen::MatrixXd line(Eigen::Index n, double cycles_per_value) {
@@ -136,7 +132,51 @@ LinearProfile from_fine_band(const Linearisation& linear, std::size_t i,
   return linear_profile(free, linear.residuals[i], observation.profile->standard_uncertainty);
 }
 
+Eigen::MatrixXd unit_columns(Eigen::Index rows, const std::vector<Eigen::Index>& at) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, std::ssize(at));
+  for (std::size_t j = 0; j < at.size(); ++j) out(at[j], static_cast<Eigen::Index>(j)) = 1.0;
+  return out;
+}
+
+/// Radius out to which a nose cuts a curve visibly lower than it is: by ρ z'²/2 to first order. 0
+/// if that is no matter of the centre alone.
+/// @param curve, noise  of low-band values
+double lost_radius(const Model& model, const Observation& observation, const Eigen::VectorXd& curve,
+                   double noise) {
+  const std::vector<double> positions =
+      observation.low_band.positions(observation.profile->positions);
+  const Stations stations(positions, observation.profile->setup, model.machine);
+  const double height = std::sqrt(static_cast<double>(stations.size()) /
+                                  static_cast<double>(observation.low_band.samples()));
+  double lost = 0.0, reach = 0.0;
+  for (Eigen::Index i = 1; i < curve.size(); ++i) {
+    const double r = 0.5 * (stations.radius(i) + stations.radius(i - 1));
+    const double slope =
+        height * (curve[i] - curve[i - 1]) / (stations.trace(i) - stations.trace(i - 1));
+    reach = std::max(reach, r);
+    if (0.5 * kNoseRadius * slope * slope > height * noise) lost = std::max(lost, r);
+  }
+  return lost < kMostLost * reach ? lost : 0.0;
+}
+
+/// What the effects of the model that are steep at the centre put into a low band.
+Eigen::VectorXd centred_curve(const Model& model, const Fit& fit, std::size_t i) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(fit.linear.residuals[i].size());
+  for (const ModelTerm& term : model.terms)
+    if (is_centred(*term.effect)) {
+      const Eigen::Index first = term.first_amplitude, count = term.effect->amplitudes();
+      out += fit.linear.columns[i].middleCols(first, count) *
+             fit.estimate.amplitudes.segment(first, count);
+    }
+  return out;
+}
+
 }  // namespace
+
+bool is_centred(const Effect& effect) {
+  return effect.description().clock == Clock::radius && !effect.shapes().empty() &&
+         !effect.shapes()[0].stepwise;
+}
 
 Eigen::Index slow_cosine_count(Eigen::Index n) {
   return std::min(kSlowCosines, n / kValuesPerCosine);
@@ -151,20 +191,51 @@ Eigen::MatrixXd slow_cosines(Eigen::Index n, Eigen::Index count) {
   return out;
 }
 
-Eigen::MatrixXd loose_values(const Model& model, const Fit& fit) {
+double lost_centre(const Model& model, const Fit& fit) {
+  double lost = 0.0;
+  for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
+    const Observation& observation = *fit.linear.observations[i];
+    if (observation.profile->setup.kind == Kind::face)
+      lost = std::max(lost, lost_radius(model, observation, centred_curve(model, fit, i),
+                                        fit.noise[i].standard_deviation()));
+  }
+  return lost;
+}
+
+void leave_out_centre(Model& model, double radius_mm) {
+  for (Observation& observation : model.observations) {
+    if (observation.profile->setup.kind != Kind::face) continue;
+    std::vector<Eigen::Index> rows;
+    const std::vector<double> positions =
+        observation.low_band.positions(observation.profile->positions);
+    const Stations stations(positions, observation.profile->setup, model.machine);
+    for (Eigen::Index i = 0; i < stations.size(); ++i)
+      if (stations.radius(i) <= radius_mm) rows.push_back(i);
+    append(observation.nuisances, unit_columns(observation.values.size(), rows));
+  }
+}
+
+Eigen::MatrixXd loose_values(const Model& model, const Fit& fit, const std::vector<Noise>& noise,
+                             const Eigen::VectorXd& suspect) {
   std::vector<Eigen::Index> rows;
   Eigen::Index first = 0;
-  for (const Observation* observation : fit.linear.observations) {
-    const Setup& setup = observation->profile->setup;
+  for (std::size_t o = 0; o < fit.linear.observations.size(); ++o) {
+    const Observation& observation = *fit.linear.observations[o];
+    const Setup& setup = observation.profile->setup;
     const std::vector<double> positions =
-        observation->low_band.positions(observation->profile->positions);
+        observation.low_band.positions(observation.profile->positions);
     const Stations stations(positions, setup, model.machine);
     double reach = (setup.last_mm - setup.first_mm) / static_cast<double>(positions.size());
     if (setup.feed_mm_per_min && setup.spindle_rpm)
       reach = std::max(reach, *setup.feed_mm_per_min / *setup.spindle_rpm);
-    if (setup.kind == Kind::face)
+    if (setup.kind == Kind::face) {
+      Eigen::VectorXd curve = centred_curve(model, fit, o);
+      if (suspect.size() > 0) curve += suspect.segment(first, curve.size());
+      const double lost =
+          std::max(reach, lost_radius(model, observation, curve, noise[o].standard_deviation()));
       for (Eigen::Index i = 0; i < stations.size(); ++i)
-        if (stations.radius(i) <= reach) rows.push_back(first + i);
+        if (stations.radius(i) <= lost) rows.push_back(first + i);
+    }
     for (const ModelTerm& term : model.terms)
       for (std::size_t s = 0; s < term.effect->shapes().size(); ++s) {
         if (!term.effect->shapes()[s].stepwise || !term.effect->applies_to(setup)) continue;
@@ -172,12 +243,9 @@ Eigen::MatrixXd loose_values(const Model& model, const Fit& fit) {
         for (Eigen::Index i = 0; i < stations.size(); ++i)
           if (std::abs(stations.radius(i) - place) <= reach) rows.push_back(first + i);
       }
-    first += observation->values.size();
+    first += observation.values.size();
   }
-  Eigen::MatrixXd out =
-      Eigen::MatrixXd::Zero(first + fit.linear.prior_rows.rows(), std::ssize(rows));
-  for (std::size_t j = 0; j < rows.size(); ++j) out(rows[j], static_cast<Eigen::Index>(j)) = 1.0;
-  return out;
+  return unit_columns(first + fit.linear.prior_rows.rows(), rows);
 }
 
 std::vector<Noise> background_noise(const Fit& fit, const Eigen::MatrixXd& loose,

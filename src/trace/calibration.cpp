@@ -46,9 +46,7 @@ Eigen::MatrixXd null_residuals(const Whitened& data, Eigen::Index count) {
       rows *= noise.innovation;
     }
   }
-  data.whiten(out);
-  out -= data.basis() * (data.basis().transpose() * out).eval();
-  return out;
+  return data.outside(std::move(out));
 }
 
 Calibration calibrate(const Whitened& data, const Candidates& candidates) {

@@ -5,6 +5,8 @@
 #include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <cmath>
 
+#include "gates.hpp"
+#include "linear_algebra.hpp"
 #include "slideway/base/text.hpp"
 
 namespace slideway {
@@ -12,9 +14,7 @@ namespace {
 
 constexpr double kPower = 0.8;
 constexpr double kPowerDeviate = 0.8416;  // normal deviate of 80 %
-constexpr double kEnough = 10.0;          // -ΔBIC
-constexpr double kLeastSize = 5.0;
-constexpr double kNegligible = 0.02;  // of a column's size: not worth a name
+constexpr double kNegligible = 0.02;      // of a column's size: not worth a name
 
 /// Distribution of a gain where there is an effect, in plain doubles; not finite instead of an
 /// exception where it can not be evaluated.
@@ -55,13 +55,7 @@ std::string made_by(const Model& model, const Fit& fit, const Whitened& data,
     joined << all, wide;
     all = std::move(joined);
   }
-  const Eigen::VectorXd unit =
-      all.colwise().norm().transpose().unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-9);
-  solver.compute(all * unit.asDiagonal());
-  const Eigen::VectorXd scaled = solver.solve(column);
-  const Eigen::VectorXd amplitudes = (unit.asDiagonal() * scaled).head(k);
+  const Eigen::VectorXd amplitudes = least_squares(all, column).values.head(k);
   const Eigen::VectorXd parameters = fit.parameters.jacobian * amplitudes;
   const Eigen::MatrixXd back =
       Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fit.parameters.jacobian)
@@ -87,12 +81,10 @@ std::optional<double> detection_limit(const Model& model, const Whitened& data,
   const Eigen::MatrixXd columns =
       stacked_columns(model, candidate.term, shape, data.rows() - data.values());
   const Projection own = project(data, columns);
-  if (own.rank == 0 || candidate.amplitudes() > 2) return std::nullopt;
-  const auto unknowns =
-      static_cast<double>(candidate.unknowns() - candidate.amplitudes() + own.rank);
-  const double penalty = unknowns * std::log(static_cast<double>(data.values()));
-  const double enough = std::max(
-      {penalty + std::max(kEnough, calibration.threshold(significance)), kLeastSize * kLeastSize});
+  if (own.rank == 0 || !candidate.term.effect->has_one_size()) return std::nullopt;
+  const double enough = std::max(penalty(data, candidate.unknowns(own.rank)) +
+                                     std::max(kEnough, calibration.threshold(significance)),
+                                 kLeastSize * kLeastSize);
   const double noncentrality =
       GainOfEffect::find_non_centrality(static_cast<double>(own.rank), enough, 1.0 - kPower);
   if (!std::isfinite(noncentrality)) return std::nullopt;
@@ -111,17 +103,9 @@ std::optional<double> detection_limit(const Model& model, const Whitened& data,
   values[0] = limit;
   const Eigen::VectorXd inner = effect.from_parameters(values);
   Eigen::MatrixXd joint(data.rows(), a + 1);
-  joint.leftCols(a) = columns;
-  Eigen::Index row = 0;
-  joint.col(a).setZero();
-  for (const Observation* observation : fitted_observations(model)) {
-    const Eigen::VectorXd slope =
-        low_band_derivatives(model, candidate.term, *observation, shape, 0) * inner.head(a);
-    joint.col(a).segment(row, slope.size()) = slope;
-    row += slope.size();
-  }
-  data.whiten(joint);
-  joint -= data.basis() * (data.basis().transpose() * joint).eval();
+  joint << columns, stacked_derivatives(model, candidate.term, shape, data.rows() - data.values()) *
+                        inner.head(a);
+  joint = data.outside(std::move(joint));
   const Eigen::MatrixXd inverse =
       Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(joint).pseudoInverse();
   const ParameterValues at = effect.parameter_values(inner.head(a), shape);

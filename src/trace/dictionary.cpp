@@ -10,12 +10,14 @@
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/shape_grid.hpp"
 #include "slideway/identify/solve.hpp"
+#include "whitened.hpp"
 
 namespace slideway {
 namespace {
 
 constexpr int kThinLevel = 2;  // four samples a low-band value show a search what it looks at
 constexpr Eigen::Index kAtomsAtATime = 16;
+constexpr int kVerticalDegree = 2;
 
 /// A profile with four samples a low-band value: means of equal blocks are again the low band for
 /// db1, so its columns are those of the whole profile but for what varies inside a quarter.
@@ -117,51 +119,85 @@ void fill(const Viewer& viewer, Candidate& candidate) {
   });
 }
 
+/// A straightness of more terms than the declared one, if there is one and no second. A higher
+/// degree is one more hypothesis each: the search takes the one that pays.
+std::vector<Candidate> straightnesses(const Model& model, const Problem& problem) {
+  constexpr int kMoreTerms[] = {1, 2, 4, 6};
+  const auto is_one = [](const DeclaredEffect& effect) { return effect.name == "straightness"; };
+  const auto declared = std::find_if(problem.effects.begin(), problem.effects.end(), is_one);
+  const bool any = declared != problem.effects.end();
+  if (any && std::any_of(std::next(declared), problem.effects.end(), is_one)) return {};
+  std::vector<Candidate> out;
+  for (const int more : kMoreTerms) {
+    Candidate candidate;
+    candidate.term.name = "straightness";
+    if (any) candidate.options = declared->options;
+    candidate.raises_degree = any;
+    const int known = any ? *candidate.options.degree : 1;  // b_0 and b_1 are the trace's own
+    candidate.options.degree = known + more;
+    try {
+      candidate.term.effect =
+          any ? make_straightness_terms(known + 1, candidate.options, model.machine, model.range)
+              : make_effect("straightness", candidate.options, model.machine, model.range);
+    } catch (const UsageError&) {  // no such carriage, or no such degree
+      continue;
+    }
+    if (needs(model, *candidate.term.effect).empty()) out.push_back(std::move(candidate));
+  }
+  return out;
+}
+
 }  // namespace
 
-Dictionary make_dictionary(const Model& model, const std::vector<std::string>& names,
-                           Eigen::Index prior_rows) {
+Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows) {
   Dictionary out;
   const Viewer viewer(model, prior_rows);
-  for (const std::string& name : names) {
+  const auto add = [&](Candidate candidate, const std::string& missing) {
+    if (!missing.empty()) {
+      out.not_testable.push_back({candidate.name(), missing});
+      return;
+    }
+    candidate.shapes = shapes_of(model, candidate.term);
+    fill(viewer, candidate);
+    out.candidates.push_back(std::move(candidate));
+  };
+  for (const std::string& name : problem.trace.candidates) {
+    if (name == "straightness") {
+      for (Candidate& candidate : straightnesses(model, problem)) add(std::move(candidate), "");
+      continue;
+    }
     const bool declared = std::any_of(model.terms.begin(), model.terms.end(),
                                       [&](const ModelTerm& term) { return term.name == name; });
     if (declared) continue;
     Candidate candidate;
     candidate.term.name = name;
+    if (name == "vertical_straightness") candidate.options.degree = kVerticalDegree;
     try {
       candidate.term.effect = make_effect(name, candidate.options, model.machine, model.range);
-    } catch (const UsageError&) {  // the one option a candidate can lack
-      out.not_testable.push_back({name, "span_mm in [machine]"});
+    } catch (const UsageError& error) {  // the machine or the problem lacks what the effect needs
+      add(std::move(candidate), name == "gantry_sag" ? "span_mm in [machine]" : error.what());
       continue;
     }
     const std::string missing = needs(model, *candidate.term.effect);
-    if (!missing.empty()) {
-      out.not_testable.push_back({name, missing});
-      continue;
-    }
-    candidate.shapes = shapes_of(model, candidate.term);
-    fill(viewer, candidate);
-    out.candidates.push_back(std::move(candidate));
+    add(std::move(candidate), missing);
   }
   return out;
 }
 
 Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,
                                 std::span<const double> shape, Eigen::Index prior_rows) {
-  std::vector<Eigen::MatrixXd> parts;
-  Eigen::Index rows = prior_rows;
-  for (const Observation* observation : fitted_observations(model)) {
-    parts.push_back(low_band_columns(model, term, *observation, shape));
-    rows += parts.back().rows();
-  }
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, term.effect->amplitudes());
-  Eigen::Index row = 0;
-  for (const Eigen::MatrixXd& part : parts) {
-    out.middleRows(row, part.rows()) = part;
-    row += part.rows();
-  }
-  return out;
+  const auto observations = fitted_observations(model);
+  return stack(observations, prior_rows, term.effect->amplitudes(), [&](std::size_t i) {
+    return low_band_columns(model, term, *observations[i], shape);
+  });
+}
+
+Eigen::MatrixXd stacked_derivatives(const Model& model, const ModelTerm& term,
+                                    std::span<const double> shape, Eigen::Index prior_rows) {
+  const auto observations = fitted_observations(model);
+  return stack(observations, prior_rows, term.effect->amplitudes(), [&](std::size_t i) {
+    return low_band_derivatives(model, term, *observations[i], shape, 0);
+  });
 }
 
 }  // namespace slideway

@@ -11,15 +11,16 @@ namespace slideway {
 struct Candidate {
   ModelTerm term;
   EffectOptions options;
+  bool raises_degree = false;  // of the declared straightness; its columns are the terms that lacks
   std::vector<std::vector<double>> shapes;  // one entry per atom; an empty shape if it has none
   Eigen::MatrixXd columns;                  // stacked rows by (#amplitudes * #atoms), not whitened
 
   [[nodiscard]] const std::string& name() const { return term.name; }
   [[nodiscard]] Eigen::Index amplitudes() const { return term.effect->amplitudes(); }
   [[nodiscard]] Eigen::Index atoms() const { return static_cast<Eigen::Index>(shapes.size()); }
-  /// Free numbers: amplitudes and shapes.
-  [[nodiscard]] Eigen::Index unknowns() const {
-    return amplitudes() + static_cast<Eigen::Index>(term.effect->shapes().size());
+  /// Free numbers: the amplitudes that the model does not span, and the shapes.
+  [[nodiscard]] Eigen::Index unknowns(Eigen::Index rank) const {
+    return rank + std::ssize(term.effect->shapes());
   }
 };
 
@@ -36,12 +37,16 @@ struct Dictionary {
   std::vector<Untestable> not_testable;
 };
 
+/// Effects of those names that are not declared, and a declared straightness with more terms.
 /// @param prior_rows  rows of zeros below the observations', one per prior of the model
-Dictionary make_dictionary(const Model& model, const std::vector<std::string>& names,
-                           Eigen::Index prior_rows);
+Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows);
 
 /// Low-band columns of an effect under one another for all fitted observations, prior rows zero.
 Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,
                                 std::span<const double> shape, Eigen::Index prior_rows);
+
+/// The same for d(columns)/d(shape[0]).
+Eigen::MatrixXd stacked_derivatives(const Model& model, const ModelTerm& term,
+                                    std::span<const double> shape, Eigen::Index prior_rows);
 
 }  // namespace slideway

@@ -1,7 +1,8 @@
 #include "holdout.hpp"
 
-#include <Eigen/QR>
 #include <cmath>
+
+#include "linear_algebra.hpp"
 
 namespace slideway {
 namespace {
@@ -23,30 +24,10 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
   rows /= noise.innovation;
   if (nuisances.cols() > 0) {
     noise.correlation.whiten(nuisances);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(nuisances);
-    const Eigen::MatrixXd basis =
-        qr.householderQ() * Eigen::MatrixXd::Identity(nuisances.rows(), nuisances.cols());
+    const Eigen::MatrixXd basis = orthonormal(std::move(nuisances));
     rows -= basis * (basis.transpose() * rows).eval();
   }
   return rows;
-}
-
-struct Solution {
-  Eigen::VectorXd values;
-  double square = 0.0;
-};
-
-Solution least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
-  const Eigen::VectorXd unit = columns.colwise().norm().transpose().unaryExpr(
-      [](double s) { return s > 0.0 ? 1.0 / s : 0.0; });
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(1e-9);
-  solver.compute(columns * unit.asDiagonal());
-  Solution out;
-  const Eigen::VectorXd scaled = solver.solve(target);
-  out.values = unit.asDiagonal() * scaled;
-  out.square = (target - columns * out.values).squaredNorm();
-  return out;
 }
 
 }  // namespace
@@ -72,8 +53,8 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
     kept.bottomRows(linear.prior_rows.rows()).setZero();
     kept.bottomLeftCorner(linear.prior_rows.rows(), k + a + 1).leftCols(k) = linear.prior_rows;
     kept.bottomRightCorner(linear.prior_rows.rows(), 1) = linear.prior_residuals;
-    const Solution without = least_squares(kept.leftCols(k), kept.col(k + a));
-    const Solution with = least_squares(kept.leftCols(k + a), kept.col(k + a));
+    const LeastSquares without = least_squares(kept.leftCols(k), kept.col(k + a));
+    const LeastSquares with = least_squares(kept.leftCols(k + a), kept.col(k + a));
     const double gain = without.square - with.square;
     if (gain < std::max(kTold * kTold, kLeastShare * candidate.projection.gain)) continue;
     const Eigen::VectorXd carried = rows[left_out].middleCols(k, a) * with.values.tail(a);

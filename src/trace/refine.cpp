@@ -11,36 +11,6 @@
 namespace slideway {
 namespace {
 
-double to_inner(double shape, const Shape& kind) {
-  return kind.logarithmic ? std::log(shape) : shape;
-}
-double to_outer(double inner, const Shape& kind) {
-  return kind.logarithmic ? std::exp(inner) : inner;
-}
-
-Eigen::MatrixXd white_outside(const Whitened& data, Eigen::MatrixXd columns) {
-  data.whiten(columns);
-  columns -= data.basis() * (data.basis().transpose() * columns).eval();
-  return columns;
-}
-
-Eigen::MatrixXd stacked_derivatives(const Model& model, const ModelTerm& term,
-                                    std::span<const double> shape, Eigen::Index prior_rows) {
-  std::vector<Eigen::MatrixXd> parts;
-  Eigen::Index rows = prior_rows;
-  for (const Observation* observation : fitted_observations(model)) {
-    parts.push_back(low_band_derivatives(model, term, *observation, shape, 0));
-    rows += parts.back().rows();
-  }
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, term.effect->amplitudes());
-  Eigen::Index row = 0;
-  for (const Eigen::MatrixXd& part : parts) {
-    out.middleRows(row, part.rows()) = part;
-    row += part.rows();
-  }
-  return out;
-}
-
 /// The residual outside model and candidate as a function of the shape.
 class ProjectedResidual final : public ceres::SizedCostFunction<ceres::DYNAMIC, 1> {
  public:
@@ -52,17 +22,16 @@ class ProjectedResidual final : public ceres::SizedCostFunction<ceres::DYNAMIC, 
   bool Evaluate(const double* const* parameters, double* residuals,
                 double** jacobians) const override {
     const Shape& kind = term_.effect->shapes()[0];
-    const std::vector<double> shape{to_outer(parameters[0][0], kind)};
+    const std::vector<double> shape{kind.outer(parameters[0][0])};
     const Eigen::Index priors = data_.rows() - data_.values();
-    const Eigen::MatrixXd columns =
-        white_outside(data_, stacked_columns(model_, term_, shape, priors));
+    const Eigen::MatrixXd columns = data_.outside(stacked_columns(model_, term_, shape, priors));
     const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition(columns);
     const Eigen::VectorXd amplitudes = decomposition.solve(data_.residual());
     Eigen::Map<Eigen::VectorXd> out(residuals, data_.rows());
     out = data_.residual() - columns * amplitudes;
     if (jacobians && jacobians[0]) {
       Eigen::VectorXd slope =
-          white_outside(data_, stacked_derivatives(model_, term_, shape, priors)) * amplitudes;
+          data_.outside(stacked_derivatives(model_, term_, shape, priors)) * amplitudes;
       slope -= columns * decomposition.solve(slope);
       if (kind.logarithmic) slope *= shape[0];
       Eigen::Map<Eigen::VectorXd>(jacobians[0], data_.rows()) = -slope;
@@ -88,15 +57,15 @@ double best_smooth_shape(const Model& model, const Whitened& data, const Finding
   const ModelTerm& term = finding.candidate->term;
   const Shape& kind = term.effect->shapes()[0];
   const auto [low, high] = neighbours(finding);
-  double x = to_inner(finding.candidate->shapes[finding.atom][0], kind);
-  if (!(low < high)) return to_outer(x, kind);
+  double x = kind.inner(finding.candidate->shapes[finding.atom][0]);
+  if (!(low < high)) return kind.outer(x);
   ProjectedResidual cost(model, data, term);
   ceres::Problem::Options keep;
   keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(keep);
   problem.AddResidualBlock(&cost, nullptr, &x);
-  problem.SetParameterLowerBound(&x, 0, to_inner(low, kind));
-  problem.SetParameterUpperBound(&x, 0, to_inner(high, kind));
+  problem.SetParameterLowerBound(&x, 0, kind.inner(low));
+  problem.SetParameterUpperBound(&x, 0, kind.inner(high));
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.logging_type = ceres::SILENT;
@@ -105,7 +74,7 @@ double best_smooth_shape(const Model& model, const Whitened& data, const Finding
   options.function_tolerance = 1e-9;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  return to_outer(x, kind);
+  return kind.outer(x);
 }
 
 /// Every place between two samples of any profile, between the neighbours on the grid.
@@ -141,7 +110,7 @@ void assess(const Model& model, const Whitened& data, Refined& out) {
   if (s > 0)
     columns.col(a) = stacked_derivatives(model, term, out.shape, data.rows() - data.values()) *
                      out.projection.amplitudes;
-  columns = white_outside(data, std::move(columns));
+  columns = data.outside(std::move(columns));
   const Eigen::MatrixXd inverse =
       Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(columns).pseudoInverse();
   const Eigen::MatrixXd covariance = inverse * inverse.transpose();
@@ -151,8 +120,7 @@ void assess(const Model& model, const Whitened& data, Refined& out) {
   out.uncertainties =
       (values.jacobian * covariance * values.jacobian.transpose()).diagonal().cwiseSqrt();
   // One number for the size: the parameter itself, or for several amplitudes their joint gain.
-  const bool single = a == 1 || !term.effect->linear_parameters();
-  out.size_in_uncertainties = single && out.uncertainties[0] > 0.0
+  out.size_in_uncertainties = term.effect->has_one_size() && out.uncertainties[0] > 0.0
                                   ? std::abs(out.values[0]) / out.uncertainties[0]
                                   : std::sqrt(out.projection.gain);
 }
@@ -168,9 +136,9 @@ Refined refine(const Model& model, const Whitened& data, const Finding& finding)
     out.shape[0] = term.effect->shapes()[0].stepwise ? best_step(model, data, finding)
                                                      : best_smooth_shape(model, data, finding);
     const Shape& kind = term.effect->shapes()[0];
-    const double first = to_inner(finding.candidate->shapes.front()[0], kind);
-    const double last = to_inner(finding.candidate->shapes.back()[0], kind);
-    const double at = to_inner(out.shape[0], kind);
+    const double first = kind.inner(finding.candidate->shapes.front()[0]);
+    const double last = kind.inner(finding.candidate->shapes.back()[0]);
+    const double at = kind.inner(out.shape[0]);
     out.at_end = !kind.stepwise && std::min(at - first, last - at) < 1e-6 * (last - first);
   }
   out.columns = stacked_columns(model, term, out.shape, data.rows() - data.values());

@@ -2,19 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "background.hpp"
+#include "gates.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
 
 namespace slideway {
 namespace {
 
-constexpr double kEnough = -10.0;        // ΔBIC
-constexpr double kTied = 10.0;           // of BIC: no choice between these
-constexpr double kLeastSize = 5.0;       // standard uncertainties of its own size
 constexpr double kWorthRefining = 30.0;  // behind the best on the grid, or
 constexpr double kWorthShare = 0.6;      // of it: a line between two points of the grid loses some
-constexpr std::size_t kMostRefined = 8;
+constexpr std::size_t kMostRefined = 10;
 constexpr int kNoiseRounds = 3;
 
 const Finding& best_of(const std::vector<Finding>& findings) {
@@ -48,7 +48,7 @@ std::string implausible(const Refined& refined) {
 std::string reason_against(const Refined& refined, double p_value, double significance,
                            const std::optional<HeldOut>& held_out) {
   if (refined.projection.rank == 0) return "the model makes the same columns";
-  if (refined.delta_bic > kEnough)
+  if (refined.delta_bic > -kEnough)
     return "gains too little: difference in BIC " + significant(refined.delta_bic, 3);
   if (p_value > significance) return "noise gives as much: p = " + significant(p_value, 2);
   if (std::string why = implausible(refined); !why.empty()) return why;
@@ -61,53 +61,111 @@ std::string reason_against(const Refined& refined, double p_value, double signif
   return "";
 }
 
-}  // namespace
-
-std::optional<std::size_t> Look::choice() const {
-  for (std::size_t i = 0; i < refined.size(); ++i)
-    if (refused[i].empty() && refined[i].delta_bic <= refined.front().delta_bic + kTied) return i;
-  return std::nullopt;
+/// Whether two parts of the residual are one and the same rather than each its own.
+bool alike(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  constexpr double kAlike = 0.3;  // cosine
+  return std::abs(a.dot(b)) > kAlike * a.norm() * b.norm();
 }
 
-std::vector<std::size_t> Look::rivals(std::size_t chosen) const {
-  std::vector<std::size_t> out;
-  for (std::size_t i = 0; i < refined.size(); ++i)
-    if (i != chosen && refused[i].empty() &&
-        refined[i].delta_bic <= refined[chosen].delta_bic + kTied)
-      out.push_back(i);
+/// Candidates worth a closer look at their best shapes, best BIC first.
+std::vector<Refined> refine_best(const Model& model, const Whitened& data,
+                                 std::vector<Finding> findings) {
+  std::stable_sort(findings.begin(), findings.end(),
+                   [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
+  std::vector<Refined> out;
+  for (const Finding& finding : findings) {
+    const double best = findings.front().delta_bic;
+    if (out.size() == kMostRefined || finding.rank == 0 ||
+        finding.delta_bic > std::max(best + kWorthRefining, kWorthShare * best))
+      break;
+    out.push_back(refine(model, data, finding));
+  }
+  std::stable_sort(out.begin(), out.end(),
+                   [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
+  return out;
+}
+
+/// The data made white for a model that lacks what the candidates can bring, and their findings:
+/// noise and effect are estimated together.
+std::pair<Whitened, std::vector<Finding>> whiten_beside(const Fit& fit,
+                                                        const Eigen::MatrixXd& loose,
+                                                        const Candidates& candidates) {
+  Whitened data(fit.linear, background_noise(fit, loose), loose);
+  if (candidates.empty()) return {std::move(data), {}};
+  std::vector<Finding> findings = search(data, candidates);
+  for (int round = 0; round < kNoiseRounds && best_of(findings).delta_bic < 0.0; ++round) {
+    const Finding suspect = best_of(findings);
+    data = Whitened(fit.linear, background_noise(fit, loose, columns_by_profile(data, suspect)),
+                    loose);
+    findings = search(data, candidates);
+    if (best_of(findings).candidate == suspect.candidate) break;
+  }
+  return {std::move(data), std::move(findings)};
+}
+
+}  // namespace
+
+bool is_possible(const Seen& each) {
+  return each.refined.projection.rank > 0 && implausible(each.refined).empty();
+}
+
+const Seen* Look::choice(const std::vector<std::string>& taken) const {
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (!seen[i].refused.empty() ||
+        std::find(taken.begin(), taken.end(), seen[i].name()) != taken.end())
+      continue;
+    const auto stands_before = [&](const Seen& better) {
+      return better.refined.delta_bic < seen[i].refined.delta_bic - kTied &&
+             alike(better.fitted, seen[i].fitted);
+    };
+    if (std::none_of(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(i), stands_before))
+      return &seen[i];
+  }
+  return nullptr;
+}
+
+std::vector<const Seen*> Look::rivals(const Seen& chosen) const {
+  std::vector<const Seen*> out;
+  const auto unknowns = [](const Seen& each) {
+    return each.refined.candidate->unknowns(each.refined.projection.rank);
+  };
+  for (const Seen& each : seen) {
+    const bool counts = each.refused.empty() ||
+                        (is_possible(each) &&
+                         (unknowns(each) <= unknowns(chosen) || is_carriage_effect(chosen.name())));
+    const bool known = std::any_of(out.begin(), out.end(),
+                                   [&](const Seen* other) { return other->name() == each.name(); });
+    if (counts && !known && each.name() != chosen.name() &&
+        each.refined.delta_bic <= chosen.refined.delta_bic + kTied &&
+        alike(each.fitted, chosen.fitted))
+      out.push_back(&each);
+  }
   return out;
 }
 
 Look look(const Model& model, const Fit& fit, const Candidates& candidates, double significance,
           std::optional<Calibration>& calibration) {
-  const Eigen::MatrixXd loose = loose_values(model, fit);
-  Look out{Whitened(fit.linear, background_noise(fit, loose), loose), {}, {}, {}, {}};
+  const Eigen::MatrixXd loose = loose_values(model, fit, fit.noise);
+  auto [data, findings] = whiten_beside(fit, loose, candidates);
+  Look out{std::move(data), {}};
   if (candidates.empty()) return out;
-  std::vector<Finding> findings = search(out.data, candidates);
-  for (int round = 0; round < kNoiseRounds && best_of(findings).delta_bic < 0.0; ++round) {
-    const Finding suspect = best_of(findings);
-    out.data = Whitened(fit.linear,
-                        background_noise(fit, loose, columns_by_profile(out.data, suspect)), loose);
-    findings = search(out.data, candidates);
-    if (best_of(findings).candidate == suspect.candidate) break;
-  }
   if (!calibration) calibration = calibrate(out.data, candidates);
-  std::stable_sort(findings.begin(), findings.end(),
-                   [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
-  for (const Finding& finding : findings) {
-    const double best = findings.front().delta_bic;
-    if (out.refined.size() == kMostRefined || finding.rank == 0 ||
-        finding.delta_bic > std::max(best + kWorthRefining, kWorthShare * best))
-      break;
-    out.refined.push_back(refine(model, out.data, finding));
+  std::vector<Refined> refined = refine_best(model, out.data, findings);
+  if (!refined.empty() && is_centred(*refined.front().candidate->term.effect)) {
+    const Refined& best = refined.front();
+    const Eigen::MatrixXd looser =
+        loose_values(model, fit, out.data.noise(), best.columns * best.projection.amplitudes);
+    if (looser.cols() > loose.cols()) {
+      std::tie(out.data, findings) = whiten_beside(fit, looser, candidates);
+      refined = refine_best(model, out.data, findings);
+    }
   }
-  std::stable_sort(out.refined.begin(), out.refined.end(),
-                   [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
-  for (const Refined& refined : out.refined) {
-    out.p_values.push_back(calibration->p_value(-refined.delta_bic));
-    out.held_out.push_back(leave_one_out(fit.linear, out.data, refined));
-    out.refused.push_back(
-        reason_against(refined, out.p_values.back(), significance, out.held_out.back()));
+  for (Refined& each : refined) {
+    const double p_value = calibration->p_value(-each.delta_bic);
+    const std::optional<HeldOut> held_out = leave_one_out(fit.linear, out.data, each);
+    std::string refused = reason_against(each, p_value, significance, held_out);
+    Eigen::VectorXd fitted = out.data.outside(each.columns * each.projection.amplitudes);
+    out.seen.push_back({std::move(each), p_value, held_out, std::move(refused), std::move(fitted)});
   }
   return out;
 }

@@ -6,20 +6,34 @@
 
 namespace slideway {
 
+/// A candidate that was worth a closer look.
+struct Seen {
+  Refined refined;
+  double p_value = 1.0;
+  std::optional<HeldOut> held_out;
+  std::string refused;     // why; empty: acceptable
+  Eigen::VectorXd fitted;  // what it takes of the white residual
+
+  [[nodiscard]] const std::string& name() const { return refined.candidate->name(); }
+};
+
+/// Physically possible, and not of the model's own span.
+bool is_possible(const Seen& each);
+
 /// One look at what a fitted model leaves over.
 struct Look {
   Whitened data;
-  std::vector<Refined> refined;      // candidates worth a closer look, best BIC first
-  std::vector<double> p_values;      // of each
-  std::vector<std::string> refused;  // why not, per refined; empty: acceptable
-  std::vector<std::optional<HeldOut>> held_out;
+  std::vector<Seen> seen;  // best BIC first
 
-  /// Index of the candidate to accept: the acceptable one of least BIC, if it has no better rival
-  /// that can not be accepted itself.
-  [[nodiscard]] std::optional<std::size_t> choice() const;
+  /// The candidate to accept, none of `taken`: the acceptable one of least BIC, if no better one
+  /// that can not be accepted itself takes the same of the residual. Null: none.
+  [[nodiscard]] const Seen* choice(const std::vector<std::string>& taken = {}) const;
 
-  /// Acceptable candidates within 10 of the BIC of `chosen`, without it.
-  [[nodiscard]] std::vector<std::size_t> rivals(std::size_t chosen) const;
+  /// Other effects that take the same of the residual, within 10 of the BIC of `chosen`: the
+  /// acceptable ones, and those too uncertain to be accepted that need no more unknowns. Where the
+  /// chosen one is a carriage's polynomial, which comes near every smooth effect, all that are
+  /// possible.
+  [[nodiscard]] std::vector<const Seen*> rivals(const Seen& chosen) const;
 };
 
 /// @param calibration  null distribution of the search; made here if it is not there yet

@@ -72,16 +72,11 @@ std::vector<Block> blocks_of(const Candidates& candidates) {
   return out;
 }
 
+}  // namespace
+
 double penalty(const Whitened& data, Eigen::Index unknowns) {
   return static_cast<double>(unknowns) * std::log(static_cast<double>(data.values()));
 }
-
-/// Free numbers of a candidate of which the model spans some amplitudes.
-Eigen::Index unknowns(const Candidate& candidate, Eigen::Index rank) {
-  return candidate.unknowns() - candidate.amplitudes() + rank;
-}
-
-}  // namespace
 
 std::vector<Finding> search(const Whitened& data, const Candidates& candidates) {
   const std::vector<Block> blocks = blocks_of(candidates);
@@ -93,7 +88,7 @@ std::vector<Finding> search(const Whitened& data, const Candidates& candidates) 
     for_block(data, candidate, block.first, block.count, data.residual(),
               [&](Eigen::Index atom, const GramRoot& root, const auto& products) {
                 const double gain = (root.root * products).squaredNorm();
-                const double bic = penalty(data, unknowns(candidate, root.rank)) - gain;
+                const double bic = penalty(data, candidate.unknowns(root.rank)) - gain;
                 if (root.rank > 0 && bic < best[b].delta_bic)
                   best[b] = {&candidate, atom, gain, bic, root.rank};
               });
@@ -129,7 +124,7 @@ Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates
         data, candidate, blocks[b].first, blocks[b].count, residuals,
         [&](Eigen::Index, const GramRoot& root, const auto& products) {
           if (root.rank == 0) return;
-          const double cost = penalty(data, unknowns(candidate, root.rank));
+          const double cost = penalty(data, candidate.unknowns(root.rank));
           best.col(b) = best.col(b).cwiseMax(
               ((root.root * products).colwise().squaredNorm().array() - cost).matrix().transpose());
         });

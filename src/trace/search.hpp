@@ -15,6 +15,9 @@ struct Finding {
   Eigen::Index rank = 0;   // amplitudes the model does not span; 0: the candidate is one of it
 };
 
+/// What so many unknowns cost in BIC: unknowns ln n.
+double penalty(const Whitened& data, Eigen::Index unknowns);
+
 /// Best atom of every candidate, in the order of the dictionary.
 std::vector<Finding> search(const Whitened& data, const Candidates& candidates);
 

@@ -70,13 +70,12 @@ Eigen::VectorXd weights(double length) {
 struct Process {
   double log_evidence = -INFINITY;
   double length = 0.0;
-  Eigen::VectorXd coefficients;
+  Eigen::VectorXd sizes, coefficients;
 };
 
 /// Best length and size by evidence. @param copies  how many sets of cosines stand side by side
 Process best_process(const Whitened& data, Eigen::MatrixXd columns, Eigen::Index copies) {
-  data.whiten(columns);
-  columns -= data.basis() * (data.basis().transpose() * columns).eval();
+  columns = data.outside(std::move(columns));
   const double unit = std::sqrt(columns.squaredNorm() / static_cast<double>(data.rows()));
   if (!(unit > 0.0)) return {};
   columns /= unit;
@@ -94,7 +93,7 @@ Process best_process(const Whitened& data, Eigen::MatrixXd columns, Eigen::Index
       const double log_evidence =
           0.5 * scaled.dot(solved) - llt.matrixLLT().diagonal().array().log().sum();
       if (log_evidence > best.log_evidence)
-        best = {log_evidence, length, root.asDiagonal() * solved / unit};
+        best = {log_evidence, length, root / unit, root.asDiagonal() * solved / unit};
     }
   return best;
 }
@@ -152,13 +151,7 @@ void locate(const Profile& profile, const std::vector<double>& positions,
   out.dominant_period_mm = dominant_period(profile, values);
 }
 
-/// A Gaussian process on the clock with the largest evidence.
-struct Structure {
-  Unnamed description;  // clock and evidence only
-  double log_evidence = -INFINITY;
-  std::vector<Eigen::MatrixXd> columns;  // per fitted profile
-  Eigen::VectorXd coefficients;
-};
+}  // namespace
 
 Structure find_structure(const Model& model, const Whitened& data, const Linearisation& linear) {
   Structure found;
@@ -172,6 +165,7 @@ Structure find_structure(const Model& model, const Whitened& data, const Lineari
     if (!(process.log_evidence > best_evidence)) return;
     best_evidence = process.log_evidence;
     found.columns = columns;
+    found.sizes = process.sizes;
     found.coefficients = process.coefficients;
     out.clock = symbol;
     out.correlation_length = process.length * range;
@@ -208,8 +202,6 @@ Structure find_structure(const Model& model, const Whitened& data, const Lineari
   return found;
 }
 
-}  // namespace
-
 LackOfFit lack_of_fit(const Whitened& data, const Linearisation& linear) {
   Eigen::Index total = 0;
   for (const Observation* observation : linear.observations)
@@ -241,24 +233,22 @@ LackOfFit lack_of_fit(const Whitened& data, const Linearisation& linear) {
   return {boost::math::gamma_q(mean * mean / variance, found * mean / variance), found / mean};
 }
 
-double process_gain(const Model& model, const Whitened& data, const Linearisation& linear) {
-  return 2.0 * find_structure(model, data, linear).log_evidence;
-}
-
-Unnamed describe_structure(const Model& model, const Whitened& data, const Linearisation& linear) {
-  const Structure found = find_structure(model, data, linear);
+Unnamed describe(const Structure& found, const Whitened& data, const Linearisation& linear) {
   Unnamed out = found.description;
   double largest = -1.0;
   for (std::size_t i = 0; i < found.columns.size(); ++i) {
     const Observation& observation = *linear.observations[i];
     Eigen::VectorXd values = found.columns[i] * found.coefficients;
     values.array() -= values.mean();
-    values *= per_sample(observation);
-    const double rms = values.norm() / std::sqrt(static_cast<double>(values.size()));
-    if (rms <= largest) continue;
-    largest = rms;
-    out.rms_um = rms / kMicrometre;
-    out.pv_um = (values.maxCoeff() - values.minCoeff()) / kMicrometre;
+    const double standing_out = values.norm() / std::sqrt(static_cast<double>(values.size())) /
+                                data.noise()[i].standard_deviation();
+    if (standing_out <= largest) continue;
+    largest = standing_out;
+    const bool slope = observation.profile->setup.quantity == Quantity::slope;
+    values *= per_sample(observation) / (slope ? kMicroradian : kMicrometre);
+    out.unit = slope ? "urad" : "um";
+    out.rms = values.norm() / std::sqrt(static_cast<double>(values.size()));
+    out.pv = values.maxCoeff() - values.minCoeff();
     locate(*observation.profile, observation.low_band.positions(observation.profile->positions),
            values, out);
   }

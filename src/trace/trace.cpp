@@ -7,145 +7,109 @@
 #include "background.hpp"
 #include "detection.hpp"
 #include "fit_numbers.hpp"
-#include "round.hpp"
+#include "gates.hpp"
+#include "outcome.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/crosscheck.hpp"
 #include "structure.hpp"
+#include "widening.hpp"
 
 namespace slideway {
 namespace {
 
-constexpr std::size_t kMostValues = 2048;  // of a profile, in a search
-constexpr double kLeastJointSize = 3.0;    // of an effect in the joint fit, in
-constexpr double kLeastSize = 5.0;         // standard uncertainties
-constexpr double kSuperfluous = -10.0;     // ΔBIC an effect must keep up to stay
-
-/// The problem with the low band in which effects are searched: the declared one, or the first
-/// coarser one that leaves every profile few enough values.
-Problem for_search(Problem problem, const std::vector<Profile>& profiles) {
-  std::size_t most = 0;
-  for (const Profile& profile : profiles) most = std::max(most, profile.positions.size());
-  while ((most >> problem.low_band.level) > kMostValues) ++problem.low_band.level;
-  return problem;
-}
-
-/// An effect that has been added to the declared model.
-struct Added {
-  const Candidate* candidate = nullptr;
-  std::vector<double> shape;
-  TraceRound round;
-};
-
-std::vector<Added> all_but(std::vector<Added> added, std::size_t i) {
-  added.erase(std::next(added.begin(), static_cast<std::ptrdiff_t>(i)));
-  return added;
-}
+constexpr double kLeastJointSize = 3.0;  // standard uncertainties of an effect in the joint fit
 
 class Loop {
  public:
-  Loop(const Problem& problem, const std::vector<Profile>& profiles)
-      : problem_(problem),
-        profiles_(profiles),
-        declared_(build_model(problem, profiles)),
-        base_(build_model(for_search(problem, profiles), profiles)),
-        first_fit_(fit(base_)),
-        dictionary_(make_dictionary(base_, problem.trace.candidates,
-                                    first_fit_.linear.prior_rows.rows())) {}
+  Loop(const Problem& problem, const std::vector<Profile>& profiles, const Progress& progress)
+      : problem_(problem), profiles_(profiles), progress_(progress), extender_(problem, profiles) {
+    tell("making the columns of every candidate");
+    dictionary_ =
+        make_dictionary(extender_.base(), problem, extender_.base_fit().linear.prior_rows.rows());
+  }
 
   TraceResult run() {
-    State state = make_state({});
-    before_ = summary_of(state);
+    Extended state = extender_.extend({});
+    before_ = extender_.summary(state);
     std::optional<Look> last;
     while (true) {
+      tell("searching round " + std::to_string(state.added.size() + 1));
       last = look_at(state);
-      if (static_cast<int>(state.added.size()) >= problem_.trace.max_effects) break;
-      const std::optional<std::size_t> choice = last->choice();
-      if (!choice || !try_adding(state, *last, *choice)) break;
-      drop_superfluous(state);
+      if (is_full(state)) break;
+      const Seen* choice = last->choice();
+      if (!choice) break;
+      if (try_adding(state, *last, *choice)) {
+        drop_superfluous(state);
+      } else {
+        ruled_out_.push_back(choice->name());
+      }
     }
+    tell("holding every effect against its rivals");
     const bool exchanged = exchange(state);
     if (drop_small(state, kLeastJointSize) || exchanged) last = look_at(state);
     const bool retracted = retract(state, last->data);
     if (retracted) last = look_at(state);
+    tell("describing what is left");
     return report(state, *last, retracted);
   }
 
  private:
-  /// Its fit points into its model: moved, never copied.
-  struct State {
-    State(std::vector<Added> effects, Model with_effects, Fit of_it)
-        : added(std::move(effects)), model(std::move(with_effects)), fit(std::move(of_it)) {}
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
-    State(State&&) = default;
-    State& operator=(State&&) = default;
-
-    std::vector<Added> added;
-    Model model;
-    Fit fit;
-  };
-
-  [[nodiscard]] Model with(const Model& base, const std::vector<Added>& added) const {
-    Model model = base;
-    for (const Added& effect : added)
-      append_term(model, {effect.candidate->name(), effect.candidate->options, {}}, model.range);
-    return model;
+  void tell(const std::string& stage) const {
+    if (progress_) progress_(stage);
   }
 
-  [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<Added>& added) const {
-    std::vector<double> all(first_fit_.estimate.shapes.begin(), first_fit_.estimate.shapes.end());
-    for (const Added& effect : added)
-      all.insert(all.end(), effect.shape.begin(), effect.shape.end());
-    return Eigen::Map<const Eigen::VectorXd>(all.data(), std::ssize(all));
+  [[nodiscard]] bool is_full(const Extended& state) const {
+    return std::ssize(state.added) >= problem_.trace.max_effects;
   }
 
-  [[nodiscard]] State make_state(std::vector<Added> added) const {
-    State out{std::move(added), with(base_, {}), first_fit_};
-    if (out.added.empty()) return out;
-    out.model = with(base_, out.added);
-    out.fit = fit(out.model, shapes_of(out.added));
+  /// Names that stand in the model already, or that have been ruled out.
+  [[nodiscard]] std::vector<std::string> taken(const std::vector<Added>& added) const {
+    std::vector<std::string> out = ruled_out_;
+    for (const Added& effect : added) out.push_back(effect.name());
     return out;
   }
 
-  /// The report's numbers, at the declared level.
-  [[nodiscard]] FitResult summary_of(const State& state) const {
-    const auto level = [](const Model& model) {
-      return model.observations.front().low_band.options().level;
-    };
-    if (level(base_) == level(declared_)) return summarise(state.model, state.fit);
-    const Model model = with(declared_, state.added);
-    return summarise(model, fit(model, shapes_of(state.added)));
-  }
-
-  [[nodiscard]] Candidates candidates_beside(const std::vector<Added>& added) const {
+  [[nodiscard]] Candidates candidates_without(const std::vector<std::string>& names) const {
     Candidates out;
     for (const Candidate& candidate : dictionary_.candidates)
-      if (std::none_of(added.begin(), added.end(),
-                       [&](const Added& effect) { return effect.candidate == &candidate; }))
+      if (std::find(names.begin(), names.end(), candidate.name()) == names.end())
         out.push_back(&candidate);
     return out;
   }
 
-  Look look_at(const State& state) {
-    return look(state.model, state.fit, candidates_beside(state.added), problem_.trace.significance,
-                calibration_);
+  Look look_at(const Extended& state) {
+    return look(state.model, state.fit, candidates_without(taken(state.added)),
+                problem_.trace.significance, calibration_);
   }
 
-  bool try_adding(State& state, const Look& seen, std::size_t choice) {
-    const Refined& refined = seen.refined[choice];
-    Added next{refined.candidate, refined.shape, {}};
-    next.round.accepted = refined.candidate->name();
-    next.round.delta_bic = refined.delta_bic;
-    next.round.p_value = seen.p_values[choice];
-    next.round.candidates = tried(seen, choice);
-    const FitResult before = summary_of(state);
+  /// The data made white for a model, with the noise of another look at them.
+  static Whitened whitened(const Extended& state, std::vector<Noise> noise) {
+    const Eigen::MatrixXd loose = loose_values(state.model, state.fit, noise);
+    return {state.fit.linear, std::move(noise), loose};
+  }
+
+  /// Takes a choice over into what is known of an added effect.
+  void record(const Look& look, const Seen& choice, Added& added) const {
+    added.candidate = choice.refined.candidate;
+    added.shape = choice.refined.shape;
+    added.round.accepted = choice.name();
+    added.round.delta_bic = choice.refined.delta_bic;
+    added.round.p_value = choice.p_value;
+    added.round.candidates = tried(look, &choice, before_->rms_um);
+  }
+
+  bool try_adding(Extended& state, const Look& look, const Seen& choice) {
+    const FitResult before = extender_.summary(state);
     std::vector<Added> added = state.added;
-    added.push_back(std::move(next));
-    State extended = make_state(std::move(added));
-    const FitResult after = summary_of(extended);
+    record(look, choice, added.emplace_back());
+    Extended extended = extender_.extend(std::move(added));
+    const FitResult after = extender_.summary(extended);
     TraceRound& round = extended.added.back().round;
-    round.before_rms_um = before.rms_um.value_or(0.0);
-    round.after_rms_um = after.rms_um.value_or(0.0);
+    round.before_rms_um = before.rms_um;
+    round.after_rms_um = after.rms_um;
+    round.before_rms_urad = before.rms_urad;
+    round.after_rms_urad = after.rms_urad;
     round.before_holdout_rms_um = holdout_rms_um(before);
     round.after_holdout_rms_um = holdout_rms_um(after);
     if (round.before_holdout_rms_um) {
@@ -153,122 +117,103 @@ class Loop {
         notes_.push_back(round.accepted + " was refused: it predicts the held-out profiles worse");
         return false;
       }
-    } else if (seen.held_out[choice]) {
-      round.before_holdout_rms_um = seen.held_out[choice]->before_um;
-      round.after_holdout_rms_um = seen.held_out[choice]->after_um;
+    } else if (choice.held_out) {
+      round.before_holdout_rms_um = choice.held_out->before_um;
+      round.after_holdout_rms_um = choice.held_out->after_um;
+    }
+    if (is_carriage_effect(choice.name()) &&
+        !outdoes_process(extended, state, look.data.noise(), state.added.size())) {
+      notes_.push_back(choice.name() +
+                       " was refused: a smooth process without a name fits as well");
+      return false;
     }
     state = std::move(extended);
     return true;
   }
 
-  [[nodiscard]] std::vector<TriedEffect> tried(const Look& seen,
-                                               std::optional<std::size_t> without) const {
-    std::vector<TriedEffect> out;
-    const double square = seen.data.residual().squaredNorm();
-    for (std::size_t i = 0; i < seen.refined.size(); ++i) {
-      if (without && i == *without) continue;
-      const Refined& refined = seen.refined[i];
-      TriedEffect entry{refined.candidate->name(), refined.delta_bic, seen.p_values[i]};
-      entry.refused = seen.refused[i];
-      const double share = std::max(0.0, 1.0 - refined.projection.gain / square);
-      entry.rms_um = before_->rms_um.value_or(0.0) * std::sqrt(share);
-      const std::vector<Parameter>& known = refined.candidate->term.effect->parameters();
-      for (std::size_t p = 0; p < known.size(); ++p) {
-        FittedParameter parameter{entry.effect + "." + known[p].name, known[p].symbol,
-                                  known[p].unit};
-        parameter.value = refined.values[static_cast<Eigen::Index>(p)];
-        parameter.standard_uncertainty = refined.uncertainties[static_cast<Eigen::Index>(p)];
-        entry.parameters.push_back(std::move(parameter));
-      }
-      out.push_back(std::move(entry));
-    }
-    return out;
+  /// Whether an effect of a model says more than a process without a name would in its place
+  /// (a polynomial comes near everything smooth).
+  static bool outdoes_process(const Extended& with, const Extended& without,
+                              const std::vector<Noise>& noise, std::size_t which) {
+    const Whitened with_it = whitened(with, noise), without_it = whitened(without, noise);
+    const double gain = (without_it.residual().squaredNorm() - with_it.residual().squaredNorm()) +
+                        find_structure(with.model, with_it, with.fit.linear).gain() -
+                        find_structure(without.model, without_it, without.fit.linear).gain();
+    const Candidate& candidate = *with.added[which].candidate;
+    return gain - penalty(with_it, candidate.unknowns(candidate.amplitudes())) >= kEnough;
   }
 
   /// Earlier effects that the last one has made superfluous leave again.
-  void drop_superfluous(State& state) {
+  void drop_superfluous(Extended& state) {
     for (std::size_t i = 0; i + 1 < state.added.size();) {
-      State without = make_state(all_but(state.added, i));
+      Extended without = extender_.extend(all_but(state.added, i));
       const Added& effect = state.added[i];
-      const Eigen::MatrixXd loose = loose_values(without.model, without.fit);
-      const Whitened data(without.fit.linear,
-                          background_noise(state.fit, loose_values(state.model, state.fit)), loose);
+      const Whitened data = whitened(
+          without,
+          background_noise(state.fit, loose_values(state.model, state.fit, state.fit.noise)));
       const Projection own =
           project(data, stacked_columns(without.model, effect.candidate->term, effect.shape,
                                         data.rows() - data.values()));
-      const double bic = static_cast<double>(effect.candidate->unknowns()) *
-                             std::log(static_cast<double>(data.values())) -
-                         own.gain;
-      if (bic <= kSuperfluous) {
+      if (own.gain - penalty(data, effect.candidate->unknowns(own.rank)) >= kEnough) {
         ++i;
         continue;
       }
-      notes_.push_back(effect.candidate->name() + " was dropped again: " +
-                       state.added.back().candidate->name() + " has made it superfluous");
+      notes_.push_back(effect.name() + " was dropped again: " + state.added.back().name() +
+                       " has made it superfluous");
       state = std::move(without);
     }
   }
 
   /// Each effect once more against all others, the rest of the model as it now is: a better one
   /// takes its place, and those that are as good are its rivals. @return true if one did
-  bool exchange(State& state) {
+  bool exchange(Extended& state) {
     bool changed = false;
     for (std::size_t i = 0; i < state.added.size(); ++i) {
-      const State without = make_state(all_but(state.added, i));
-      const Look seen = look_at(without);
-      const std::optional<std::size_t> choice = seen.choice();
-      if (!choice) continue;
-      std::size_t own = *choice;
-      const std::string& name = state.added[i].candidate->name();
-      if (seen.refined[own].candidate->name() != name) {
-        for (std::size_t j = 0; j < seen.refined.size(); ++j)
-          if (seen.refined[j].candidate->name() == name && seen.refused[j].empty()) own = j;
-        if (seen.refined[own].delta_bic > seen.refined[*choice].delta_bic ||
-            seen.refined[own].candidate->name() != name) {
-          notes_.push_back(name + " was exchanged for " + seen.refined[*choice].candidate->name() +
+      const Extended without = extender_.extend(all_but(state.added, i));
+      // The others' names are no choice, but rivals they can be: two lines of one clock.
+      const Look look = slideway::look(without.model, without.fit, candidates_without(ruled_out_),
+                                       problem_.trace.significance, calibration_);
+      const Seen* best = look.choice(taken(without.added));
+      if (!best) continue;
+      const Seen* own = nullptr;
+      for (const Seen& each : look.seen)
+        if (!own && each.name() == state.added[i].name() && each.refused.empty()) own = &each;
+      if (!own || own->refined.delta_bic > best->refined.delta_bic) own = best;
+      if (own == best && best->refined.candidate != state.added[i].candidate) {
+        if (best->name() != state.added[i].name())
+          notes_.push_back(state.added[i].name() + " was exchanged for " + best->name() +
                            ", which fits better");
-          own = *choice;
-          state.added[i].candidate = seen.refined[own].candidate;
-          state.added[i].shape = seen.refined[own].shape;
-          state.added[i].round.accepted = seen.refined[own].candidate->name();
-          state.added[i].round.delta_bic = seen.refined[own].delta_bic;
-          state.added[i].round.p_value = seen.p_values[own];
-          state.added[i].round.candidates = tried(seen, own);
-          state = make_state(state.added);
-          changed = true;
-        }
+        record(look, *best, state.added[i]);
+        state = extender_.extend(std::move(state.added));
+        changed = true;
       }
-      TraceRound& round = state.added[i].round;
-      round.ambiguous_with.clear();
-      for (const std::size_t rival : seen.rivals(own)) {
-        round.ambiguous_with.push_back(seen.refined[rival].candidate->name());
+      std::vector<std::string>& rivals = state.added[i].round.ambiguous_with;
+      rivals.clear();
+      for (const Seen* rival : look.rivals(*own)) {
+        rivals.push_back(rival->name());
         advice_.push_back(separating_measurement(problem_, profiles_, without.model, without.fit,
-                                                 seen.data, seen.refined[own],
-                                                 seen.refined[rival]));
+                                                 look.data, own->refined, rival->refined));
       }
     }
     return changed;
   }
 
-  /// Whether an effect of one amplitude is below so many standard uncertainties in the joint fit.
-  [[nodiscard]] bool is_small(const State& state, std::size_t i, double limit) const {
-    const std::string& name = state.added[i].candidate->name();
-    const std::vector<FittedParameter> own = parameters_of(summary_of(state), name);
-    if (state.added[i].candidate->amplitudes() > 2 || own.empty() || !own[0].value ||
-        !own[0].standard_uncertainty)
-      return false;
-    return std::abs(*own[0].value) < limit * *own[0].standard_uncertainty;
-  }
-
-  /// Effects that the joint fit does not bear out leave. @return true if one did
-  bool drop_small(State& state, double limit) {
+  /// Effects of one size that the joint fit has below so many standard uncertainties leave.
+  /// @return true if one did
+  bool drop_small(Extended& state, double limit) {
     bool changed = false;
+    FitResult joint = extender_.summary(state);
     for (std::size_t i = state.added.size(); i-- > 0;) {
-      if (!is_small(state, i, limit)) continue;
-      notes_.push_back(state.added[i].candidate->name() +
-                       " was taken back: in the joint fit it is below " + significant(limit, 1) +
-                       " of its standard uncertainties");
-      state = make_state(all_but(state.added, i));
+      const Added& effect = state.added[i];
+      const std::vector<FittedParameter> own = parameters_of(joint, effect.name());
+      if (!effect.candidate->term.effect->has_one_size() || effect.candidate->raises_degree ||
+          own.empty() || !own[0].value || !own[0].standard_uncertainty ||
+          std::abs(*own[0].value) >= limit * *own[0].standard_uncertainty)
+        continue;
+      notes_.push_back(effect.name() + " was taken back: in the joint fit it is below " +
+                       significant(limit, 1) + " of its standard uncertainties");
+      state = extender_.extend(all_but(state.added, i));
+      joint = extender_.summary(state);
       changed = true;
     }
     return changed;
@@ -276,21 +221,13 @@ class Loop {
 
   /// Where structure is left, an effect stays only if it says more than an unnamed process alone
   /// would: the least bad name is not given. @return true if one had to go
-  bool retract(State& state, const Whitened& data) {
+  bool retract(Extended& state, const Whitened& data) {
     if (!lack_of_fit(data, state.fit.linear).significant()) return false;
     bool changed = drop_small(state, kLeastSize);
     for (std::size_t i = state.added.size(); i-- > 0;) {
-      State without = make_state(all_but(state.added, i));
-      const Whitened with_it(state.fit.linear, data.noise(), loose_values(state.model, state.fit));
-      const Whitened without_it(without.fit.linear, data.noise(),
-                                loose_values(without.model, without.fit));
-      const double gain = (without_it.residual().squaredNorm() - with_it.residual().squaredNorm()) +
-                          process_gain(state.model, with_it, state.fit.linear) -
-                          process_gain(without.model, without_it, without.fit.linear);
-      const double cost = static_cast<double>(state.added[i].candidate->unknowns()) *
-                          std::log(static_cast<double>(data.values()));
-      if (gain - cost >= -kSuperfluous) continue;
-      notes_.push_back(state.added[i].candidate->name() +
+      Extended without = extender_.extend(all_but(state.added, i));
+      if (outdoes_process(state, without, data.noise(), i)) continue;
+      notes_.push_back(state.added[i].name() +
                        " was taken back: a smooth process without a name fits as well");
       state = std::move(without);
       changed = true;
@@ -298,86 +235,74 @@ class Loop {
     return drop_small(state, kLeastSize) || changed;
   }
 
-  TraceResult report(const State& state, const Look& last, bool retracted) {
+  TraceResult report(const Extended& state, const Look& last, bool retracted) {
     TraceResult out;
-    const FitResult after = summary_of(state);
+    const FitResult after = extender_.summary(state);
     out.before = before_->parameters;
     out.after = after.parameters;
     out.before_rms_um = before_->rms_um;
     out.after_rms_um = after.rms_um;
+    out.before_rms_urad = before_->rms_urad;
+    out.after_rms_urad = after.rms_urad;
     for (const Added& effect : state.added) {
       out.rounds.push_back(effect.round);
-      out.rounds.back().parameters = parameters_of(after, effect.candidate->name());
+      out.rounds.back().parameters = parameters_of(after, effect.name());
+      if (effect.candidate->raises_degree)
+        notes_.push_back("straightness: raised to degree " +
+                         std::to_string(*effect.candidate->options.degree));
     }
-    const Candidates beside = candidates_beside(state.added);
-    out.refused = tried(last, std::nullopt);
+    if (state.lost_centre_mm > 0.0)
+      notes_.push_back("values within r = " + significant(state.lost_centre_mm, 2) +
+                       " mm are left out of the fit: what is so steep at the centre, a tool's nose "
+                       "(2 mm assumed) does not follow");
+    out.refused = tried(last, nullptr, before_->rms_um);
     for (TriedEffect& effect : out.refused)
       if (effect.refused.empty())
-        effect.refused = retracted ? "a process without a name fits as well"
-                         : static_cast<int>(state.added.size()) >= problem_.trace.max_effects
-                             ? "max_effects effects are in the model"
-                             : "the joint fit does not bear it out";
+        effect.refused = retracted        ? "a process without a name fits as well"
+                         : is_full(state) ? "max_effects effects are in the model"
+                                          : "the joint fit does not bear it out";
     const LackOfFit left = lack_of_fit(last.data, state.fit.linear);
     out.lack_of_fit_p = left.p_value;
     if (left.significant()) {
-      out.unnamed = describe_structure(state.model, last.data, state.fit.linear);
+      const Structure structure = find_structure(state.model, last.data, state.fit.linear);
+      out.unnamed = describe(structure, last.data, state.fit.linear);
       out.unnamed->p_value = left.p_value;
+      widen(state.model, state.fit, structure, last, out.after);
     }
     for (const Untestable& effect : dictionary_.not_testable)
       out.not_testable.emplace_back(effect.effect, effect.needs);
-    out.not_separable = inseparable(state.model, state.fit, last.data, beside);
+    out.not_separable =
+        inseparable(state.model, state.fit, last.data, candidates_without(taken(state.added)));
     if (calibration_)
       out.detection_limits = detection_limits(
-          base_, Whitened(first_fit_.linear, last.data.noise(), loose_values(base_, first_fit_)),
-          candidates_beside({}), *calibration_, problem_.trace.significance);
+          extender_.base(),
+          {extender_.base_fit().linear, last.data.noise(),
+           loose_values(extender_.base(), extender_.base_fit(), last.data.noise())},
+          candidates_without({}), *calibration_, problem_.trace.significance);
     out.advice = advice_;
     out.notes = notes_;
-    const std::string other_cause = form_of_another_cause(out, state, after);
+    const std::string other_cause =
+        form_of_another_cause(out, check_squareness(state.model, problem_.runout, after), after);
     if (!other_cause.empty()) out.advice.insert(out.advice.begin(), other_cause);
     out.verdict = verdict(out, !other_cause.empty());
     return out;
   }
 
-  /// Form that the fit puts into the carriages although they can not have made it: the run-out or
-  /// a good slide speak against it, and other effects make the same columns.
-  [[nodiscard]] std::string form_of_another_cause(const TraceResult& out, const State& state,
-                                                  const FitResult& fit) const {
-    if (out.not_separable.empty()) return "";
-    const SquarenessCheck check = check_squareness(state.model, problem_.runout, fit);
-    const bool too_large =
-        check.verdict == "inconsistent" && std::abs(*check.fit_rad) > std::abs(*check.indirect_rad);
-    if (!too_large && fit.implausible.empty()) return "";
-    std::vector<std::string> others;
-    for (const auto& [effect, same] : out.not_separable) others.push_back(effect);
-    return "the carriages can not have made this form: " +
-           (too_large ? check.reason : fit.implausible) + "; the same columns are made by " +
-           joined(others) +
-           ", and nothing here tells them apart: read the straightness along the slide "
-           "(autocollimator), or cut and trace otherwise";
-  }
-
-  static std::string verdict(const TraceResult& out, bool other_cause) {
-    if (out.unnamed) return "unnamed";
-    if (other_cause) return "not_identifiable";
-    for (const TraceRound& round : out.rounds)
-      if (!round.ambiguous_with.empty()) return "ambiguous";
-    return out.rounds.empty() ? "nothing_missing" : "explained";
-  }
-
   const Problem& problem_;
   const std::vector<Profile>& profiles_;
-  Model declared_, base_;
-  Fit first_fit_;
+  const Progress& progress_;
+  Extender extender_;
   Dictionary dictionary_;
   std::optional<Calibration> calibration_;
   std::optional<FitResult> before_;
-  std::vector<std::string> advice_, notes_;
+  std::vector<std::string> ruled_out_, advice_, notes_;
 };
 
 }  // namespace
 
-TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles) {
-  return Loop(problem, profiles).run();
+TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles,
+                       const Progress& progress) {
+  return Loop(problem, profiles, progress).run();
 }
 
 bool is_negative(const TraceResult& trace) {

@@ -1,11 +1,9 @@
 #include "whitened.hpp"
 
-#include <Eigen/QR>
+#include "linear_algebra.hpp"
 
 namespace slideway {
 namespace {
-
-constexpr double kRankTolerance = 1e-10;  // of a unit column
 
 /// Nuisances of each profile in columns of their own, then amplitudes and shapes.
 Eigen::MatrixXd model_span(const Linearisation& linear) {
@@ -26,17 +24,6 @@ Eigen::MatrixXd model_span(const Linearisation& linear) {
   return out;
 }
 
-Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns) {
-  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
-    const double norm = columns.col(j).norm();
-    if (norm > 0.0) columns.col(j) /= norm;
-  }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(kRankTolerance);
-  qr.compute(columns);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
-}
-
 }  // namespace
 
 Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
@@ -55,8 +42,7 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
   basis_ = orthonormal(std::move(span));
   residual_ = stack(linear, 1, [&](std::size_t i) { return linear.residuals[i]; });
   residual_.tail(linear.prior_rows.rows()) = linear.prior_residuals;
-  whiten(residual_);
-  residual_ -= basis_ * (basis_.transpose() * residual_).eval();
+  residual_ = outside(std::move(residual_));
 }
 
 void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
@@ -66,6 +52,12 @@ void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
       noise_[i].correlation.whiten(rows);
       rows /= noise_[i].innovation;
     }
+}
+
+Eigen::MatrixXd Whitened::outside(Eigen::MatrixXd stacked) const {
+  whiten(stacked);
+  stacked -= basis_ * (basis_.transpose() * stacked).eval();
+  return stacked;
 }
 
 }  // namespace slideway

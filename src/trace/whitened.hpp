@@ -35,6 +35,9 @@ class Whitened {
   /// Stacked low-band columns (rows() of them, zero in the rows of priors) made white, in place.
   void whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const;
 
+  /// The same, then without what the model and the nuisances span.
+  [[nodiscard]] Eigen::MatrixXd outside(Eigen::MatrixXd stacked) const;
+
   /// Orthonormal, rows() by k: what the model and the nuisances span.
   [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
 
@@ -50,20 +53,26 @@ class Whitened {
   Eigen::VectorXd residual_;
 };
 
-/// Rows of all fitted observations under one another, with as many rows of zeros as there are
-/// priors below: the layout of Whitened. `of(i)` gives the rows of fitted observation i.
+/// Rows of observations under one another, with rows of zeros for the priors below: the layout of
+/// Whitened. `of(i)` gives the rows of observation i.
 template <typename Of>
-Eigen::MatrixXd stack(const Linearisation& linear, Eigen::Index columns, Of&& of) {
-  Eigen::Index rows = linear.prior_rows.rows();
-  for (const Observation* observation : linear.observations) rows += observation->values.size();
+Eigen::MatrixXd stack(const std::vector<const Observation*>& observations, Eigen::Index prior_rows,
+                      Eigen::Index columns, Of&& of) {
+  Eigen::Index rows = prior_rows;
+  for (const Observation* observation : observations) rows += observation->values.size();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, columns);
   Eigen::Index row = 0;
-  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
-    const Eigen::Index count = linear.observations[i]->values.size();
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Eigen::Index count = observations[i]->values.size();
     out.middleRows(row, count) = of(i);
     row += count;
   }
   return out;
+}
+
+template <typename Of>
+Eigen::MatrixXd stack(const Linearisation& linear, Eigen::Index columns, Of&& of) {
+  return stack(linear.observations, linear.prior_rows.rows(), columns, of);
 }
 
 }  // namespace slideway

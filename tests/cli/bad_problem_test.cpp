@@ -49,7 +49,7 @@ const BadInput kKeys[] = {
     bad("NanForANumber", {.profile_more = "center_mm = nan\n"},
         {"problem.toml:12: profile.center_mm: must be a finite number"}),
     bad("TableForAListOfTables", {.more = "[trace]\ncandidates = { a = 1 }\n"},
-        {"problem.toml:15: trace.candidates: must be a list of texts", "accepted: linear_drift"}),
+        {"problem.toml:15: trace.candidates: must be a list of texts", "accepted: straightness"}),
     bad("NegativeFeed", {.profile_more = "feed_mm_per_min = -2\n"},
         {"problem.toml:12: profile.feed_mm_per_min: must be greater than 0, not -2"}),
     bad("WindowUpsideDown", {.profile_more = "window = [10.0, 2.0]\n"},

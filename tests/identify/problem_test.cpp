@@ -146,7 +146,7 @@ TEST_F(ProblemFile, GivesMachineModelRunoutTraceAndTruth) {
   EXPECT_EQ(problem.effects[1].priors[0].standard_uncertainty, 1e-8);
   ASSERT_TRUE(problem.runout);
   EXPECT_EQ(problem.runout->diameter_mm, 1000.0);
-  EXPECT_EQ(problem.trace.candidates.size(), effect_names().size() - 3);  // without the carriage's
+  EXPECT_EQ(problem.trace.candidates.size(), effect_names().size());
   EXPECT_EQ(problem.trace.max_effects, 2);
   ASSERT_TRUE(problem.truth);
   EXPECT_EQ(problem.truth->seed, 7u);

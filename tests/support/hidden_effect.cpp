@@ -114,8 +114,7 @@ Problem face_problem() {
   problem.bodies = Machine::paper_lathe();
   problem.lever = Lever::paper;
   problem.effects = {{"squareness", {}, {}}, {"straightness", {std::nullopt, 3, std::nullopt}, {}}};
-  for (const std::string& name : effect_names())
-    if (!is_carriage_effect(name)) problem.trace.candidates.push_back(name);
+  problem.trace.candidates = effect_names();
   return problem;
 }
 

@@ -1,6 +1,7 @@
 // The closed loop on data that were really measured.
 
 #include "problems/shipped.hpp"
+#include "slideway/identify/identify.hpp"
 #include "trace/faces.hpp"
 
 namespace slideway {
@@ -27,10 +28,11 @@ TEST_F(Measured, TestBarRunsOut) {
   ASSERT_FALSE(result.rounds.empty());
   const TraceRound& first = result.rounds.front();
   EXPECT_EQ(first.accepted, "spindle_runout");
-  EXPECT_NEAR(first.before_rms_um, 9.46, 0.01);  // numpy.polyfit: 9.459
+  ASSERT_TRUE(first.before_rms_um);
+  EXPECT_NEAR(*first.before_rms_um, 9.46, 0.01);  // numpy.polyfit: 9.459
   // Least squares apart from this: 7.16 µm with a constant amplitude, 4.94 with one linear in z,
   // 4.6 with the speed refined.
-  EXPECT_LE(first.after_rms_um, 4.95);
+  EXPECT_LE(*first.after_rms_um, 4.95);
   const FittedParameter* speed = find(first.parameters, "spindle_runout.rpm");
   ASSERT_NE(speed, nullptr);
   EXPECT_NEAR(*speed->value, 2.56, 0.01);  // the same fit: 2.5626
@@ -40,6 +42,25 @@ TEST_F(Measured, LatheBedHasNoEffectOfTheSlide) {
   const TraceResult result = close_on("real/lathe-bed.toml");
   SCOPED_TRACE(story(result));
   EXPECT_THAT(result.rounds, ::testing::IsEmpty());
+}
+
+// A plane mirror declared straight: its curvature comes back, and what is left is the slope error
+// the laboratory states without it (0.31849 µrad with n instead of n - 1).
+TEST_F(Measured, CurvatureOfAMirrorDeclaredStraightComesBack) {
+  Problem problem = shipped_problem("real/mirror-plane.toml");
+  const std::vector<Profile> profiles = read_profiles(problem);
+  const Result declared = identify(problem, profiles, Scope::fit);
+  problem.effects.at(0).options.degree = 1;
+  const TraceResult result = close_loop(problem, profiles);
+  SCOPED_TRACE(story(result));
+  ASSERT_FALSE(result.rounds.empty());
+  EXPECT_EQ(result.rounds[0].accepted, "straightness");
+  ASSERT_TRUE(result.rounds[0].after_rms_urad);
+  EXPECT_NEAR(*result.rounds[0].after_rms_urad, 0.31849, 0.5e-5);
+  ASSERT_TRUE(declared.fit);
+  const FittedParameter* b2 = find(declared.fit->parameters, "straightness.b2");
+  ASSERT_NE(b2, nullptr);
+  expect_within_4u(result.after, "straightness.b2", *b2->value);
 }
 
 TEST(Shipped, ThreeLevelsLackNothing) {

@@ -96,6 +96,34 @@ TEST(Named, EdgeRollOff) {
   expect_within_4u(round->parameters, "edge_roll_off.width_mm", 0.23);
 }
 
+// 3 µm at the rim that grow with r⁴; with one lever a coefficient b_4 makes -3 b_4 r⁴.
+TEST(Named, StraightnessOfMoreTermsThanDeclared) {
+  const TraceResult result =
+      close_on({"quartic", [](const ToolPoint& p) { return 3e-3 * std::pow(p.r / 10.0, 4); }}, 2,
+               kBlunt, 10);
+  SCOPED_TRACE(story(result));
+  expect_only(result, "straightness");
+  EXPECT_EQ(find(result.before, "straightness.b4"), nullptr);
+  expect_within_4u(result.after, "straightness.b4", -1e-7);
+  expect_within_4u(result.after, "squareness.dbeta_xz", turning::kFaceSquareness);
+}
+
+// Both are steep at the centre, where a nose of 2 mm does not follow: the wrong one is never named
+// alone, and what it had bent is straight again.
+TEST(Named, WhatIsSteepAtTheCentreIsNoOtherAlone) {
+  for (const std::uint64_t seed : {106, 107}) {
+    RandomStream random(seed, "speed_effect");
+    const TraceResult result =
+        close_on(turning::make_hidden("speed_effect", 0.15e-3, random), 3, kSharp, seed);
+    SCOPED_TRACE(story(result));
+    std::vector<std::string> set = named(result);
+    for (const TraceRound& round : result.rounds)
+      set.insert(set.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
+    if (!result.unnamed) EXPECT_THAT(set, ::testing::Contains("speed_effect"));
+    expect_within_4u(result.after, "squareness.dbeta_xz", turning::kFaceSquareness);
+  }
+}
+
 // One spindle speed in all cuts: time and revolutions are one clock.
 TEST(Named, TimeAndRevolutionsAreOneClockAtOneSpeed) {
   const TraceResult result = close_on(

@@ -40,7 +40,7 @@ struct Bench {
   }
 
   [[nodiscard]] Whitened white(const Noise& noise) const {
-    return {fitted.linear, {noise}, loose_values(model, fitted)};
+    return {fitted.linear, {noise}, loose_values(model, fitted, {noise})};
   }
   [[nodiscard]] Whitened white() const { return white(first_order(0.4, 5e-5)); }
 
@@ -115,7 +115,8 @@ TEST(Refine, FindsTheBestShapeAScanFinds) {
                        return 0.1e-3 * std::cos(2.0 * kPi * p.x / period);
                      }});
   const Whitened data = bench.white();
-  const Dictionary dictionary = make_dictionary(bench.model, {"slide_periodic"}, 0);
+  const Dictionary dictionary =
+      make_dictionary(bench.model, faces::problem_of({"slide_periodic"}), 0);
   ASSERT_EQ(dictionary.candidates.size(), 1U);
   const std::vector<Finding> findings = search(data, {&dictionary.candidates[0]});
   const Refined refined = refine(bench.model, data, findings[0]);

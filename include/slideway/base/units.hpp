@@ -11,6 +11,7 @@ inline constexpr double kMicrometre = 1e-3;  // in mm
 inline constexpr double kMetre = 1e3;        // in mm
 inline constexpr double kMinute = 60.0;      // in s
 inline constexpr double kPi = 3.141592653589793238462643383279502884;
+inline constexpr double kMicroradian = 1e-6;
 inline constexpr double kArcsecond = kPi / 648000.0;  // in rad
 
 inline constexpr std::string_view kLengthUnits = "m mm um nm inch";

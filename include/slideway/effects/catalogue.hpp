@@ -22,4 +22,9 @@ bool is_carriage_effect(const std::string& name);
 std::unique_ptr<Effect> make_effect(const std::string& name, const EffectOptions& options,
                                     const Machine& machine, const TravelRange& range);
 
+/// The coefficients b_first ... b_degree of a straightness alone: what one of degree first - 1
+/// lacks. @throws UsageError as make_effect()
+std::unique_ptr<Effect> make_straightness_terms(int first, const EffectOptions& options,
+                                                const Machine& machine, const TravelRange& range);
+
 }  // namespace slideway

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -50,6 +51,10 @@ struct Shape {
   int parameter = 0;         // index into parameters()
   bool logarithmic = false;  // search and step on a log scale
   bool stepwise = false;     // columns are piecewise constant in it: scanned, not differentiated
+
+  /// The optimiser's view of a value and back: its logarithm where it is logarithmic.
+  [[nodiscard]] double inner(double value) const { return logarithmic ? std::log(value) : value; }
+  [[nodiscard]] double outer(double value) const { return logarithmic ? std::exp(value) : value; }
 };
 
 /// Values of an effect's parameters and how they move with amplitudes and shape.
@@ -111,6 +116,9 @@ class Effect {
 
   /// True if parameter_values() is linear in the amplitudes (no phase, no modulus).
   [[nodiscard]] virtual bool linear_parameters() const { return true; }
+
+  /// True if size() is a parameter itself, not the largest of several.
+  [[nodiscard]] bool has_one_size() const { return amplitudes() == 1 || !linear_parameters(); }
 
   /// Size of the effect as one number in the unit of the first parameter: |amplitude|, or the
   /// modulus of cosine and sine parts.

@@ -55,6 +55,10 @@ Model build_model(const Problem& problem, const std::vector<Profile>& profiles);
 /// Puts one more effect into a model. @throws UsageError as build_model().
 void append_term(Model& model, const DeclaredEffect& declared, const TravelRange& range);
 
+/// Makes the effect of a term anew with other options, its priors kept. REQUIRES a term of that
+/// name.
+void remake_term(Model& model, const std::string& name, const EffectOptions& options);
+
 /// Columns of one effect in the low band of one observation: #values by #amplitudes; zero where the
 /// reading can not see the effect.
 Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,

@@ -110,8 +110,9 @@ struct ResidualSummary {
 
 struct FitResult {
   bool converged = false;
-  std::string message;           // the solver's, where it did not converge
-  std::optional<double> rms_um;  // of fitted height profiles
+  std::string message;             // the solver's, where it did not converge
+  std::optional<double> rms_um;    // residual of the fitted height profiles
+  std::optional<double> rms_urad;  // and of the fitted slope profiles
   std::size_t observations = 0;
   double effective_observations = 0.0;
   std::vector<FittedParameter> parameters;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ struct TriedEffect {
   std::string effect;
   double delta_bic = 0.0;  // of adding it; below 0 it would pay
   double p_value = 1.0;    // chance that the search finds as much in noise, over all candidates
-  double rms_um = 0.0;     // residual of the height profiles with it
+  std::optional<double> rms_um;  // residual of the height profiles with it
   std::vector<FittedParameter> parameters;
   std::string refused;  // why it was not accepted; empty: it was, or is a rival of the accepted
 };
@@ -25,7 +26,8 @@ struct TriedEffect {
 struct TraceRound {
   std::string accepted;
   std::vector<std::string> ambiguous_with;  // rivals within 10 of its BIC, in the final model
-  double before_rms_um = 0.0, after_rms_um = 0.0;
+  std::optional<double> before_rms_um, after_rms_um;      // residual of the height profiles
+  std::optional<double> before_rms_urad, after_rms_urad;  // and of the slope profiles
   /// Predicted profiles: role = "holdout" where there are any, else each fitted profile in turn,
   /// left out; none where what is left could not tell the effect.
   std::optional<double> before_holdout_rms_um, after_holdout_rms_um;
@@ -37,7 +39,8 @@ struct TraceRound {
 
 /// What is left and has no name.
 struct Unnamed {
-  double rms_um = 0.0, pv_um = 0.0;   // of the smooth part, largest over the profiles
+  double rms = 0.0, pv = 0.0;         // of the smooth part, in the profile where it stands out most
+  std::string unit;                   // "um" or, of a slope profile, "urad"
   double p_value = 1.0;               // lack of fit against the noise
   std::string profile;                // where it is largest
   double from_mm = 0.0, to_mm = 0.0;  // trace positions between which it is above half its peak
@@ -67,14 +70,18 @@ struct TraceResult {
   std::vector<TriedEffect> refused;                                // of the last search, best first
   std::vector<DetectionLimit> detection_limits;
   double lack_of_fit_p = 1.0;  // of the final residual
-  std::optional<double> before_rms_um, after_rms_um;
+  std::optional<double> before_rms_um, after_rms_um, before_rms_urad, after_rms_urad;
   std::vector<FittedParameter> before, after;
   std::vector<std::string> notes;
 };
 
+/// Told what the loop turns to next, for who waits: "searching round 2".
+using Progress = std::function<void(const std::string& stage)>;
+
 /// Closes the loop on a problem whose declared model has been identified.
 /// @throws UsageError, DataError  as identify()
-TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles);
+TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles,
+                       const Progress& progress = {});
 
 /// True if the verdict is negative for `--strict`: structure without a name, not identifiable.
 bool is_negative(const TraceResult& trace);

@@ -10,6 +10,8 @@
 namespace slideway {
 namespace {
 
+constexpr int kMostDegree = 20;
+
 // u in [-1, 1] over the slide travel of all profiles.
 struct Interval {
   double centre, half;
@@ -36,10 +38,10 @@ ExtendedMatrix powers_from_legendre(int degree, const Interval& interval) {
   return map;
 }
 
-std::vector<Parameter> parameters_of(int degree, const TravelRange& range) {
+std::vector<Parameter> parameters_of(int first, int degree, const TravelRange& range) {
   const double reach = std::max({std::abs(range.slide_min), std::abs(range.slide_max), 1.0});
   std::vector<Parameter> parameters;
-  for (int k = 0; k <= degree; ++k) {
+  for (int k = first; k <= degree; ++k) {
     const std::string index = std::to_string(k);
     parameters.push_back(
         {"b" + index, "b_" + index, power_of_mm(1 - k), kMicrometre * std::pow(reach, -k)});
@@ -70,13 +72,15 @@ Description describe() {
           "reversal, a second overhang (pitch against straightness)"};
 }
 
-// b_0..b_n of Eq. (10); inside, Legendre polynomials over the travel.
+// b_first..b_n of Eq. (10); inside, Legendre polynomials over the travel.
 class Straightness : public LinearEffect {
  public:
-  Straightness(int body, int degree, const TravelRange& range)
-      : LinearEffect(describe(), parameters_of(degree, range),
-                     powers_from_legendre(degree, interval_of(range))),
+  Straightness(int body, int first, int degree, const TravelRange& range)
+      : LinearEffect(describe(), parameters_of(first, degree, range),
+                     powers_from_legendre(degree, interval_of(range))
+                         .bottomRightCorner(degree + 1 - first, degree + 1 - first)),
         body_(body),
+        first_(first),
         interval_(interval_of(range)) {
     for (int k = 0; k < degree || k == 0; ++k) {
       ahead_.push_back((2.0 * k + 1.0) / (k + 1.0));
@@ -101,7 +105,11 @@ class Straightness : public LinearEffect {
         slope[k + 1] = slope[k - 1] + rise_[k] * value[k];
       }
     };
-    fill_from_locus(stations, carriage_reading(stations, body_, 1.0), legendre, out);
+    const CarriageReading reading = carriage_reading(stations, body_, 1.0);
+    if (first_ == 0) return fill_from_locus(stations, reading, legendre, out);
+    Eigen::MatrixXd all(out.rows(), first_ + out.cols());
+    fill_from_locus(stations, reading, legendre, all);
+    out = all.rightCols(out.cols());
   }
 
   [[nodiscard]] double size(const Eigen::VectorXd& values) const override {
@@ -109,12 +117,14 @@ class Straightness : public LinearEffect {
     const double reach = std::abs(interval_.centre) + interval_.half;
     double largest = 0.0;
     for (Eigen::Index k = 0; k < values.size(); ++k)
-      largest = std::max(largest, std::abs(values[k]) * std::pow(reach, static_cast<double>(k)));
+      largest =
+          std::max(largest, std::abs(values[k]) * std::pow(reach, static_cast<double>(first_ + k)));
     return largest;
   }
 
  private:
   int body_;
+  int first_;
   Interval interval_;
   // Legendre's recurrence: (k+1) P_(k+1) = (2k+1) u P_k - k P_(k-1), and its derivative by x.
   std::vector<double> ahead_, back_, rise_;
@@ -124,8 +134,13 @@ class Straightness : public LinearEffect {
 
 std::unique_ptr<Effect> make_straightness(const Request& request) {
   request.accept_only({"body", "degree"});
-  return std::make_unique<Straightness>(request.carriage(Axis::x), request.degree(0, 20),
-                                        request.range);
+  return std::make_unique<Straightness>(request.carriage(Axis::x), 0,
+                                        request.degree(0, kMostDegree), request.range);
+}
+
+std::unique_ptr<Effect> make_straightness_terms(int first, const Request& request) {
+  return std::make_unique<Straightness>(request.carriage(Axis::x), first,
+                                        request.degree(first, kMostDegree), request.range);
 }
 
 }  // namespace slideway

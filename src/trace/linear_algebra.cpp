@@ -1,0 +1,37 @@
+#include "linear_algebra.hpp"
+
+#include <Eigen/QR>
+
+namespace slideway {
+namespace {
+
+constexpr double kRankTolerance = 1e-10;  // of a unit column
+
+Eigen::VectorXd to_unit(const Eigen::MatrixXd& columns) {
+  return columns.colwise().norm().transpose().unaryExpr(
+      [](double norm) { return norm > 0.0 ? 1.0 / norm : 0.0; });
+}
+
+}  // namespace
+
+Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns) {
+  columns *= to_unit(columns).asDiagonal();
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(kRankTolerance);
+  qr.compute(columns);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
+}
+
+LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+  const Eigen::VectorXd unit = to_unit(columns);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(kRankTolerance);
+  solver.compute(columns * unit.asDiagonal());
+  LeastSquares out;
+  const Eigen::VectorXd scaled = solver.solve(target);
+  out.values = unit.asDiagonal() * scaled;
+  out.square = (target - columns * out.values).squaredNorm();
+  return out;
+}
+
+}  // namespace slideway

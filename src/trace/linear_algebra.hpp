@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace slideway {
+
+/// Orthonormal basis of what the columns span; columns are judged by their direction, not size.
+Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns);
+
+struct LeastSquares {
+  Eigen::VectorXd values;  // of least size where the columns leave a choice
+  double square = 0.0;     // of what is left of the target
+};
+LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target);
+
+}  // namespace slideway

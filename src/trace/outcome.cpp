@@ -1,0 +1,57 @@
+#include "outcome.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+
+std::vector<TriedEffect> tried(const Look& seen, const Seen* except,
+                               std::optional<double> before_rms_um) {
+  std::vector<TriedEffect> out;
+  const double square = seen.data.residual().squaredNorm();
+  for (const Seen& each : seen.seen) {
+    if (&each == except) continue;
+    const Refined& refined = each.refined;
+    TriedEffect entry{each.name(), refined.delta_bic, each.p_value};
+    entry.refused = each.refused;
+    if (before_rms_um)
+      entry.rms_um =
+          *before_rms_um * std::sqrt(std::max(0.0, 1.0 - refined.projection.gain / square));
+    const std::vector<Parameter>& known = refined.candidate->term.effect->parameters();
+    for (std::size_t p = 0; p < known.size(); ++p) {
+      FittedParameter parameter{entry.effect + "." + known[p].name, known[p].symbol, known[p].unit};
+      parameter.value = refined.values[static_cast<Eigen::Index>(p)];
+      parameter.standard_uncertainty = refined.uncertainties[static_cast<Eigen::Index>(p)];
+      entry.parameters.push_back(std::move(parameter));
+    }
+    out.push_back(std::move(entry));
+  }
+  return out;
+}
+
+std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,
+                                  const FitResult& fit) {
+  if (out.not_separable.empty()) return "";
+  const bool too_large =
+      check.verdict == "inconsistent" && std::abs(*check.fit_rad) > std::abs(*check.indirect_rad);
+  if (!too_large && fit.implausible.empty()) return "";
+  std::vector<std::string> others;
+  for (const auto& [effect, same] : out.not_separable) others.push_back(effect);
+  return "the carriages can not have made this form: " +
+         (too_large ? check.reason : fit.implausible) + "; the same columns are made by " +
+         joined(others) +
+         ", and nothing here tells them apart: read the straightness along the slide "
+         "(autocollimator), or cut and trace otherwise";
+}
+
+std::string verdict(const TraceResult& out, bool other_cause) {
+  if (out.unnamed) return "unnamed";
+  if (other_cause) return "not_identifiable";
+  for (const TraceRound& round : out.rounds)
+    if (!round.ambiguous_with.empty()) return "ambiguous";
+  return out.rounds.empty() ? "nothing_missing" : "explained";
+}
+
+}  // namespace slideway

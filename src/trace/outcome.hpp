@@ -1,0 +1,20 @@
+#pragma once
+
+#include "extended_model.hpp"
+#include "round.hpp"
+
+namespace slideway {
+
+/// What a look saw, for the report, without `except` (what was accepted of it; null: nothing).
+/// @param before_rms_um  residual of the declared model
+std::vector<TriedEffect> tried(const Look& seen, const Seen* except,
+                               std::optional<double> before_rms_um);
+
+/// Why the form that the fit puts into the carriages can not be theirs, or "": the run-out or a
+/// good slide speak against it, and other effects make the same columns.
+std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,
+                                  const FitResult& fit);
+
+std::string verdict(const TraceResult& out, bool other_cause);
+
+}  // namespace slideway

@@ -1,0 +1,66 @@
+#include "widening.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gates.hpp"
+#include "linear_algebra.hpp"
+
+namespace slideway {
+namespace {
+
+/// Change of the parameters by a signal in the low bands: #parameters by #signals.
+Eigen::MatrixXd response(const Fit& fit, const Eigen::MatrixXd& signals) {
+  const Linearisation& linear = fit.linear;
+  const Eigen::Index k = linear.prior_rows.cols();
+  Eigen::Index nuisances = 0, next = 0;
+  for (const Observation* observation : linear.observations)
+    nuisances += observation->nuisances.cols();
+  Eigen::MatrixXd design = stack(linear, k + nuisances, [&](std::size_t i) {
+    const Observation& observation = *linear.observations[i];
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(observation.values.size(), k + nuisances);
+    rows.leftCols(k) = linear.columns[i];
+    rows.middleCols(k + next, observation.nuisances.cols()) = observation.nuisances;
+    next += observation.nuisances.cols();
+    return rows;
+  });
+  design.bottomLeftCorner(linear.prior_rows.rows(), k) = linear.prior_rows;
+  Eigen::MatrixXd targets = signals;
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+    const Eigen::Index count = linear.observations[i]->values.size();
+    design.middleRows(row, count) /= fit.weights[i];
+    targets.middleRows(row, count) /= fit.weights[i];
+    row += count;
+  }
+  return fit.parameters.jacobian * least_squares(design, targets).values.topRows(k);
+}
+
+}  // namespace
+
+void widen(const Model& model, const Fit& fit, const Structure& structure, const Look& last,
+           std::vector<FittedParameter>& parameters) {
+  const Eigen::MatrixXd process =
+      response(fit, stack(fit.linear, structure.columns[0].cols(),
+                          [&](std::size_t i) { return structure.columns[i]; })) *
+      structure.sizes.asDiagonal();
+  Eigen::VectorXd variance = process.rowwise().squaredNorm();
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(variance.size());
+  for (const Seen& each : last.seen)
+    if (each.refined.delta_bic <= -kEnough && is_possible(each))
+      change = change.cwiseMax(
+          response(fit, each.refined.columns * each.refined.projection.amplitudes).cwiseAbs());
+  variance += change.cwiseAbs2() / 3.0;
+  const std::vector<std::string> names = model.parameter_names();
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    const auto fitted = std::find_if(parameters.begin(), parameters.end(),
+                                     [&](const FittedParameter& f) { return f.name == names[p]; });
+    if (fitted == parameters.end() || !fitted->standard_uncertainty) continue;
+    fitted->standard_uncertainty = std::hypot(*fitted->standard_uncertainty,
+                                              std::sqrt(variance[static_cast<Eigen::Index>(p)]));
+    if (fitted->expanded_uncertainty)
+      fitted->expanded_uncertainty = fitted->coverage_factor * *fitted->standard_uncertainty;
+  }
+}
+
+}  // namespace slideway
