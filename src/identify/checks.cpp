@@ -155,11 +155,18 @@ void add_checks(const Model& model, const Fit& fit, FitResult& out) {
   explain_scaling(fit, out);
   explain_long_correlation(fit, out);
   check_plausibility(model, fit, out);
-  for (const Observation& observation : model.observations)
+  for (const Observation& observation : model.observations) {
     if (observation.low_band.resampled())
       out.notes.push_back("profile '" + observation.profile->name +
                           "': positions are not uniform; brought to a uniform grid for the wavelet "
                           "by linear interpolation, the model's columns likewise");
+    if (observation.left_out() > 0)
+      out.notes.push_back(
+          "profile '" + observation.profile->name + "': " + std::to_string(observation.left_out()) +
+          " of " + std::to_string(observation.values.size()) +
+          " low-band values are left out: more than half of each stands in a gap, or "
+          "it lies at a centre the tool's nose does not follow");
+  }
 }
 
 }  // namespace slideway

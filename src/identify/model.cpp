@@ -52,15 +52,29 @@ Eigen::MatrixXd nuisance_columns(const Profile& profile, std::vector<std::string
   return out;
 }
 
+}  // namespace
+
+void leave_out(Observation& observation, const std::vector<Eigen::Index>& values) {
+  Eigen::MatrixXd& nuisances = observation.nuisances;
+  const Eigen::Index known = nuisances.cols();
+  nuisances.conservativeResize(observation.values.size(), known + std::ssize(values));
+  nuisances.rightCols(std::ssize(values)).setZero();
+  for (std::size_t j = 0; j < values.size(); ++j)
+    nuisances(values[j], known + static_cast<Eigen::Index>(j)) = 1.0;
+}
+
+namespace {
+
 Observation observe(const Profile& profile, const LowBandOptions& options) {
   std::vector<std::string> names;
   const Eigen::MatrixXd nuisances = nuisance_columns(profile, names);
   LowBand low_band(options, profile.positions);
   Eigen::VectorXd values(low_band.values());
   low_band.apply(profile.values, {values.data(), static_cast<std::size_t>(values.size())});
-  Eigen::MatrixXd low_nuisances = low_band.apply(nuisances);
-  return {&profile, std::move(low_band), std::move(values), std::move(low_nuisances),
-          std::move(names)};
+  Observation out{&profile, std::move(low_band), std::move(values), {}, std::move(names)};
+  out.nuisances = out.low_band.apply(nuisances);
+  leave_out(out, out.low_band.hollow());
+  return out;
 }
 
 void require_metadata(const ModelTerm& term, const Profile& profile) {

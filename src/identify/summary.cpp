@@ -148,7 +148,9 @@ void add_residuals(const Model& model, const Fit& fit, FitResult& out) {
       residual = fit.linear.residuals[fitted++];
       Sum& sum = is_slope(observation) ? slopes : heights;
       sum.squares += residual.squaredNorm();
-      sum.samples += static_cast<double>(observation.low_band.samples());
+      const auto values = static_cast<double>(observation.values.size());
+      sum.samples += static_cast<double>(observation.low_band.samples()) *
+                     (1.0 - static_cast<double>(observation.left_out()) / values);
     } else {
       residual = observation.values - model_values(model, observation, fit.estimate);
       if (observation.nuisances.cols() > 0)

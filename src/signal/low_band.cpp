@@ -11,7 +11,10 @@
 namespace slideway {
 namespace {
 
-constexpr double kUniform = 1e-3;  // of the mean step
+constexpr double kUniform = 1e-3;    // of the mean step
+constexpr double kGap = 1.9;         // steps: more than this between two samples is a gap
+constexpr double kOnGrid = 1e-2;     // steps off a grid point that a sample stands on
+constexpr double kMostFilled = 4.0;  // grid points per sample; beyond it gaps are the rule
 
 double mean_step(std::span<const double> positions) {
   return (positions.back() - positions.front()) / static_cast<double>(positions.size() - 1);
@@ -46,6 +49,26 @@ bool is_uniform(std::span<const double> positions) {
   return uniform;
 }
 
+// Samples of the uniform grid: one per median step where every step is a multiple of that, so that
+// only gaps are filled; else as many as there are.
+Eigen::Index grid_size(std::span<const double> positions) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < positions.size(); ++i)
+    steps.push_back(std::abs(positions[i] - positions[i - 1]));
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + std::ssize(sorted) / 2;
+  std::ranges::nth_element(sorted, middle);
+  double cells = 0.0;
+  for (const double step : steps) {
+    const double multiple = std::round(step / *middle);
+    if (!(std::abs(step - multiple * *middle) <= kUniform * std::max(1.0, multiple) * *middle))
+      return std::ssize(positions);
+    cells += multiple;
+  }
+  if (!(cells < kMostFilled * static_cast<double>(positions.size()))) return std::ssize(positions);
+  return static_cast<Eigen::Index>(cells) + 1;
+}
+
 // REQUIRES signal.size() >= 2
 void interpolate(std::span<const Eigen::Index> cell, std::span<const double> weight,
                  std::span<const double> signal, std::vector<double>& grid) {
@@ -71,22 +94,41 @@ LowBand::LowBand(const LowBandOptions& options, std::span<const double> position
       values_(samples_) {
   check_size(options, positions.size());
   if (options.level == 0) return;
+  const bool uniform = is_uniform(positions);
+  if (!uniform) samples_ = grid_size(positions);
+  values_ = samples_;
   for (int level = 0; level < options.level; ++level)
     values_ = static_cast<Eigen::Index>(
         dwt_length(static_cast<std::size_t>(values_), wavelet_.taps(), options.boundary));
-  if (is_uniform(positions)) return;
+  if (!uniform) lay_grid(positions);
+}
 
-  const double step = mean_step(positions);
+void LowBand::lay_grid(std::span<const double> positions) {
   const std::size_t n = positions.size();
+  const double step =
+      std::abs(positions.back() - positions.front()) / static_cast<double>(samples_ - 1);
+  std::vector<double> inside_gaps(static_cast<std::size_t>(samples_), 0.0);
   std::size_t left = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double along = static_cast<double>(i) * std::abs(step);
-    while (left + 2 < n && std::abs(positions[left + 1] - positions[0]) <= along) ++left;
+  for (std::size_t i = 0; i < inside_gaps.size(); ++i) {
+    const double along = static_cast<double>(i) * step;
+    while (left + 2 < n && std::abs(positions[left + 1] - positions[0]) <= along + kOnGrid * step)
+      ++left;
     const double cell = std::abs(positions[left + 1] - positions[left]);
     const double inside = along - std::abs(positions[left] - positions[0]);
     cell_.push_back(static_cast<Eigen::Index>(left));
     weight_.push_back(std::clamp(inside / cell, 0.0, 1.0));
+    if (cell > kGap * step && std::min(inside, cell - inside) > 0.5 * step) inside_gaps[i] = 1.0;
   }
+  if (std::ranges::find(inside_gaps, 1.0) != inside_gaps.end()) find_hollow(inside_gaps);
+}
+
+void LowBand::find_hollow(const std::vector<double>& inside_gaps) {
+  Workspace workspace;
+  std::vector<double> share(static_cast<std::size_t>(values_));
+  transform(inside_gaps, share, workspace);
+  const double whole = std::pow(2.0, 0.5 * options_.level);
+  for (std::size_t j = 0; j < share.size(); ++j)
+    if (share[j] > 0.5 * whole) hollow_.push_back(static_cast<Eigen::Index>(j));
 }
 
 void LowBand::apply(std::span<const double> signal, std::span<double> coefficients,
@@ -95,12 +137,17 @@ void LowBand::apply(std::span<const double> signal, std::span<double> coefficien
     interpolate(cell_, weight_, signal, workspace.grid);
     signal = workspace.grid;
   }
+  transform(signal, coefficients, workspace);
+}
+
+void LowBand::transform(std::span<const double> grid, std::span<double> coefficients,
+                        Workspace& workspace) const {
   workspace.levels.resize(static_cast<std::size_t>(options_.level));
   for (std::vector<double>& low : workspace.levels) {
-    dwt(wavelet_, options_.boundary, signal, low, nullptr);
-    signal = low;
+    dwt(wavelet_, options_.boundary, grid, low, nullptr);
+    grid = low;
   }
-  std::ranges::copy(signal, coefficients.begin());
+  std::ranges::copy(grid, coefficients.begin());
 }
 
 void LowBand::apply(std::span<const double> signal, std::span<double> coefficients) const {
@@ -112,7 +159,7 @@ Eigen::MatrixXd LowBand::apply(const Eigen::MatrixXd& columns) const {
   Eigen::MatrixXd out(values_, columns.cols());
   Workspace workspace;
   for (Eigen::Index j = 0; j < columns.cols(); ++j)
-    apply({columns.col(j).data(), static_cast<std::size_t>(samples_)},
+    apply({columns.col(j).data(), static_cast<std::size_t>(columns.rows())},
           {out.col(j).data(), static_cast<std::size_t>(values_)}, workspace);
   return out;
 }

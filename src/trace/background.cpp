@@ -211,7 +211,7 @@ void leave_out_centre(Model& model, double radius_mm) {
     const Stations stations(positions, observation.profile->setup, model.machine);
     for (Eigen::Index i = 0; i < stations.size(); ++i)
       if (stations.radius(i) <= radius_mm) rows.push_back(i);
-    append(observation.nuisances, unit_columns(observation.values.size(), rows));
+    leave_out(observation, rows);
   }
 }
 

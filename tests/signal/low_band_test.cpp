@@ -56,6 +56,31 @@ TEST(LowBand, IsTheLastApproximationOfTheDecomposition) {
             decompose(daubechies("db4"), Boundary::reflect, 3, signal).approximation);
 }
 
+// With samples missing the rest keeps its grid: where none is missing, the coefficients are those
+// of the whole profile; a coefficient whose 32 samples are all gone is hollow, one that lost one is
+// not.
+TEST(LowBand, GapsLeaveTheOtherCoefficientsAlone) {
+  const std::vector<double> positions = uniform(640);
+  const std::vector<double> signal = white_noise(640, "gaps");
+  std::vector<double> kept_positions, kept_signal;
+  for (std::size_t i = 0; i < 640; ++i) {
+    if ((i >= 190 && i < 260) || i == 400) continue;  // samples of blocks 5 to 8, one of block 12
+    kept_positions.push_back(positions[i]);
+    kept_signal.push_back(signal[i]);
+  }
+  const LowBand whole({}, positions), gapped({}, kept_positions);
+  EXPECT_EQ(gapped.samples(), 640);
+  ASSERT_EQ(gapped.values(), whole.values());
+  EXPECT_THAT(gapped.hollow(), testing::ElementsAre(6, 7));
+  const std::vector<double> expected = applied(whole, signal);
+  const std::vector<double> found = applied(gapped, kept_signal);
+  for (std::size_t j = 0; j < expected.size(); ++j)
+    if ((j < 5 || j > 8) && j != 12) EXPECT_NEAR(found[j], expected[j], 1e-11) << j;
+  // A straight line is what interpolation keeps.
+  const std::vector<double> line = applied(gapped, kept_positions);
+  EXPECT_THAT(line, Pointwise(DoubleNear(1e-10), applied(whole, positions)));
+}
+
 TEST(LowBand, ReconstructsTheApproximationAtFullLength) {
   const std::vector<double> signal = white_noise(333, "low band");
   const LowBand low_band({"db4", 3, Boundary::symmetric}, uniform(333));

@@ -27,9 +27,17 @@ struct Observation {
   const Profile* profile = nullptr;
   LowBand low_band;
   Eigen::VectorXd values;     // #values
-  Eigen::MatrixXd nuisances;  // #values by 0, 1 or 2: offset, tilt of the trace
+  Eigen::MatrixXd nuisances;  // #values by 0, 1 or 2: offset, tilt of the trace; then left_out()
   std::vector<std::string> nuisance_names;
+
+  /// How many values are left out of the fit, each by a nuisance of its own without a name.
+  [[nodiscard]] Eigen::Index left_out() const {
+    return nuisances.cols() - std::ssize(nuisance_names);
+  }
 };
+
+/// Leaves low-band values of an observation out of every fit.
+void leave_out(Observation& observation, const std::vector<Eigen::Index>& values);
 
 /// The declared model and the data it is held against.
 struct Model {

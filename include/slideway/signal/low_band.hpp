@@ -20,18 +20,23 @@ struct LowBandOptions {
 /// that neither block averaging nor the way to a uniform grid biases a fit.
 ///
 /// Positions that are not uniform (spacing off by more than 1e-3 of the mean step) are first
-/// brought to a uniform grid of as many samples by linear interpolation.
+/// brought to a uniform grid by linear interpolation: of the step they have but for their gaps,
+/// where every step is a multiple of it, else of as many samples. Data and columns are interpolated
+/// alike, so that a gap bends nothing; but what stands in it is no observation: see hollow().
 class LowBand {
  public:
   /// @throws DataError  fewer samples than 2^level
   LowBand(const LowBandOptions& options, std::span<const double> positions);
 
   [[nodiscard]] const LowBandOptions& options() const { return options_; }
-  [[nodiscard]] Eigen::Index samples() const { return samples_; }
-  [[nodiscard]] Eigen::Index values() const { return values_; }  // approximation coefficients
+  [[nodiscard]] Eigen::Index samples() const { return samples_; }  // of the uniform grid
+  [[nodiscard]] Eigen::Index values() const { return values_; }    // approximation coefficients
   [[nodiscard]] bool resampled() const { return !cell_.empty(); }
 
-  /// #samples -> #values coefficients. Scaled as the orthonormal transform has it: white noise
+  /// Coefficients more than half of which comes from the inside of gaps.
+  [[nodiscard]] const std::vector<Eigen::Index>& hollow() const { return hollow_; }
+
+  /// Samples -> #values coefficients. Scaled as the orthonormal transform has it: white noise
   /// keeps its standard deviation, a constant c becomes c * sqrt(2)^level.
   void apply(std::span<const double> signal, std::span<double> coefficients) const;
 
@@ -48,6 +53,10 @@ class LowBand {
   struct Workspace;
   void apply(std::span<const double> signal, std::span<double> coefficients,
              Workspace& workspace) const;
+  void transform(std::span<const double> grid, std::span<double> coefficients,
+                 Workspace& workspace) const;
+  void lay_grid(std::span<const double> positions);
+  void find_hollow(const std::vector<double>& inside_gaps);
 
   Wavelet wavelet_;
   LowBandOptions options_;
@@ -55,6 +64,7 @@ class LowBand {
   Eigen::Index values_ = 0;
   std::vector<Eigen::Index> cell_;  // left neighbour of each grid point; empty on a uniform grid
   std::vector<double> weight_;      // of the right neighbour
+  std::vector<Eigen::Index> hollow_;
 };
 
 }  // namespace slideway
