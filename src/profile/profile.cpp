@@ -7,7 +7,7 @@
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/profile/table.hpp"
+#include "slideway/format/table.hpp"
 
 namespace slideway {
 namespace {

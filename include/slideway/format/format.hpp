@@ -14,7 +14,7 @@ namespace slideway {
 struct Trace {
   std::vector<double> positions;
   std::vector<double> values;          // as many; NaN where the file says that the point is missing
-  std::string position_unit;           // a name of kLengthUnits; empty if the file does not say
+  std::string position_unit;           // of kLengthUnits, or "s"; empty if the file does not say
   std::string value_unit;              // the same, or one of kSlopeUnits
   std::vector<std::string> decisions;  // what the reader found or had to decide, a sentence each
 };
@@ -43,6 +43,12 @@ class Format {
   /// recognises a file; delimited text takes what no other does.
   [[nodiscard]] virtual bool recognises(std::string_view bytes) const = 0;
 
+  /// Whether a file of this format always states its units. Delimited text does not.
+  [[nodiscard]] virtual bool states_units() const { return true; }
+
+  /// Whether write() can do anything at all.
+  [[nodiscard]] virtual bool is_writable() const { return true; }
+
   /// @throws DataError   "place in the file: what is wrong, what is accepted"
   /// @throws UsageError  the request asks for what this file has not
   [[nodiscard]] virtual Trace read(std::string_view bytes, const TraceRequest& request) const = 0;
@@ -58,11 +64,20 @@ std::span<const Format* const> formats();
 /// A file with everything the caller has to know of it.
 struct TraceFile {
   std::string format;
+  bool states_units = false;
   std::string sha256;  // of its bytes
   Trace trace;
 };
 
-/// @throws DataError  "path: place: what is wrong"
+/// The format of a file's content.
+const Format& recognised_format(std::string_view bytes);
+
+/// The format that is written into a file of this name.
+/// @throws UsageError  its ending is none of those that can be written
+const Format& format_to_write(const std::filesystem::path& path);
+
+/// @throws DataError   "path: place: what is wrong"
+/// @throws UsageError  "path: ..." the request asks for what this file has not
 TraceFile read_trace(const std::filesystem::path& path, const TraceRequest& request);
 
 }  // namespace slideway

@@ -1,4 +1,4 @@
-#include "slideway/profile/table.hpp"
+#include "slideway/format/table.hpp"
 
 #include <gmock/gmock.h>
 
