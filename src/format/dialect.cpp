@@ -136,12 +136,12 @@ std::size_t Head::find_first_row() {
       if (number > static_cast<std::size_t>(*request_->header_lines)) return lines_.size() - 1;
     } else if (named) {
       if (!is_units_row(split(line.text, delimiter_of(line.text)))) return lines_.size() - 1;
-    } else if (names_all(line.text)) {
-      named = true;
     } else if (is_row(line.text)) {
       std::size_t first = lines_.size() - 1;
       while (first > 0 && holds_a_number(lines_[first - 1].text)) --first;
       return first;
+    } else {
+      named = names_all(line.text);
     }
     at = std::min(text_.size(), at + line.text.size() + 1);
     at = next_content(text_, at, ++number);
@@ -212,10 +212,10 @@ std::size_t Head::find_column(const std::string& request,
   throw DataError(message + did_you_mean(request, names));
 }
 
-// What the first rows tell of the mark: a field with digits in groups of three tells nothing, since
-// the mark in it may part thousands.
+// The mark of the first number that leaves no doubt; digits in groups of three do, since what
+// stands between them may part thousands.
 char Head::decimal_of(const Dialect& dialect) const {
-  std::string comma, point, doubtful;
+  std::string doubtful;
   const std::string_view text = text_.substr(dialect.first_row, kSampledBytes);
   const std::size_t most = *std::max_element(dialect.columns.begin(), dialect.columns.end()) + 1;
   std::size_t number = dialect.first_line;
@@ -225,22 +225,18 @@ char Head::decimal_of(const Dialect& dialect) const {
     for (const std::size_t column : dialect.columns) {
       if (column >= fields.size()) continue;
       const std::string_view field = fields[column];
-      const bool has_comma = field.find(',') != std::string_view::npos;
-      const bool has_point = field.find('.') != std::string_view::npos;
-      if (has_comma == has_point || !parse_number(field, has_comma ? ',' : '.')) continue;
-      const std::string said = std::string("'") + printable(field) + "' in line " + std::to_string(number);
-      std::string& evidence = !has_thousands(field) ? (has_comma ? comma : point) : doubtful;
-      if (evidence.empty() && (has_comma || &evidence != &doubtful)) evidence = said;
+      const std::size_t mark = field.find_first_of(",.");
+      if (mark == std::string_view::npos || !parse_number(field, field[mark])) continue;
+      if (!has_thousands(field)) return field[mark];
+      if (field[mark] == ',' && doubtful.empty())
+        doubtful = "line " + std::to_string(number) + ": '" + printable(field) + "'";
     }
     at = next_content(text, std::min(text.size(), at + line.size() + 1), ++number);
   }
-  if (!comma.empty() && !point.empty())
-    throw DataError("has decimal commas and decimal points: " + comma + ", " + point);
-  if (comma.empty() && point.empty() && !doubtful.empty())
+  if (!doubtful.empty())
     throw DataError(doubtful +
-                    ": a decimal comma or a thousands separator? say which by decimal = \",\" or "
-                    "\".\"");
-  return comma.empty() ? '.' : ',';
+                    " has a decimal comma or a thousands separator; say decimal = \",\" or \".\"");
+  return '.';
 }
 
 // "1,5,2,5" under two names: nobody can tell which comma is which.

@@ -142,7 +142,7 @@ std::string Reader::name_of(std::size_t column) const {
 void Reader::refuse_field(std::string_view field, std::size_t column) const {
   if (field.empty()) refuse(": " + name_of(column) + " is empty");
   const std::string place = ", " + name_of(column) + ": ", shown = "'" + printable(field) + "'";
-  if (is_missing(field) || parse_double(field))
+  if (is_missing(field) || parse_number(field, dialect_.decimal))
     refuse(place + printable(field) + " is no measured value; remove the row or mask it");
   if (has_thousands(field))
     refuse(place + shown + " has a thousands separator; write the number without it");
