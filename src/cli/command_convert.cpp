@@ -24,7 +24,6 @@ class ConvertCommand : public Command {
     keep_input(input_, output_);
     TraceFile file = read_trace(input_, request_);
     arguments_.add_units(file);
-    for (const std::string& decision : file.trace.decisions) say(input_ + ": " + decision);
     try {
       write_file(output_, format.write(file.trace));
     } catch (const UsageError& error) {

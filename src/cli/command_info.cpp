@@ -92,7 +92,7 @@ class InfoCommand : public ReportCommand {
                               : range(summary.step_low, summary.step_high, 4)) +
                              unit(trace.position_unit));
     if (summary.has_values()) {
-      lines.emplace_back("values", range(summary.low, summary.high, 6) + unit(trace.value_unit));
+      lines.emplace_back("values", range(summary.low, summary.high, 7) + unit(trace.value_unit));
       lines.emplace_back("rms", significant(summary.rms, 4) + unit(trace.value_unit));
       lines.emplace_back("p-v",
                          significant(summary.high - summary.low, 4) + unit(trace.value_unit));

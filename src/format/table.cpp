@@ -216,8 +216,8 @@ Table Reader::read() {
   }
   if (missing_ > 0)
     table.decisions.push_back(std::to_string(missing_) +
-                              (missing_ == 1 ? " field is" : " fields are") +
-                              " empty or say so: missing values");
+                              (missing_ == 1 ? " value is" : " values are") +
+                              " missing: empty, nan, na or null");
   return table;
 }
 

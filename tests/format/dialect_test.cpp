@@ -144,7 +144,7 @@ TEST(Dialect, TakesEmptyAndNamedValuesForMissing) {
   const auto nan = NanSensitiveDoubleEq(kNan);
   EXPECT_THAT(table.columns[1],
               ElementsAre(DoubleEq(1.0), nan, nan, nan, nan, nan, nan, DoubleEq(2.0)));
-  EXPECT_EQ(table.decisions.back(), "6 fields are empty or say so: missing values");
+  EXPECT_EQ(table.decisions.back(), "6 values are missing: empty, nan, na or null");
   EXPECT_EQ(complaint("0,1\n1,***\n"), "line 2, column 2: '***' is no number");
   EXPECT_EQ(complaint("0,1\n1,inf\n"),
             "line 2, column 2: inf is no measured value; remove the row or mask it");
