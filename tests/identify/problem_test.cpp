@@ -199,6 +199,20 @@ TEST_F(ProblemFile, FindsTheDataDirectory) {
   if (before != nullptr) setenv("SLIDEWAY_DATA", kept.c_str(), 1);
 }
 
+TEST_F(ProblemFile, SaysHowTheTextIsWritten) {
+  const Problem problem =
+      read(kMachine +
+           profile("delimiter = \";\"\ndecimal = \",\"\nencoding = \"latin-1\"\nheader_lines = 3\n"
+                   "line = \"row:12\"") +
+           kEffect);
+  const TraceRequest& request = problem.profiles[0].source.request;
+  EXPECT_EQ(request.delimiter, ";");
+  EXPECT_EQ(request.decimal, ",");
+  EXPECT_EQ(request.encoding, "latin-1");
+  EXPECT_EQ(request.header_lines, 3);
+  EXPECT_EQ(request.line, "row:12");
+}
+
 TEST_F(ProblemFile, NamesTheProfileWhoseDataAreBad) {
   const Problem problem = read(kMachine + profile() + kEffect);
   try {
