@@ -235,7 +235,7 @@ char Head::decimal_of(const Dialect& dialect) const {
   }
   if (!doubtful.empty())
     throw DataError(doubtful +
-                    " has a decimal comma or a thousands separator; say decimal = \",\" or \".\"");
+                    R"( has a decimal comma or a thousands separator; say decimal = "," or ".")");
   return '.';
 }
 

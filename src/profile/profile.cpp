@@ -54,6 +54,9 @@ Conversion conversion(const ProfileSource& source, const TraceFile& file, const 
   const std::string value_unit =
       checked_unit(file.trace.value_unit, source.value_unit, file.states_units, "value_unit");
   Conversion out{{}, scale_of(value_unit, setup.quantity == Quantity::slope), {}, source.window};
+  if (source.position_unit == "s" && unit != "s")
+    throw DataError("states positions in " + unit +
+                    ", the problem position_unit = \"s\"; accepted: a length");
   if (unit != "s") {
     out.position = scale_of(unit, false);
   } else {

@@ -21,7 +21,7 @@ TEST_F(Convert, WritesTheNumbersItRead) {
   EXPECT_EQ(contents(path("face.csv")), "x_mm,z_um\n0.1,1.5\n0.2,\n0.3,0.001\n");
 }
 
-// There and back again through every format; lengths keep to the rounding of their units.
+// There and back again through every format; ten roundings of 1.1e-16 at the most.
 TEST_F(Convert, GoesRoundThroughEveryFormat) {
   folder_.file("face.csv", face_csv(64));
   const Trace given = read_trace(path("face.csv"), {}).trace;

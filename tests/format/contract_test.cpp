@@ -29,21 +29,24 @@ double in_mm(double value, const std::string& unit) {
   return (*scale)(value);
 }
 
-// Equal as lengths, to the rounding of two changes of unit or the step of integer heights.
+// A step, a multiple of it and two changes of unit: four roundings of 1.1e-16.
+constexpr double kRounding = 5e-16;
+
+// Equal as lengths.
 void expect_same(const Trace& given, const Trace& expected) {
   ASSERT_EQ(given.positions.size(), expected.positions.size());
   ASSERT_EQ(given.values.size(), expected.values.size());
   for (std::size_t i = 0; i < expected.positions.size(); ++i) {
     const double position = in_mm(expected.positions[i], expected.position_unit);
     EXPECT_NEAR(in_mm(given.positions[i], given.position_unit), position,
-                4e-16 * std::abs(position))
+                kRounding * std::abs(position))
         << i;
     if (std::isnan(expected.values[i])) {
       EXPECT_TRUE(std::isnan(given.values[i])) << i;
       continue;
     }
     const double value = in_mm(expected.values[i], expected.value_unit);
-    EXPECT_NEAR(in_mm(given.values[i], given.value_unit), value, 4e-16 * std::abs(value)) << i;
+    EXPECT_NEAR(in_mm(given.values[i], given.value_unit), value, kRounding * std::abs(value)) << i;
   }
 }
 

@@ -219,10 +219,10 @@ TEST(Fit, DoesNotMindTheOrderOfAFileNorItsUnits) {
     }
     out.close();
     std::vector<Profile> read = profiles;
-    const ProfileSource source{.path = folder / name,
-                               .request = {},
-                               .position_unit = "mm",
-                               .value_unit = std::string(unit_name)};
+    ProfileSource source;
+    source.path = folder / name;
+    source.position_unit = "mm";
+    source.value_unit = unit_name;
     read_profile(source, read[0]);
     return fitted(joint_problem(), read);
   };
