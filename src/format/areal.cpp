@@ -20,10 +20,9 @@ std::string size_of(const Grid& grid) {
 [[noreturn]] void refuse(const Grid& grid, std::string_view line) {
   const std::string asked =
       line.empty() ? "no line is chosen" : "line = \"" + printable(line) + "\"";
-  throw UsageError(asked + ": the file holds " + size_of(grid) +
-                   "; accepted: \"row:1\" to \"row:" + std::to_string(grid.y.size()) +
-                   "\", \"column:1\" to \"column:" + std::to_string(grid.x.size()) +
-                   "\", \"diameter:DEGREES\"");
+  throw UsageError(asked + ": the file holds " + size_of(grid) + R"(; accepted: "row:1" to "row:)" +
+                   std::to_string(grid.y.size()) + R"(", "column:1" to "column:)" +
+                   std::to_string(grid.x.size()) + R"(", "diameter:DEGREES")");
 }
 
 // Index of a row or column counted from 1.

@@ -64,8 +64,8 @@ std::string NistXml::write(const Trace& trace) const {
 }  // namespace
 
 const Format& nist_xml_format() {
-  static const NistXml format;
-  return format;
+  static const NistXml kFormat;
+  return kFormat;
 }
 
 }  // namespace slideway

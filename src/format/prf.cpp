@@ -131,8 +131,8 @@ std::string Prf::write(const Trace& trace) const {
 }  // namespace
 
 const Format& prf_format() {
-  static const Prf format;
-  return format;
+  static const Prf kFormat;
+  return kFormat;
 }
 
 }  // namespace slideway

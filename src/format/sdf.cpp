@@ -227,8 +227,8 @@ std::string Sdf::write(const Trace& trace) const {
 }  // namespace
 
 const Format& sdf_format() {
-  static const Sdf format;
-  return format;
+  static const Sdf kFormat;
+  return kFormat;
 }
 
 }  // namespace slideway

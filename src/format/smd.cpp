@@ -143,8 +143,8 @@ std::string Smd::write(const Trace& trace) const {
 }  // namespace
 
 const Format& smd_format() {
-  static const Smd format;
-  return format;
+  static const Smd kFormat;
+  return kFormat;
 }
 
 }  // namespace slideway

@@ -173,6 +173,11 @@ Trace X3p::read(std::string_view bytes, const TraceRequest& request) const {
   } else {
     trace = line_of(grid_of(std::move(points), axes, size), request.line, "m");
   }
+  // The standard gives absolute axes no increment, and the reference library passes over it.
+  for (const X3pAxis* axis : {&axes.x, &axes.y, &axes.z})
+    if (!axis->incremental && axis->scale() != 1.0)
+      trace.decisions.push_back(axis->place + ": absolute, yet with an Increment of " +
+                                shortest(axis->scale()) + ": values are multiplied by it");
   trace.decisions.insert(trace.decisions.end(), gate.decisions().begin(), gate.decisions().end());
   return trace;
 }
@@ -212,8 +217,8 @@ std::string X3p::write(const Trace& trace) const {
 }  // namespace
 
 const Format& x3p_format() {
-  static const X3p format;
-  return format;
+  static const X3p kFormat;
+  return kFormat;
 }
 
 }  // namespace slideway

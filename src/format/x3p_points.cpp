@@ -84,12 +84,12 @@ bool is_valid(std::string_view valid, std::size_t i) {
 
 }  // namespace
 
-double X3pAxis::coordinate(double stored) const {
+double X3pAxis::scale() const {
   if (incremental && !increment) throw DataError(place + ": the element Increment is missing");
-  // An absolute axis needs no increment; some writers give it 0.
-  const double scale = incremental || increment.value_or(0.0) != 0.0 ? *increment : 1.0;
-  return stored * scale + offset;
+  return incremental || increment.value_or(0.0) != 0.0 ? *increment : 1.0;
 }
+
+double X3pAxis::coordinate(double stored) const { return stored * scale() + offset; }
 
 std::size_t X3pAxis::bytes() const { return type == 'I' ? 2 : type == 'D' ? 8 : 4; }
 

@@ -17,8 +17,10 @@ struct X3pAxis {
   std::optional<double> increment;  // m
   double offset = 0.0;              // m
 
-  /// Coordinate in m of a stored value, or of an index along an incremental axis.
+  /// m that a stored value of 1 stands for; 1 on an absolute axis that gives no increment, or 0.
   /// @throws DataError if an incremental axis has no increment
+  [[nodiscard]] double scale() const;
+  /// Coordinate in m of a stored value, or of an index along an incremental axis.
   [[nodiscard]] double coordinate(double stored) const;
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] double stored(std::string_view bytes) const;

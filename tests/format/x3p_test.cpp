@@ -211,6 +211,22 @@ TEST(X3p, ReadsEveryDataType) {
       ElementsAre(1.75, 0.25));
 }
 
+TEST(X3p, TellsOfAnIncrementWhereNoneBelongs) {
+  const std::string data = bytes_of<float>({3.0F, -3.0F});
+  const auto read_with = [&](const std::string& increment) {
+    return x3p.read(archive(main_xml(matrix(2) + link_to(data), kCounted,
+                                     absolute('F') + "<Increment>" + increment + "</Increment>"),
+                            {{"bindata/data.bin", data}}),
+                    {});
+  };
+  EXPECT_THAT(read_with("0.5").values, ElementsAre(1.5, -1.5));
+  EXPECT_THAT(read_with("0.5").decisions, ElementsAre(HasSubstr("multiplied")));
+  for (const char* plain : {"0", "1"}) {
+    EXPECT_THAT(read_with(plain).values, ElementsAre(3.0, -3.0));
+    EXPECT_TRUE(read_with(plain).decisions.empty());
+  }
+}
+
 TEST(X3p, ReadsBitsOfValidPoints) {
   const std::string data = bytes_of<std::int16_t>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
   const std::string valid = "\x7e\x02";  // all but the first, the eighth and the ninth
