@@ -20,6 +20,9 @@ namespace slideway {
 namespace {
 
 constexpr std::string_view kEndings[] = {".x3p"};
+// Numbers as text deflate to a third or so.
+constexpr std::size_t kFreeXml = std::size_t{1} << 20U;
+constexpr std::size_t kXmlExpansion = 20;
 constexpr std::string_view kNamespace = "http://www.opengps.eu/2008/ISO5436_2";
 
 // How many points there are: so many in each row of a matrix, or all in a list.
@@ -150,7 +153,8 @@ class X3p final : public Format {
 Trace X3p::read(std::string_view bytes, const TraceRequest& request) const {
   const ZipArchive archive(bytes);
   ChecksumGate gate(request.ignore_checksum);
-  const std::string main = archive.read("main.xml", std::string::npos);
+  const std::string main =
+      archive.read("main.xml", std::max(kFreeXml, kXmlExpansion * bytes.size()));
   const auto document = parse_xml(main, Doctype::refused, "main.xml");
   const pugi::xml_node root = document->document_element();
   if (!std::string_view(root.name()).ends_with("ISO5436_2"))

@@ -1,5 +1,8 @@
 #include "xml.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 
@@ -7,6 +10,10 @@ namespace slideway {
 namespace {
 
 constexpr int kDeepest = 32;
+
+// A tree takes some 64 bytes for each tag. No honest file has more of them than of "<Datum/>".
+constexpr std::size_t kFreeTags = 4096;
+constexpr std::size_t kBytesPerTag = 8;
 
 struct Inspector : pugi::xml_tree_walker {
   explicit Inspector(Doctype allowed) : doctype(allowed) {}
@@ -30,6 +37,11 @@ struct Inspector : pugi::xml_tree_walker {
 
 std::unique_ptr<pugi::xml_document> parse_xml(std::string_view text, Doctype doctype,
                                               const std::string& place) {
+  const auto tags = static_cast<std::size_t>(std::count(text.begin(), text.end(), '<'));
+  if (tags > kFreeTags + text.size() / kBytesPerTag)
+    throw DataError(place + ": " + std::to_string(tags) + " tags in " +
+                    std::to_string(text.size()) + " bytes; accepted: one in " +
+                    std::to_string(kBytesPerTag));
   auto document = std::make_unique<pugi::xml_document>();
   const pugi::xml_parse_result result =
       document->load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_doctype);

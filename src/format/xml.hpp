@@ -11,7 +11,7 @@ namespace slideway {
 enum class Doctype { refused, external_only };
 
 /// The elements of a document. Refused: what is not well-formed, elements nested deeper than 32,
-/// entities declared in the document.
+/// more tags than any file of numbers has, entities declared in the document.
 /// @throws DataError "place: what is wrong"
 std::unique_ptr<pugi::xml_document> parse_xml(std::string_view text, Doctype doctype,
                                               const std::string& place);

@@ -128,11 +128,14 @@ TEST(NistXml, RefusesHostileFiles) {
   EXPECT_THAT(wrong("SYSTEM \"data.dtd\"", "[<!ENTITY a \"&b;&b;\"><!ENTITY b \"&c;&c;\">]"),
               HasSubstr("declares entities"));
   std::string deep = "<DATA>";
-  for (int i = 0; i < 100'000; ++i) deep += "<a>";
-  for (int i = 0; i < 100'000; ++i) deep += "</a>";
+  for (int i = 0; i < 100'000; ++i) deep += "<nested>";
+  for (int i = 0; i < 100'000; ++i) deep += "</nested>";
   EXPECT_THAT(refusal(nist, deep + "</DATA>"), HasSubstr("nested deeper than 32"));
+  std::string wide = "<DATA>";
+  for (int i = 0; i < 100'000; ++i) wide += "<a/>";
+  EXPECT_THAT(refusal(nist, wide + "</DATA>"), HasSubstr("100002 tags"));
   EXPECT_THAT(refusal(nist, "<?xml version='1.0'?><html/>"), HasSubstr("DATA/DATAFILE"));
-  EXPECT_THAT(refusal(nist, "<?xml version='1.0'?><DATA>" + std::string(1'000'000, '<')),
+  EXPECT_THAT(refusal(nist, "<?xml version='1.0'?><DATA>" + std::string(1'000, '<')),
               HasSubstr("no well-formed XML"));
   EXPECT_THROW((void)nist.read(kSmall, {.line = "row:1"}), UsageError);
 }
