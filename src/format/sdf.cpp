@@ -20,6 +20,7 @@ namespace {
 constexpr std::string_view kEndings[] = {".sdf"};
 constexpr std::size_t kVersionSize = 8;
 constexpr std::size_t kBinaryHeaderSize = 81;
+constexpr std::array<std::size_t, 8> kTypeSizes{1, 2, 4, 4, 1, 2, 4, 8};
 constexpr std::array<std::string_view, 3> kMissingWords{"BAD", "NaN", "nan"};
 
 struct Header {
@@ -125,6 +126,12 @@ Header read_binary_header(std::string_view bytes) {
   return header;
 }
 
+// Some programs (Olympus) put the numbers 5 and 1 behind the header of bISO-1.0; the file is then
+// longer than the header says by just these eight bytes.
+bool has_longer_header(std::string_view rest, std::size_t data_size) {
+  return rest.size() == data_size + 8 && rest.starts_with({"\5\0\0\0\1\0\0\0", 8});
+}
+
 std::vector<double> read_text_values(std::string_view text, const Header& header) {
   if (header.points > (std::size_t{1} << 53U) / header.profiles)
     throw DataError("header: NumPoints x NumProfiles: more points than any file holds");
@@ -192,7 +199,10 @@ Trace Sdf::read(std::string_view bytes, const TraceRequest& request) const {
   std::vector<double> heights;
   if (bytes.starts_with('b')) {
     header = read_binary_header(bytes);
-    heights = read_binary_values(bytes.substr(kBinaryHeaderSize), header);
+    std::string_view rest = bytes.substr(kBinaryHeaderSize);
+    if (has_longer_header(rest, header.points * header.profiles * kTypeSizes[header.type]))
+      rest.remove_prefix(8);
+    heights = read_binary_values(rest, header);
   } else {
     const std::size_t end = bytes.find('*');
     if (end == std::string_view::npos)

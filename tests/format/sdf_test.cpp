@@ -107,6 +107,15 @@ TEST(Sdf, ReadsEveryBinaryType) {
   expect_every_truncation_refused(sdf, binary<std::int16_t>(5, {3, -3, 4}));
 }
 
+TEST(Sdf, PassesOverTheLongerHeaderOfSomePrograms) {
+  std::string bytes = binary<std::int16_t>(5, {3, -3});
+  bytes.insert(81, "\5\0\0\0\1\0\0\0", 8);
+  EXPECT_THAT(sdf.read(bytes, {}).values, Pointwise(DoubleEq(), {3e-9, -3e-9}));
+  // A trailer is none.
+  EXPECT_THAT(sdf.read(binary<std::int16_t>(5, {3, -3}) + "< note >", {}).values,
+              Pointwise(DoubleEq(), {3e-9, -3e-9}));
+}
+
 TEST(Sdf, TakesLinesOutOfBinaryRows) {
   const std::string bytes = binary<std::int16_t>(5, {1, 2, 3, 4, 5, 6}, 2);
   EXPECT_THAT(sdf.read(bytes, line("row:2")).values, Pointwise(DoubleEq(), {4e-9, 5e-9, 6e-9}));
