@@ -82,7 +82,7 @@ void check_main(const ZipArchive& archive, pugi::xml_node root, std::string_view
   gate.check(main, Words(digits).next().value_or(""), "main.xml");
 }
 
-// Points of a list or with stored positions that have none; only a profile can do without them.
+// A point that is missing altogether, as <Datum/> says, has no position where x is stored.
 std::size_t drop_without_position(X3pPoints& points) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.x.size(); ++i) {
@@ -109,6 +109,7 @@ Trace profile_of(X3pPoints points, const X3pAxes& axes) {
     points.x = counted(axes.x, points.z.size());
   else
     dropped = drop_without_position(points);
+  if (points.x.empty()) throw DataError("main.xml: Record3: no point has a position");
   Trace trace{std::move(points.x), std::move(points.z), "m", "m", {}};
   if (dropped > 0)
     trace.decisions.push_back(std::to_string(dropped) +

@@ -307,6 +307,8 @@ TEST(X3p, RefusesBadNumbersAndElements) {
               HasSubstr("Datum 2"));
   EXPECT_THAT(refusal(x3p, with_list("<Datum>1</Datum><Datum>inf</Datum>", 2)),
               HasSubstr("Datum 2"));
+  EXPECT_THAT(refusal(x3p, with_list("<Datum/><Datum/>", 2, absolute('D'))),
+              HasSubstr("no point has a position"));
   EXPECT_THAT(refusal(x3p, with_list("<Datum>1;2</Datum>", 1)), HasSubstr("2 numbers; accepted"));
   EXPECT_THAT(refusal(x3p, with_list("<Datum>0;0;1</Datum><Datum>1</Datum>", 2)),
               HasSubstr("other axes"));
