@@ -7,7 +7,7 @@
 
 #include "slideway/base/file.hpp"
 #include "slideway/base/random.hpp"
-#include "slideway/profile/table.hpp"
+#include "slideway/format/table.hpp"
 
 namespace slideway {
 namespace {

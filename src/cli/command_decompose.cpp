@@ -8,7 +8,7 @@
 #include "low_band_arguments.hpp"
 #include "output.hpp"
 #include "slideway/base/error.hpp"
-#include "slideway/profile/table.hpp"
+#include "slideway/format/table.hpp"
 
 namespace slideway {
 namespace {

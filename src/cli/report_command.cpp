@@ -25,6 +25,8 @@ ProblemCommand::ProblemCommand(std::string name, std::string arguments, std::str
   add_input("PROBLEM", &input_);
   add_options()("data", po::value(&data_)->value_name("DIR"),
                 "what ${SLIDEWAY_DATA} in the problem file stands for");
+  add_options()("ignore-checksum", po::bool_switch(&ignore_checksum_),
+                "read a file whose checksum is wrong; the report then says so");
 }
 
 template <typename Error, typename Work>
@@ -42,8 +44,11 @@ void ProblemCommand::add_strict() {
 
 int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
   keep_input(input_, json_file());
-  const Problem problem = read_problem(input_, data_directory(data_));
-  for (const ProfileEntry& entry : problem.profiles) keep_input(entry.source.path, json_file());
+  Problem problem = read_problem(input_, data_directory(data_));
+  for (ProfileEntry& entry : problem.profiles) {
+    keep_input(entry.source.path, json_file());
+    entry.source.request.ignore_checksum = ignore_checksum_;
+  }
   const std::vector<Profile> profiles =
       in_problem<UsageError>([&] { return read_profiles(problem); });
   const Result result = in_problem<UsageError>(

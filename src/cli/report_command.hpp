@@ -44,7 +44,7 @@ class ProblemCommand : public ReportCommand {
   auto in_problem(Work&& work) const;
 
   std::string input_, data_;
-  bool strict_ = false;
+  bool strict_ = false, ignore_checksum_ = false;
 };
 
 /// --data DIR, as read_problem() wants it.

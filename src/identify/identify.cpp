@@ -14,11 +14,13 @@ namespace {
 InputSummary summarise_input(const Profile& profile) {
   InputSummary out{profile.name,
                    profile.file,
+                   profile.format,
                    profile.sha256,
                    profile.setup.kind == Kind::face ? "face" : "slide",
                    profile.setup.quantity == Quantity::height ? "height" : "slope",
                    profile.role == Role::fit ? "fit" : "holdout"};
   out.samples = profile.values.size();
+  out.missing = profile.missing;
   out.position_min_mm = profile.positions.front();
   out.position_max_mm = profile.positions.back();
   double mean = 0.0, squares = 0.0;

@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 
+#include "slideway/base/file.hpp"
 #include "slideway/base/units.hpp"
 
 namespace slideway {
 namespace {
 
 constexpr std::string_view kKeys =
-    "name file kind quantity position_column value_column position_unit value_unit base_mm window "
+    "name file kind quantity position_column value_column position_unit value_unit delimiter "
+    "decimal encoding header_lines line base_mm window "
     "center_mm z_mm overhang_mm feed_mm_per_min spindle_rpm cut_direction cut_radius_mm start_s "
     "traverse_mm_per_s free standard_uncertainty role";
 
@@ -39,29 +42,46 @@ std::string checked_name(const Section& section) {
   return name;
 }
 
+// Whether the file says itself what its numbers mean.
+bool file_states_units(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) &&
+         recognised_format(FileBytes(path).text()).states_units();
+}
+
 void read_units(const Section& section, ProfileEntry& entry) {
   constexpr std::string_view kPositionUnits = "m mm um nm inch s";
-  ProfileSource& source = entry.source;
-  entry.position_unit = section.required(
-      "position_unit", section.unit("position_unit", kPositionUnits, " for a position"),
-      kPositionUnits);
-  source.position_is_time = entry.position_unit == "s";
-  if (!source.position_is_time) source.position_unit = *length_unit(entry.position_unit);
-
   const bool slope = entry.profile.setup.quantity == Quantity::slope;
-  const std::string_view units = slope ? kSlopeUnits : kLengthUnits;
-  entry.value_unit = section.required(
-      "value_unit", section.unit("value_unit", units, slope ? " for a slope" : " for a height"),
-      units);
-  source.value_unit = slope ? *slope_unit(entry.value_unit) : *length_unit(entry.value_unit);
+  const std::string_view value_units = slope ? kSlopeUnits : kLengthUnits;
+  ProfileSource& source = entry.source;
+  const auto position = section.unit("position_unit", kPositionUnits, " for a position");
+  const auto value =
+      section.unit("value_unit", value_units, slope ? " for a slope" : " for a height");
+  const bool stated = !(position && value) && file_states_units(source.path);
+  if (!position && (!stated || source.window)) section.missing("position_unit", kPositionUnits);
+  if (!value && (!stated || section.has("standard_uncertainty")))
+    section.missing("value_unit", value_units);
+  source.position_unit = position.value_or("");
+  source.value_unit = value.value_or("");
+}
+
+TraceRequest read_request(const Section& section) {
+  TraceRequest request;
+  request.position_column = section.column("position_column").value_or(request.position_column);
+  request.value_column = section.column("value_column").value_or(request.value_column);
+  request.delimiter = section.one_of("delimiter", ", ; tab blank").value_or("");
+  request.decimal = section.one_of("decimal", ". ,").value_or("");
+  request.encoding = section.one_of("encoding", "utf-8 utf-16 latin-1").value_or("");
+  request.header_lines = section.integer("header_lines", 0, std::numeric_limits<int>::max());
+  request.line = section.text("line").value_or("");
+  return request;
 }
 
 void read_source(const Section& section, const PathRules& paths, ProfileEntry& entry) {
   ProfileSource& source = entry.source;
   entry.profile.file = section.required("file", section.text("file"), "path of a data file");
   source.path = resolved(section, entry.profile.file, paths);
-  source.position_column = section.column("position_column").value_or("1");
-  source.value_column = section.column("value_column").value_or("2");
+  source.request = read_request(section);
   source.window = section.range("window");
   read_units(section, entry);
 }
@@ -99,8 +119,12 @@ void read_treatment(const Section& section, ProfileEntry& entry) {
     profile.free_offset = std::find(free->begin(), free->end(), "offset") != free->end();
     profile.free_tilt = std::find(free->begin(), free->end(), "tilt") != free->end();
   }
-  if (const auto uncertainty = section.positive("standard_uncertainty"))
-    profile.standard_uncertainty = entry.source.value_unit(*uncertainty);
+  if (const auto uncertainty = section.positive("standard_uncertainty")) {
+    const std::string& unit = entry.source.value_unit;
+    const bool slope = profile.setup.quantity == Quantity::slope;
+    profile.standard_uncertainty =
+        (slope ? slope_unit(unit) : length_unit(unit)).value()(*uncertainty);
+  }
   if (section.one_of("role", "fit holdout") == "holdout") profile.role = Role::holdout;
 }
 
@@ -118,7 +142,7 @@ ProfileEntry read_profile_entry(const Section& section, const MachineDefaults& m
   entry.profile.name = checked_name(section);
   read_geometry(section, machine, entry.profile.setup);
   read_source(section, paths, entry);
-  read_cut(section, entry.source.position_is_time, entry.profile.setup);
+  read_cut(section, entry.source.position_unit == "s", entry.profile.setup);
   read_treatment(section, entry);
   return entry;
 }

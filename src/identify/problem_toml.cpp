@@ -61,8 +61,9 @@ void point_to_simulation(toml::table& table, const ProfileEntry& entry, const st
   table.insert_or_assign("position_unit", "mm");
   table.insert_or_assign("value_column", slope ? "slope_urad" : "z_um");
   table.insert_or_assign("value_unit", value_unit);
-  table.erase("window");
-  if (entry.profile.standard_uncertainty && entry.value_unit != value_unit)
+  for (const char* key : {"window", "delimiter", "decimal", "encoding", "header_lines", "line"})
+    table.erase(key);
+  if (entry.profile.standard_uncertainty && entry.source.value_unit != value_unit)
     table.insert_or_assign("standard_uncertainty",
                            *entry.profile.standard_uncertainty * (slope ? 1e6 : 1e3));
 }

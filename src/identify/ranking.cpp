@@ -9,7 +9,7 @@
 #include "residual.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/profile/table.hpp"
+#include "slideway/format/table.hpp"
 #include "slideway/signal/correlation.hpp"
 
 namespace slideway {

@@ -27,9 +27,10 @@ std::vector<double> made_positions(const ProfileEntry& entry, std::size_t sample
   const Setup& setup = entry.profile.setup;
   double first = 0.0, last = 0.0;
   if (entry.source.window) {
-    const double scale = entry.source.position_is_time ? *setup.feed_mm_per_min / kMinute : 1.0;
-    first = entry.source.position_unit(entry.source.window->first) * scale;
-    last = entry.source.position_unit(entry.source.window->second) * scale;
+    const auto unit = length_unit(entry.source.position_unit);  // or s
+    const UnitScale scale = unit ? *unit : UnitScale{*setup.feed_mm_per_min, kMinute};
+    first = scale(entry.source.window->first);
+    last = scale(entry.source.window->second);
   } else if (setup.kind == Kind::face && setup.cut_radius_mm) {
     first = setup.center_mm > 0.0 ? setup.center_mm - *setup.cut_radius_mm : setup.center_mm;
     last = setup.center_mm + *setup.cut_radius_mm;

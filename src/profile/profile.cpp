@@ -1,13 +1,11 @@
 #include "slideway/profile/profile.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/profile/table.hpp"
 
 namespace slideway {
 namespace {
@@ -21,26 +19,85 @@ constexpr double kLargest = 1e9;
                   "; positions must strictly increase (or strictly decrease)");
 }
 
-// Keeps the samples inside the window, in place and in our units. Returns whether they run upwards.
-bool keep_window(const ProfileSource& source, const UnitScale& to_mm,
-                 std::vector<double>& positions, std::vector<double>& values) {
+// What turns numbers of the file into ours.
+struct Conversion {
+  UnitScale position, value;  // to mm, or s where positions are times; to mm or rad
+  UnitScale to_mm;            // of a time
+  std::optional<std::pair<double, double>> window;  // in the file's unit
+};
+
+// The unit of the file's numbers: as the file states, or as the source says and the file's header,
+// if it has one, agrees.
+std::string checked_unit(const std::string& in_file, const std::string& asked, bool file_states,
+                         const std::string& key) {
+  if (file_states) return in_file;
+  if (asked.empty()) throw UsageError(key + " is missing: delimited text needs it");
+  if (!in_file.empty() && in_file != asked)
+    throw DataError("the header has the unit " + in_file + ", the problem " + key + " = \"" +
+                    asked + "\"; accepted: the same");
+  return asked;
+}
+
+UnitScale scale_of(const std::string& unit, bool slope) {
+  const auto scale = slope ? slope_unit(unit) : length_unit(unit);
+  if (!scale)
+    throw DataError(
+        "has values in '" + unit + "'; accepted for a " +
+        (slope ? "slope: " + std::string(kSlopeUnits) : "height: " + std::string(kLengthUnits)));
+  return *scale;
+}
+
+Conversion conversion(const ProfileSource& source, const TraceFile& file, const Profile& profile) {
+  const Setup& setup = profile.setup;
+  const std::string unit = checked_unit(file.trace.position_unit, source.position_unit,
+                                        file.states_units, "position_unit");
+  const std::string value_unit =
+      checked_unit(file.trace.value_unit, source.value_unit, file.states_units, "value_unit");
+  Conversion out{{}, scale_of(value_unit, setup.quantity == Quantity::slope), {}, source.window};
+  if (source.position_unit == "s" && unit != "s")
+    throw DataError("states positions in " + unit +
+                    ", the problem position_unit = \"s\"; accepted: a length");
+  if (unit != "s") {
+    out.position = scale_of(unit, false);
+  } else {
+    if (!setup.feed_mm_per_min)
+      throw UsageError("profile '" + profile.name +
+                       "': positions in time need feed_mm_per_min to become mm");
+    out.to_mm = {*setup.feed_mm_per_min, kMinute};
+  }
+  if (out.window && unit != source.position_unit) {
+    const UnitScale asked = scale_of(source.position_unit, false);
+    for (double* end : {&out.window->first, &out.window->second})
+      *end = asked(*end) * out.position.divisor / out.position.factor;
+  }
+  return out;
+}
+
+// Keeps the samples inside the window that have a value, in place and in our units. Returns whether
+// they run upwards.
+bool keep_window(const std::string& file, const Conversion& convert, Profile& profile) {
+  std::vector<double>& positions = profile.positions;
+  std::vector<double>& values = profile.values;
   std::size_t kept = 0;
   bool upwards = true;
   double last = 0.0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const double given = positions[i];
-    if (source.window && !(given >= source.window->first && given <= source.window->second))
+    if (convert.window && !(given >= convert.window->first && given <= convert.window->second))
       continue;
-    const double position = to_mm(source.position_unit(given));
-    const double value = source.value_unit(values[i]);
+    if (std::isnan(values[i])) {
+      ++profile.missing;
+      continue;
+    }
+    const double position = convert.to_mm(convert.position(given));
+    const double value = convert.value(values[i]);
     if (!(std::abs(position) <= kLargest && std::abs(value) <= kLargest))
-      throw DataError(source.path.string() + ": data row " + std::to_string(i + 1) +
+      throw DataError(file + ": data row " + std::to_string(i + 1) +
                       ": too large for its unit; the largest accepted: 1e9 mm or rad");
     if (kept == 1) upwards = position > positions[0];
     if (kept > 0) {
       const double step = position - positions[kept - 1];
-      if (upwards ? !(step > 0.0) : !(step < 0.0))
-        refuse_order(source.path.string(), i + 1, given, last);
+      if (upwards ? !(step > 0.0) : !(step < 0.0)) refuse_order(file, i + 1, given, last);
     }
     last = given;
     positions[kept] = position;
@@ -73,33 +130,59 @@ void complete_cut_radius(const std::string& name, Setup& setup) {
                    "; give the outer radius of the cut, the right center_mm, or a window");
 }
 
+// Sizes that nobody turns or measures with: a unit or a digit is more likely wrong.
+void note_blunders(Profile& profile) {
+  const Setup& setup = profile.setup;
+  const auto [low, high] = std::minmax_element(profile.values.begin(), profile.values.end());
+  constexpr double kLargestRange = 1.0, kLargestFeed = 10000.0, kLargestSpeed = 1e5;
+  if (setup.quantity == Quantity::height && *high - *low > kLargestRange)
+    profile.notes.push_back("heights range over " + significant(*high - *low, 3) +
+                            " mm, more than 1 mm: is value_unit right?");
+  if (setup.feed_mm_per_min.value_or(0.0) > kLargestFeed)
+    profile.notes.push_back("feed_mm_per_min = " + shortest(*setup.feed_mm_per_min) +
+                            " is more than 10 m/min: is it right?");
+  if (setup.spindle_rpm.value_or(0.0) > kLargestSpeed)
+    profile.notes.push_back("spindle_rpm = " + shortest(*setup.spindle_rpm) +
+                            " is more than 100000: is it right?");
+}
+
+Conversion named_conversion(const ProfileSource& source, const TraceFile& file,
+                            const Profile& profile) {
+  try {
+    return conversion(source, file, profile);
+  } catch (const DataError& error) {
+    throw DataError(source.path.string() + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 void read_profile(const ProfileSource& source, Profile& profile) {
-  Setup& setup = profile.setup;
-  UnitScale to_mm;
-  if (source.position_is_time) {
-    if (!setup.feed_mm_per_min)
-      throw UsageError("profile '" + profile.name +
-                       "': positions in time need feed_mm_per_min to become mm");
-    to_mm = {*setup.feed_mm_per_min, kMinute};
-  }
-  const std::array<std::string, 2> columns{source.position_column, source.value_column};
-  Table table = read_table(source.path, columns);
-  profile.sha256 = std::move(table.sha256);
-  profile.positions = std::move(table.columns[0]);
-  profile.values = std::move(table.columns[1]);
+  TraceFile file = read_trace(source.path, source.request);
+  const Conversion convert = named_conversion(source, file, profile);
+  profile.format = std::move(file.format);
+  profile.sha256 = std::move(file.sha256);
+  profile.positions = std::move(file.trace.positions);
+  profile.values = std::move(file.trace.values);
+  if (!file.trace.decisions.empty())
+    profile.notes.push_back(profile.format + ": " + joined(file.trace.decisions, "; "));
 
-  const bool upwards = keep_window(source, to_mm, profile.positions, profile.values);
+  const bool upwards = keep_window(source.path.string(), convert, profile);
   require_two_samples(source, profile.positions.size());
+  if (profile.missing > 0)
+    profile.notes.push_back(std::to_string(profile.missing) +
+                            (profile.missing == 1 ? " missing point" : " missing points") +
+                            " left out");
   if (!upwards) {
     std::reverse(profile.positions.begin(), profile.positions.end());
     std::reverse(profile.values.begin(), profile.values.end());
     profile.notes.emplace_back("trace runs backwards in the file: reversed");
   }
+  Setup& setup = profile.setup;
   setup.first_mm = profile.positions.front();
   setup.last_mm = profile.positions.back();
   complete_cut_radius(profile.name, setup);
+  note_blunders(profile);
 }
 
 }  // namespace slideway

@@ -35,6 +35,7 @@ Json combination(const Combination& terms) {
 Json input(const InputSummary& in) {
   Json json = {{"name", in.name},
                {"file", in.file},
+               {"format", in.format},
                {"sha256", in.sha256},
                {"kind", in.kind},
                {"quantity", in.quantity},

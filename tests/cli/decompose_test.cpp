@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cli/bad_input.hpp"
-#include "slideway/profile/table.hpp"
+#include "slideway/format/table.hpp"
 
 namespace slideway {
 namespace {

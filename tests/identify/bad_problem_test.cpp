@@ -52,7 +52,16 @@ TEST_F(ProblemFile, TakesTimeForAPositionOnlyWithAFeed) {
       "[[profile]]\nname = \"a\"\nfile = \"a.csv\"\nposition_unit = \"s\"\nvalue_unit = \"um\"\n";
   EXPECT_THAT(refusal(kMachine + timed + kEffect), HasSubstr("profile.feed_mm_per_min: missing"));
   const Problem problem = read(kMachine + timed + "feed_mm_per_min = 2.0\n" + kEffect);
-  EXPECT_TRUE(problem.profiles[0].source.position_is_time);
+  EXPECT_EQ(problem.profiles[0].source.position_unit, "s");
+}
+
+TEST_F(ProblemFile, RefusesWordsThatAreNoDialect) {
+  EXPECT_THAT(profile_refusal("delimiter = \"|\""),
+              HasSubstr("profile.delimiter: \"|\" is not accepted; accepted: , ; tab blank"));
+  EXPECT_THAT(profile_refusal("decimal = \";\""), HasSubstr("profile.decimal"));
+  EXPECT_THAT(profile_refusal("encoding = \"utf8\""), HasSubstr("did you mean 'utf-8'?"));
+  EXPECT_THAT(profile_refusal("header_lines = -1"), HasSubstr("profile.header_lines"));
+  EXPECT_THAT(profile_refusal("line = 12"), HasSubstr("profile.line: must be a text"));
 }
 
 TEST_F(ProblemFile, RefusesWrongTypes) {

@@ -219,8 +219,10 @@ TEST(Fit, DoesNotMindTheOrderOfAFileNorItsUnits) {
     }
     out.close();
     std::vector<Profile> read = profiles;
-    ProfileSource source{.path = folder / name};
-    source.value_unit = *length_unit(unit_name);
+    ProfileSource source;
+    source.path = folder / name;
+    source.position_unit = "mm";
+    source.value_unit = unit_name;
     read_profile(source, read[0]);
     return fitted(joint_problem(), read);
   };

@@ -97,11 +97,10 @@ TEST_F(ProblemFile, GivesEveryKeyOfAProfile) {
   EXPECT_EQ(entry.profile.name, "feed2");
   EXPECT_EQ(entry.profile.file, "feed2.csv");
   EXPECT_EQ(entry.source.path, directory_ / "feed2.csv");
-  EXPECT_EQ(entry.source.position_column, "x_mm");
-  EXPECT_EQ(entry.source.value_column, "3");
+  EXPECT_EQ(entry.source.request.position_column, "x_mm");
+  EXPECT_EQ(entry.source.request.value_column, "3");
   EXPECT_EQ(entry.source.window, std::pair(0.0, 10.0));
-  EXPECT_EQ(entry.value_unit, "um");
-  EXPECT_EQ(entry.source.value_unit(1.0), 1e-3);
+  EXPECT_EQ(entry.source.value_unit, "um");
   EXPECT_EQ(setup.center_mm, 1.0);
   EXPECT_EQ(setup.z_mm, 2.0);
   EXPECT_EQ(setup.overhang_mm, 50.0);
@@ -125,7 +124,7 @@ TEST_F(ProblemFile, TakesASlopeReadingInItsOwnUnits) {
   EXPECT_EQ(entry.profile.setup.quantity, Quantity::slope);
   EXPECT_EQ(entry.profile.setup.base_mm, 100.0);
   EXPECT_EQ(entry.profile.setup.overhang_mm, 40.0);
-  EXPECT_EQ(entry.source.position_unit(1.0), 1000.0);
+  EXPECT_EQ(entry.source.position_unit, "m");
   // One arc second is pi / 648000 rad; two roundings are allowed for.
   EXPECT_NEAR(*entry.profile.standard_uncertainty, 0.5 * 3.14159265358979323846 / 648000.0, 1e-21);
 }
@@ -166,8 +165,8 @@ TEST_F(ProblemFile, HasTheDefaultsOfTheInterface) {
   EXPECT_EQ(problem.bodies[0].name, "x_carriage");
   EXPECT_EQ(entry.profile.setup.kind, Kind::face);
   EXPECT_EQ(entry.profile.setup.quantity, Quantity::height);
-  EXPECT_EQ(entry.source.position_column, "1");
-  EXPECT_EQ(entry.source.value_column, "2");
+  EXPECT_EQ(entry.source.request.position_column, "1");
+  EXPECT_EQ(entry.source.request.value_column, "2");
   EXPECT_TRUE(entry.profile.free_offset && entry.profile.free_tilt);
   EXPECT_EQ(entry.profile.role, Role::fit);
   EXPECT_FALSE(entry.profile.standard_uncertainty || problem.runout || problem.truth);
@@ -179,7 +178,7 @@ TEST_F(ProblemFile, TakesBothMicroSigns) {
                                  "[[profile]]\nname = \"a\"\nfile = \"a.csv\"\nposition_unit = "
                                  "\"mm\"\nvalue_unit = \"" +
                                  unit + "\"\n" + kEffect);
-    EXPECT_EQ(problem.profiles[0].source.value_unit(1.0), 1e-3);
+    EXPECT_EQ(problem.profiles[0].source.value_unit, "um");
   }
 }
 
@@ -198,6 +197,20 @@ TEST_F(ProblemFile, FindsTheDataDirectory) {
             "/option/a.csv");
   unsetenv("SLIDEWAY_DATA");
   if (before != nullptr) setenv("SLIDEWAY_DATA", kept.c_str(), 1);
+}
+
+TEST_F(ProblemFile, SaysHowTheTextIsWritten) {
+  const Problem problem =
+      read(kMachine +
+           profile("delimiter = \";\"\ndecimal = \",\"\nencoding = \"latin-1\"\nheader_lines = 3\n"
+                   "line = \"row:12\"") +
+           kEffect);
+  const TraceRequest& request = problem.profiles[0].source.request;
+  EXPECT_EQ(request.delimiter, ";");
+  EXPECT_EQ(request.decimal, ",");
+  EXPECT_EQ(request.encoding, "latin-1");
+  EXPECT_EQ(request.header_lines, 3);
+  EXPECT_EQ(request.line, "row:12");
 }
 
 TEST_F(ProblemFile, NamesTheProfileWhoseDataAreBad) {
@@ -221,14 +234,14 @@ TEST_F(ProblemFile, OfASimulationDiffersInTruthAndProfilesOnly) {
   EXPECT_EQ(again.runout->p_um, 2.5);
   EXPECT_EQ(again.effects[1].priors[0].standard_uncertainty, 1e-8);
   const ProfileEntry& face = again.profiles[0];
-  EXPECT_EQ(face.source.position_column, "x_mm");
-  EXPECT_EQ(face.source.value_column, "z_um");
+  EXPECT_EQ(face.source.request.position_column, "x_mm");
+  EXPECT_EQ(face.source.request.value_column, "z_um");
   EXPECT_FALSE(face.source.window);
   EXPECT_EQ(face.profile.standard_uncertainty, 1e-5);
   EXPECT_EQ(face.profile.setup.feed_mm_per_min, 2.0);
   const ProfileEntry& level = again.profiles[1];
-  EXPECT_EQ(level.source.value_column, "slope_urad");
-  EXPECT_EQ(level.value_unit, "urad");
+  EXPECT_EQ(level.source.request.value_column, "slope_urad");
+  EXPECT_EQ(level.source.value_unit, "urad");
   EXPECT_EQ(level.profile.setup.base_mm, 100.0);
   // Two conversions between arcsec, rad and urad: a few roundings.
   EXPECT_NEAR(*level.profile.standard_uncertainty,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "problems/shipped.hpp"
-#include "slideway/profile/table.hpp"
+#include "slideway/format/table.hpp"
 
 namespace slideway {
 namespace {

@@ -13,16 +13,20 @@ namespace slideway {
 namespace {
 
 using testing::ElementsAre;
-using testing::IsEmpty;
+using testing::HasSubstr;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
 class ReadProfile : public testing::Test {
  protected:
-  // Reads text as columns 1 and 2 of a file, heights in um.
+  ReadProfile() {
+    source_.position_unit = "mm";
+    source_.value_unit = "um";
+  }
+
+  // Reads text as columns 1 and 2 of a file.
   const Profile& read(const std::string& text) {
     source_.path = folder_.file("face.csv", text);
-    source_.value_unit = length_unit("um").value();
     profile_.name = "face";
     read_profile(source_, profile_);
     return profile_;
@@ -44,7 +48,9 @@ TEST_F(ReadProfile, ConvertsToMillimetresAndCompletesTheSetup) {
   EXPECT_EQ(profile_.setup.first_mm, 0.0);
   EXPECT_EQ(profile_.setup.last_mm, 10.0);
   EXPECT_EQ(profile_.setup.cut_radius_mm, 6.0);
-  EXPECT_THAT(profile_.notes, IsEmpty());
+  EXPECT_EQ(profile_.format, "text");
+  EXPECT_THAT(profile_.notes,
+              ElementsAre("text: commas between columns, decimal point, 1 header line"));
 }
 
 TEST_F(ReadProfile, GivesTheSamePositionsFromMillimetresAndMicrometres) {
@@ -56,7 +62,7 @@ TEST_F(ReadProfile, GivesTheSamePositionsFromMillimetresAndMicrometres) {
     in_mm += half + "e-4,0\n";
   }
   const std::vector<double> mm = read(in_mm).positions;
-  source_.position_unit = length_unit("um").value();
+  source_.position_unit = "um";
   const std::vector<double> um = read(in_um).positions;
   ASSERT_EQ(mm.size(), um.size());
   for (std::size_t i = 0; i < mm.size(); ++i)
@@ -64,7 +70,7 @@ TEST_F(ReadProfile, GivesTheSamePositionsFromMillimetresAndMicrometres) {
 }
 
 TEST_F(ReadProfile, TurnsTimeIntoPositionByTheFeed) {
-  source_.position_is_time = true;
+  source_.position_unit = "s";
   EXPECT_THAT([&] { read("0,0\n30,1\n"); },
               ThrowsMessage<UsageError>(StartsWith("profile 'face': positions in time need feed")));
   profile_.setup.feed_mm_per_min = 2.0;
@@ -81,7 +87,46 @@ TEST_F(ReadProfile, ReversesATraceThatRunsBackwards) {
   read("3,30\n2,20\n-1,10\n");
   EXPECT_THAT(profile_.positions, ElementsAre(-1.0, 2.0, 3.0));
   EXPECT_THAT(profile_.values, ElementsAre(0.010, 0.020, 0.030));
-  EXPECT_THAT(profile_.notes, ElementsAre("trace runs backwards in the file: reversed"));
+  EXPECT_EQ(profile_.notes.back(), "trace runs backwards in the file: reversed");
+}
+
+TEST_F(ReadProfile, LeavesOutMissingPointsAndCountsThoseInTheWindow) {
+  source_.window = {1.0, 4.0};
+  read("0,\n1,1\n2,nan\n3,3\n4,4\n");
+  EXPECT_THAT(profile_.positions, ElementsAre(1.0, 3.0, 4.0));
+  EXPECT_THAT(profile_.values, ElementsAre(0.001, 0.003, 0.004));
+  EXPECT_EQ(profile_.missing, 1U);
+  EXPECT_EQ(profile_.notes.back(), "1 missing point left out");
+}
+
+TEST_F(ReadProfile, HoldsTheUnitOfTheHeaderAgainstTheSource) {
+  EXPECT_NO_THROW(read("x_mm,Height [\u00b5m]\n0,1\n1,2\n"));
+  EXPECT_THAT(
+      [&] { read("x_mm,z_nm\n0,1\n1,2\n"); },
+      ThrowsMessage<DataError>(file() + ": the header has the unit nm, the problem value_unit = "
+                                        "\"um\"; accepted: the same"));
+  EXPECT_THAT([&] { read("x [in],z_um\n0,1\n1,2\n"); },
+              ThrowsMessage<DataError>(HasSubstr("unit inch, the problem position_unit = \"mm\"")));
+  profile_.setup.quantity = Quantity::slope;
+  source_.value_unit = "urad";
+  EXPECT_THAT([&] { read("x_mm,z_um\n0,1\n1,2\n"); },
+              ThrowsMessage<DataError>(HasSubstr("unit um, the problem value_unit = \"urad\"")));
+}
+
+TEST_F(ReadProfile, GuessesNoUnitOfText) {
+  source_.value_unit.clear();
+  EXPECT_THAT([&] { read("x_mm,z_um\n0,1\n1,2\n"); },
+              ThrowsMessage<UsageError>(HasSubstr("value_unit is missing")));
+}
+
+TEST_F(ReadProfile, SaysWhichSizesLookLikeBlunders) {
+  profile_.setup.feed_mm_per_min = 20000.0;
+  profile_.setup.spindle_rpm = 110000.0;
+  read("0,0\n1,1500\n");
+  ASSERT_EQ(profile_.notes.size(), 4U);
+  EXPECT_EQ(profile_.notes[1], "heights range over 1.5 mm, more than 1 mm: is value_unit right?");
+  EXPECT_EQ(profile_.notes[2], "feed_mm_per_min = 20000 is more than 10 m/min: is it right?");
+  EXPECT_EQ(profile_.notes[3], "spindle_rpm = 110000 is more than 100000: is it right?");
 }
 
 TEST_F(ReadProfile, RefusesPositionsOutOfOrder) {

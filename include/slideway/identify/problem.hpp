@@ -59,7 +59,6 @@ struct Truth {
 struct ProfileEntry {
   ProfileSource source;
   Profile profile;  // name, file, setup, role, ...; positions and values empty
-  std::string position_unit, value_unit;
 };
 
 /// A problem file, checked.

@@ -11,7 +11,7 @@
 namespace slideway {
 
 struct InputSummary {
-  std::string name, file, sha256, kind, quantity, role;
+  std::string name, file, format, sha256, kind, quantity, role;
   std::size_t samples = 0;
   std::size_t missing = 0;
   double position_min_mm = 0.0, position_max_mm = 0.0;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "slideway/format/format.hpp"
 #include "slideway/profile/setup.hpp"
 
 namespace slideway {
@@ -20,11 +21,13 @@ enum class Role {
 struct Profile {
   std::string name;
   std::string file;    // as the problem names it
+  std::string format;  // "text", "X3P", ...
   std::string sha256;  // of the file's bytes
   Setup setup;
   Role role = Role::fit;
   std::vector<double> positions;
   std::vector<double> values;
+  std::size_t missing = 0;  // points of the file that have no value, left out here
   bool free_offset = true;  // what levelling left undetermined: nuisances of this profile
   bool free_tilt = true;
   std::optional<double> standard_uncertainty;  // of one sample, mm or rad
@@ -35,23 +38,22 @@ struct Profile {
   }
 };
 
-/// How to get a profile out of a file: what the problem file says of it, units already known.
+/// How to get a profile out of a file: what the problem file says of it. A unit is empty only if
+/// the file states it.
 struct ProfileSource {
   std::filesystem::path path;
-  std::string position_column = "1";  // header name or 1-based number
-  std::string value_column = "2";
-  UnitScale position_unit;                          // to mm, or to s if the abscissa is time
-  bool position_is_time = false;                    // then position = time * feed_mm_per_min
-  UnitScale value_unit;                             // to mm or rad
-  std::optional<std::pair<double, double>> window;  // in the file's position unit
+  TraceRequest request;
+  std::string position_unit;                        // of kLengthUnits; "s": time * feed_mm_per_min
+  std::string value_unit;                           // of kLengthUnits or kSlopeUnits
+  std::optional<std::pair<double, double>> window;  // in position_unit
 };
 
-/// Reads, converts and sorts out one profile: window applied, a trace that runs backwards reversed
-/// (noted), cut_radius_mm completed.
-/// @throws DataError  naming file and row: unsorted or repeated positions, text or NaN where a
-/// number
-///                    belongs, a column that is not there (the ones that are get listed), too few
-///                    rows
+/// Reads, converts and sorts out one profile: window applied, missing points left out, a trace that
+/// runs backwards reversed, cut_radius_mm completed. Notes tell what was decided, and of sizes that
+/// a wrong unit makes. A file that states its units is converted from those.
+/// @throws DataError   what read_trace() refuses; a unit in the header that is not the source's;
+///                     naming file and row: unsorted or repeated positions, too few rows
+/// @throws UsageError  no unit, no feed where the positions are times, a cut smaller than the trace
 void read_profile(const ProfileSource& source, Profile& profile);
 
 }  // namespace slideway

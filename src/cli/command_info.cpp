@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "output.hpp"
+#include "picture.hpp"
+#include "report_command.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/report/layout.hpp"
+#include "trace_arguments.hpp"
+
+namespace slideway {
+namespace {
+
+/// In the file's own units.
+struct Summary {
+  std::size_t missing = 0;
+  double first = 0.0, last = 0.0;                      // position of the first and the last point
+  double low = INFINITY, high = -INFINITY, rms = 0.0;  // of the values, rms about their mean
+  double step_low = 0.0, step_high = 0.0;
+  [[nodiscard]] bool has_values() const { return low <= high; }
+};
+
+Summary summarise(const Trace& trace) {
+  Summary out;
+  double mean = 0.0, squares = 0.0, count = 0.0;
+  for (const double value : trace.values) {
+    if (std::isnan(value)) {
+      ++out.missing;
+      continue;
+    }
+    out.low = std::min(out.low, value);
+    out.high = std::max(out.high, value);
+    count += 1.0;
+    const double change = value - mean;  // Welford
+    mean += change / count;
+    squares += change * (value - mean);
+  }
+  if (count > 0.0) out.rms = std::sqrt(squares / count);
+  if (trace.positions.empty()) return out;
+  out.first = trace.positions.front();
+  out.last = trace.positions.back();
+  for (std::size_t i = 1; i < trace.positions.size(); ++i) {
+    const double step = trace.positions[i] - trace.positions[i - 1];
+    out.step_low = i == 1 ? step : std::min(out.step_low, step);
+    out.step_high = i == 1 ? step : std::max(out.step_high, step);
+  }
+  return out;
+}
+
+class InfoCommand : public ReportCommand {
+ public:
+  InfoCommand() : ReportCommand("info", "FILE [options]", "Shows what a profile file holds") {
+    add_input("FILE", &input_);
+    arguments_.add_to(add_options());
+  }
+
+  int run() override {
+    keep_input(input_, json_file());
+    TraceFile file = read_trace(input_, request_);
+    arguments_.add_units(file);
+    const Summary summary = summarise(file.trace);
+    report([&] { return text(file, summary); }, [&] { return json(file, summary); });
+    return kDone;
+  }
+
+ private:
+  void check(const boost::program_options::variables_map& /*given*/) override {
+    request_ = arguments_.checked();
+  }
+
+  [[nodiscard]] std::string text(const TraceFile& file, const Summary& summary) const {
+    const Trace& trace = file.trace;
+    const auto unit = [](const std::string& name) {
+      return name.empty() ? std::string(" (unit not stated)") : " " + name;
+    };
+    const auto range = [](double from, double to, int digits) {
+      return significant(from, digits) + " to " + significant(to, digits);
+    };
+    std::vector<std::pair<std::string, std::string>> lines{
+        {"format", file.format},
+        {"sha256", file.sha256},
+        {"points", std::to_string(trace.positions.size())},
+        {"missing", std::to_string(summary.missing)},
+        {"positions", range(summary.first, summary.last, 7) + unit(trace.position_unit)}};
+    if (trace.positions.size() > 1)
+      lines.emplace_back("step",
+                         (significant(summary.step_low, 4) == significant(summary.step_high, 4)
+                              ? significant(summary.step_low, 4)
+                              : range(summary.step_low, summary.step_high, 4)) +
+                             unit(trace.position_unit));
+    if (summary.has_values()) {
+      lines.emplace_back("values", range(summary.low, summary.high, 7) + unit(trace.value_unit));
+      lines.emplace_back("rms", significant(summary.rms, 4) + unit(trace.value_unit));
+      lines.emplace_back("p-v",
+                         significant(summary.high - summary.low, 4) + unit(trace.value_unit));
+    }
+    for (const std::string& decision : trace.decisions) lines.emplace_back("taken as", decision);
+    std::string out = printable(input_, input_.size()) + "\n";
+    for (const auto& [label, value] : lines)
+      out += paragraph("  " + label + std::string(11 - label.size(), ' '), value);
+    return summary.has_values() ? out + "\n" + picture(trace.positions, trace.values) : out;
+  }
+
+  [[nodiscard]] std::string json(const TraceFile& file, const Summary& summary) const {
+    using Json = nlohmann::ordered_json;
+    const Trace& trace = file.trace;
+    const auto or_null = [](bool known, const auto& value) { return known ? Json(value) : Json(); };
+    const bool values = summary.has_values(), steps = trace.positions.size() > 1;
+    const Json document = {
+        {"schema", "slideway.info/1"},
+        {"file", printable(input_, input_.size())},
+        {"format", file.format},
+        {"sha256", file.sha256},
+        {"points", trace.positions.size()},
+        {"missing", summary.missing},
+        {"position_unit", or_null(!trace.position_unit.empty(), trace.position_unit)},
+        {"value_unit", or_null(!trace.value_unit.empty(), trace.value_unit)},
+        {"position_first", summary.first},
+        {"position_last", summary.last},
+        {"step_min", or_null(steps, summary.step_low)},
+        {"step_max", or_null(steps, summary.step_high)},
+        {"value_min", or_null(values, summary.low)},
+        {"value_max", or_null(values, summary.high)},
+        {"rms", or_null(values, summary.rms)},
+        {"pv", or_null(values, summary.high - summary.low)},
+        {"decisions", trace.decisions}};
+    return document.dump(2) + "\n";
+  }
+
+  std::string input_;
+  TraceArguments arguments_;
+  TraceRequest request_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_info() { return std::make_unique<InfoCommand>(); }
+
+}  // namespace slideway

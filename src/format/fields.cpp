@@ -1,0 +1,111 @@
+#include "fields.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+std::string_view without_quotes(std::string_view field) {
+  const bool quoted = field.size() >= 2 && field.front() == '"' && field.back() == '"';
+  return quoted ? trimmed(field.substr(1, field.size() - 2)) : field;
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::size_t digits_at(std::string_view text) {
+  std::size_t count = 0;
+  while (count < text.size() && is_digit(text[count])) ++count;
+  return count;
+}
+
+bool has_decimal_comma(std::string_view field) {
+  const std::size_t comma = field.find(',');
+  return comma != std::string_view::npos && comma > 0 && comma + 1 < field.size() &&
+         parse_number(field, ',');
+}
+
+}  // namespace
+
+std::vector<std::string_view> split(std::string_view line, char delimiter, std::size_t most) {
+  if (delimiter == kBlanks) line = trimmed(line);
+  std::vector<std::string_view> fields;
+  for (std::size_t start = 0; fields.size() < most;) {
+    while (start < line.size() && line[start] == ' ') ++start;
+    const bool quoted = start < line.size() && line[start] == '"';
+    bool inside = false;
+    std::size_t stop = start;
+    for (; stop < line.size(); ++stop) {
+      if (quoted && line[stop] == '"') inside = !inside;
+      if (!inside && ends_field(line[stop], delimiter)) break;
+    }
+    fields.push_back(without_quotes(trimmed(line.substr(start, stop - start))));
+    if (stop == line.size()) break;
+    start = stop + 1;
+    if (delimiter == kBlanks) start = line.find_first_not_of(" \t", start);
+  }
+  return fields;
+}
+
+std::optional<double> parse_number(std::string_view field, char decimal) {
+  if (decimal == '.') return parse_double(field);
+  if (field.find('.') != std::string_view::npos) return std::nullopt;
+  std::string text(field);
+  const std::size_t mark = text.find(decimal);
+  if (mark != std::string::npos) text[mark] = '.';
+  return parse_double(text);
+}
+
+bool is_missing(std::string_view field) {
+  constexpr std::array<std::string_view, 7> kWords{"", "nan", "-nan", "na", "n/a", "#n/a", "null"};
+  return std::any_of(kWords.begin(), kWords.end(), [&](std::string_view word) {
+    return std::equal(word.begin(), word.end(), field.begin(), field.end(), [](char a, char b) {
+      return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b);
+    });
+  });
+}
+
+bool has_thousands(std::string_view field) {
+  constexpr std::array<std::string_view, 8> kSeparators{".",      ",",      " ",      "'",
+                                                        "\u2019", "\u00a0", "\u202f", "\xa0"};
+  if (!field.empty() && (field[0] == '-' || field[0] == '+')) field.remove_prefix(1);
+  const std::size_t first = digits_at(field);
+  if (first < 1 || first > 3 || field[0] == '0') return false;
+  field.remove_prefix(first);
+  const auto* const separator =
+      std::find_if(kSeparators.begin(), kSeparators.end(),
+                   [&](std::string_view known) { return field.starts_with(known); });
+  if (separator == kSeparators.end()) return false;
+  while (field.starts_with(*separator)) {
+    field.remove_prefix(separator->size());
+    if (digits_at(field) != 3) return false;
+    field.remove_prefix(3);
+  }
+  if (field.empty()) return true;
+  return (field[0] == '.' || field[0] == ',') && digits_at(field.substr(1)) + 1 == field.size();
+}
+
+bool is_numeric(std::string_view field) {
+  return !is_missing(field) &&
+         (parse_number(field, '.') || parse_number(field, ',') || has_thousands(field));
+}
+
+char find_delimiter(std::string_view row) {
+  row = trimmed(row);
+  for (const char c : {';', '\t'})
+    if (row.find(c) != std::string_view::npos) return c;
+  if (row.find(',') == std::string_view::npos) return kBlanks;
+  // "0 2,5" has a blank between decimal commas, "0, 2.5" a comma between decimal points.
+  const auto fields = split(row, kBlanks);
+  const bool commas =
+      fields.size() > 1 && std::all_of(fields.begin(), fields.end(), [](auto f) {
+        return parse_double(f) ? digits_at(f.substr(f.size() - 1)) == 1 : has_decimal_comma(f);
+      });
+  return commas ? kBlanks : ',';
+}
+
+}  // namespace slideway

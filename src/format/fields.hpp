@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+// One line of delimited text, taken apart at leisure: the header, the first rows, and whatever is
+// not regular.
+namespace slideway {
+
+inline constexpr char kBlanks = ' ';  // as delimiter: any run of blanks and tabs
+
+inline bool ends_field(char c, char delimiter) {
+  return c == delimiter || (delimiter == kBlanks && c == '\t');
+}
+
+// The first fields of a line, at most so many; trimmed, without the double quotes around them.
+std::vector<std::string_view> split(std::string_view line, char delimiter,
+                                    std::size_t most = std::string_view::npos);
+
+// The number a field spells with this decimal mark, NaN and infinity included.
+std::optional<double> parse_number(std::string_view field, char decimal);
+
+// An empty field, nan, na, n/a, #n/a, null, in capitals or not.
+bool is_missing(std::string_view field);
+
+// "1,234", "1.234,5", "1 234", "1'234.5": digits in groups of three. "0,123" is none.
+bool has_thousands(std::string_view field);
+
+// Whether the field is meant as a number, however it is written.
+bool is_numeric(std::string_view field);
+
+// ';', tab, ',' or kBlanks, whichever separates the numbers of a row.
+char find_delimiter(std::string_view row);
+
+}  // namespace slideway

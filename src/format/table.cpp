@@ -1,0 +1,246 @@
+#include "slideway/format/table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "dialect.hpp"
+#include "encoding.hpp"
+#include "fast_number.hpp"
+#include "fields.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/file.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/format/format.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& encoding, const TableRequest& request);
+
+  Table read();
+
+ private:
+  struct Target {
+    std::size_t column;  // in the file
+    std::size_t slot;    // among those asked for
+    double value;        // in the row at hand
+  };
+
+  [[nodiscard]] std::string_view rest_of_line(const char* at) const;
+  void pass_line(const char* stop);
+  bool to_next_line();
+  [[nodiscard]] std::size_t estimate_rows() const;
+  [[nodiscard]] bool is_padding(char c) const {
+    return c == ' ' || c == '\r' || (c == '\t' && dialect_.delimiter != '\t');
+  }
+  [[nodiscard]] const char* after_padding(const char* at) const {
+    while (is_padding(*at)) ++at;
+    return at;
+  }
+  [[nodiscard]] const char* next_field(const char* at) const;
+  const char* read_row(const char* at);
+  void read_irregular_row();
+  double read_missing(std::string_view field, const Target& target, bool ends_text);
+  [[noreturn]] void refuse(const std::string& what) const {
+    throw DataError("line " + std::to_string(line_) + what);
+  }
+  [[nodiscard]] std::string name_of(std::size_t column) const;
+  [[noreturn]] void refuse_field(std::string_view field, std::size_t column) const;
+
+  const TableRequest* request_;
+  Dialect dialect_;
+  const char* at_;  // start of the line at hand
+  const char* end_;
+  std::size_t line_;
+  bool last_is_target_ = false;  // nothing but delimiters may follow the last value of a row
+  std::size_t missing_ = 0;
+  std::vector<Target> targets_;  // by column
+};
+
+Reader::Reader(std::string_view text, const std::string& encoding, const TableRequest& request)
+    : request_(&request),
+      dialect_(find_dialect(text, encoding, request)),
+      at_(text.data() + dialect_.first_row),
+      end_(text.data() + text.size()),
+      line_(dialect_.first_line) {
+  const std::vector<std::size_t>& columns = dialect_.columns;
+  for (std::size_t slot = 0; slot < columns.size(); ++slot)
+    if (std::find(columns.begin(), columns.begin() + slot, columns[slot]) == columns.begin() + slot)
+      targets_.push_back({columns[slot], slot, 0.0});
+  std::sort(targets_.begin(), targets_.end(),
+            [](const Target& a, const Target& b) { return a.column < b.column; });
+  last_is_target_ = !targets_.empty() && targets_.back().column + 1 == dialect_.names.size();
+}
+
+std::string_view Reader::rest_of_line(const char* at) const {
+  const auto size = static_cast<std::size_t>(end_ - at);
+  const void* const newline = std::memchr(at, '\n', size);
+  return {at, newline ? static_cast<std::size_t>(static_cast<const char*>(newline) - at) : size};
+}
+
+// Ends the line at hand, of which everything before `stop` has been read.
+void Reader::pass_line(const char* stop) {
+  at_ = *stop == '\n' ? stop + 1 : std::min(end_, stop + rest_of_line(stop).size() + 1);
+  ++line_;
+}
+
+// Goes on to the first line, from the one at hand on, that is neither empty nor a comment.
+bool Reader::to_next_line() {
+  for (; at_ < end_; pass_line(at_)) {
+    const char* first = at_;
+    while (first < end_ && (*first == ' ' || *first == '\t' || *first == '\r')) ++first;
+    if (first < end_ && *first != '\n' && *first != '#') return true;
+  }
+  return false;
+}
+
+std::size_t Reader::estimate_rows() const {
+  const auto rest = static_cast<std::size_t>(end_ - at_);
+  const std::size_t sample = std::min<std::size_t>(rest, 4096);
+  const auto lines = static_cast<std::size_t>(std::count(at_, at_ + sample, '\n')) + 1;
+  // No row is shorter than one character and one delimiter a column.
+  return std::min(rest / sample * (lines + 1) + lines, rest / (2 * targets_.back().column + 2) + 1);
+}
+
+// From the start of one field to the start of the next; nullptr if it is the last or quoted.
+const char* Reader::next_field(const char* at) const {
+  if (*at == '"') return nullptr;
+  while (*at != '\n' && !ends_field(*at, dialect_.delimiter)) ++at;
+  if (*at == '\n') return nullptr;
+  return after_padding(at + 1);
+}
+
+// Reads the row into targets_ in one go; returns a place in it after the last value, or nullptr if
+// anything is not regular. REQUIRES a newline at its end.
+const char* Reader::read_row(const char* at) {
+  std::size_t column = 0;
+  at = after_padding(at);
+  for (Target& target : targets_) {
+    for (; column < target.column; ++column)
+      if (at = next_field(at); !at) return nullptr;
+    at = read_number(at, end_, dialect_.decimal, target.value);
+    if (!at) return nullptr;
+    if (dialect_.delimiter != kBlanks) at = after_padding(at);
+    if (*at != '\n' && *at != '\r' && !ends_field(*at, dialect_.delimiter)) return nullptr;
+  }
+  return last_is_target_ && *after_padding(at) != '\n' ? nullptr : at;
+}
+
+std::string Reader::name_of(std::size_t column) const {
+  const std::string& name = dialect_.names[column];
+  return "column " + (name == std::to_string(column + 1) ? name : "'" + printable(name, 40) + "'");
+}
+
+void Reader::refuse_field(std::string_view field, std::size_t column) const {
+  if (field.empty()) refuse(": " + name_of(column) + " is empty");
+  const std::string place = ", " + name_of(column) + ": ", shown = "'" + printable(field) + "'";
+  if (is_missing(field) || parse_number(field, dialect_.decimal))
+    refuse(place + printable(field) + " is no measured value; remove the row or mask it");
+  if (has_thousands(field))
+    refuse(place + shown + " has a thousands separator; write the number without it");
+  const char other = dialect_.decimal == '.' ? ',' : '.';
+  const bool mixed = field.find(other) != std::string_view::npos && parse_number(field, other);
+  refuse(place + shown + " is no number" +
+         (!mixed         ? ""
+          : other == ',' ? " with a decimal point, as the numbers before it have"
+                         : " with a decimal comma, as the numbers before it have"));
+}
+
+double Reader::read_missing(std::string_view field, const Target& target, bool ends_text) {
+  // A row that was cut may look like one whose last value is missing.
+  if (field.empty() && ends_text && last_is_target_ && target.column == targets_.back().column)
+    refuse(": the text ends within a row");
+  if (!request_->may_miss || target.slot == 0) refuse_field(field, target.column);
+  ++missing_;
+  return kMissing;
+}
+
+// The same field by field, to take what is merely unusual and say what is wrong with the rest.
+void Reader::read_irregular_row() {
+  const std::string_view line = rest_of_line(at_);
+  const bool ends_text = line.data() + line.size() == end_;
+  const std::size_t needed = targets_.back().column + 1;
+  const auto fields = split(line, dialect_.delimiter, needed + 16);
+  for (Target& target : targets_) {
+    if (target.column >= fields.size())
+      refuse(": " + std::to_string(fields.size()) + (fields.size() == 1 ? " field" : " fields") +
+             ", expected at least " + std::to_string(needed));
+    const std::string_view field = fields[target.column];
+    if (is_missing(field)) {
+      target.value = read_missing(field, target, ends_text);
+      continue;
+    }
+    const auto value = parse_number(field, dialect_.decimal);
+    if (!value || !std::isfinite(*value)) refuse_field(field, target.column);
+    target.value = *value;
+  }
+  if (last_is_target_ && std::any_of(fields.begin() + static_cast<std::ptrdiff_t>(needed),
+                                     fields.end(), [](auto f) { return !f.empty(); }))
+    refuse(": more than " + std::to_string(needed) + (needed == 1 ? " field" : " fields") +
+           ", as the rows before it have");
+}
+
+Table Reader::read() {
+  Table table;
+  table.names = dialect_.names;
+  table.units = dialect_.units;
+  table.decisions.push_back(dialect_.decision);
+  table.columns.resize(dialect_.columns.size());
+  if (targets_.empty()) return table;
+  const std::size_t rows = estimate_rows();
+  for (const Target& target : targets_) table.columns[target.slot].reserve(rows);
+
+  const std::string_view rest(at_, static_cast<std::size_t>(end_ - at_));
+  const char* const regular_end = at_ + (rest.rfind('\n') + 1);  // at_ if there is no newline
+  while (to_next_line()) {
+    const char* stop = at_ < regular_end ? read_row(at_) : nullptr;
+    if (!stop) {
+      read_irregular_row();
+      stop = at_;
+    }
+    for (const Target& target : targets_) table.columns[target.slot].push_back(target.value);
+    pass_line(stop);
+  }
+  const std::vector<std::size_t>& columns = dialect_.columns;
+  for (std::size_t slot = 0; slot < columns.size(); ++slot) {
+    const auto first = std::find(columns.begin(), columns.end(), columns[slot]) - columns.begin();
+    if (table.columns[slot].empty()) table.columns[slot] = table.columns[first];
+  }
+  if (missing_ > 0)
+    table.decisions.push_back(std::to_string(missing_) +
+                              (missing_ == 1 ? " value is" : " values are") +
+                              " missing: empty, nan, na or null");
+  return table;
+}
+
+}  // namespace
+
+Table parse_table(std::string_view bytes, const TableRequest& request) {
+  if (bytes.empty()) throw DataError("is empty");
+  const DecodedText text = decoded(bytes, request.encoding);
+  return Reader(text.bytes(), text.encoding, request).read();
+}
+
+Table read_table(const std::filesystem::path& path, std::span<const std::string> columns) {
+  const FileBytes bytes(path);
+  try {
+    const Format& format = recognised_format(bytes.text());
+    if (&format != formats().back())
+      throw DataError("is " + std::string(format.name()) + ", expected delimited text");
+    Table table = parse_table(bytes.text(), {.columns = {columns.begin(), columns.end()}});
+    table.sha256 = sha256(bytes.text());
+    return table;
+  } catch (const DataError& error) {
+    throw DataError(path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace slideway

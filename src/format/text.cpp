@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "registry.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/format/table.hpp"
+
+namespace slideway {
+namespace {
+
+class TextFormat : public Format {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "text"; }
+  [[nodiscard]] std::span<const std::string_view> endings() const override {
+    static constexpr std::array<std::string_view, 3> kEndings{".csv", ".txt", ".dat"};
+    return kEndings;
+  }
+  [[nodiscard]] bool states_units() const override { return false; }
+
+  [[nodiscard]] bool recognises(std::string_view bytes) const override {
+    const auto all = formats();
+    return std::none_of(all.begin(), all.end(), [&](const Format* format) {
+      return format != this && format->recognises(bytes);
+    });
+  }
+
+  [[nodiscard]] Trace read(std::string_view bytes, const TraceRequest& request) const override;
+  [[nodiscard]] std::string write(const Trace& trace) const override;
+};
+
+Trace TextFormat::read(std::string_view bytes, const TraceRequest& request) const {
+  if (!request.line.empty())
+    throw UsageError("line = \"" + printable(request.line) +
+                     "\" belongs to an areal file; delimited text has columns");
+  Table table = parse_table(bytes, {.columns = {request.position_column, request.value_column},
+                                    .delimiter = request.delimiter,
+                                    .decimal = request.decimal,
+                                    .encoding = request.encoding,
+                                    .header_lines = request.header_lines,
+                                    .may_miss = true});
+  return {std::move(table.columns[0]), std::move(table.columns[1]), std::move(table.units[0]),
+          std::move(table.units[1]), std::move(table.decisions)};
+}
+
+std::string TextFormat::write(const Trace& trace) const {
+  if (trace.positions.empty()) throw UsageError("a trace without points can not be written");
+  const auto name = [](const std::string& letter, const std::string& unit) {
+    return unit.empty() ? letter : letter + "_" + unit;
+  };
+  std::string text = name("x", trace.position_unit) + "," + name("z", trace.value_unit) + "\n";
+  text.reserve(trace.positions.size() * 32);
+  for (std::size_t i = 0; i < trace.positions.size(); ++i) {
+    if (!std::isfinite(trace.positions[i]) || std::isinf(trace.values[i]))
+      throw UsageError("point " + std::to_string(i + 1) + " is no finite number");
+    text += shortest(trace.positions[i]);
+    text += ',';
+    if (!std::isnan(trace.values[i])) text += shortest(trace.values[i]);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+const Format& text_format() {
+  static const TextFormat kFormat;
+  return kFormat;
+}
+
+}  // namespace slideway

@@ -1,0 +1,103 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/bad_input.hpp"
+#include "slideway/base/file.hpp"
+
+namespace slideway {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Info : public ProgramTest {};
+
+TEST_F(Info, TellsWhatAFileHolds) {
+  const std::string text = "x [mm];H\xf6he [\xb5m]\n0;3\n0,5;\n1;-1\n1,5;1\n";
+  folder_.file("face.txt", text);
+  const json info = json::parse(run({"info", "face.txt", "--json", "-"}).out);
+  EXPECT_EQ(info["schema"], "slideway.info/1");
+  EXPECT_EQ(info["format"], "text");
+  EXPECT_EQ(info["sha256"], sha256(text));
+  EXPECT_EQ(info["points"], 4);
+  EXPECT_EQ(info["missing"], 1);
+  EXPECT_EQ(info["position_unit"], "mm");
+  EXPECT_EQ(info["value_unit"], "um");
+  EXPECT_EQ(info["position_last"], 1.5);
+  EXPECT_EQ(info["step_min"], 0.5);
+  EXPECT_EQ(info["step_max"], 0.5);
+  EXPECT_EQ(info["value_min"], -1.0);
+  EXPECT_EQ(info["pv"], 4.0);
+  EXPECT_DOUBLE_EQ(info["rms"], std::sqrt(8.0 / 3.0));  // of 3, -1, 1 about their mean 1
+  EXPECT_EQ(info["decisions"][0],
+            "Latin-1, semicolons between columns, decimal comma, 1 header line");
+}
+
+TEST_F(Info, SaysWhereNothingIsKnown) {
+  folder_.file("bare.txt", "0 1\n");
+  const json info = json::parse(run({"info", "bare.txt", "--json", "-"}).out);
+  EXPECT_TRUE(info["position_unit"].is_null());
+  EXPECT_TRUE(info["step_min"].is_null());
+  EXPECT_THAT(run({"info", "bare.txt"}).out, HasSubstr("unit not stated"));
+  const json told = json::parse(
+      run({"info", "bare.txt", "--position-unit", "mm", "--value-unit", "um", "--json", "-"}).out);
+  EXPECT_EQ(told["value_unit"], "um");
+}
+
+// U+2800 and above are three bytes each, so a line of 66 of them with its label has 80 characters
+// at the most.
+TEST_F(Info, DrawsTheProfileWithinEightyColumns) {
+  folder_.file("face.csv", face_csv(500, 250, "250,nan"));
+  const ProgramRun done = run({"info", "face.csv"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  for (const std::string& line : lines_of(done.out)) {
+    const auto is_start = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; };
+    EXPECT_LE(std::count_if(line.begin(), line.end(), is_start), 80) << line;
+  }
+}
+
+// Two values, low on the left and high on the right: the ends of the frame, nothing between.
+TEST_F(Info, PutsLowValuesBelowAndHighOnesAbove) {
+  folder_.file("step.csv", "0,0\n1,1\n");
+  const std::vector<std::string> lines = lines_of(run({"info", "step.csv"}).out);
+  ASSERT_GE(lines.size(), 9U);
+  const std::string& top = lines[lines.size() - 9];
+  const std::string& bottom = lines[lines.size() - 2];
+  EXPECT_EQ(top.substr(top.size() - 3), "\u2808");  // highest dot, right column
+  EXPECT_THAT(bottom, HasSubstr("0 \u2840"));       // lowest dot, left column
+}
+
+TEST_F(Info, DrawsAConstantProfileAndASinglePoint) {
+  folder_.file("flat.csv", "0,5\n1,5\n2,5\n");
+  folder_.file("point.csv", "0,5\n");
+  EXPECT_EQ(run({"info", "flat.csv"}).exit_code, 0);
+  EXPECT_EQ(run({"info", "point.csv"}).exit_code, 0);
+}
+
+TEST_F(Info, TakesWhatItIsToldOfTheText) {
+  folder_.file("face.txt", "1;2\n0;1,234\n1;2,345\n");
+  const ProgramRun done = run({"info", "face.txt", "--delimiter", ";", "--decimal", ",",
+                               "--encoding", "utf-8", "--header-lines", "1", "--json", "-"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(json::parse(done.out)["points"], 2);
+  EXPECT_EQ(json::parse(done.out)["value_max"], 2.345);
+}
+
+TEST_F(Info, RefusesInOneLine) {
+  folder_.file("face.csv", face_csv(20));
+  EXPECT_TRUE(is_refused(run({"info", "gone.csv"}), 3));
+  EXPECT_TRUE(is_refused(run({"info", "."}), 3));
+  EXPECT_TRUE(is_refused(run({"info", "face.csv", "--value", "z"}), 3));
+  EXPECT_TRUE(is_refused(run({"info", "face.csv", "--header-lines", "-1"}), 2));
+  EXPECT_TRUE(is_refused(run({"info", "face.csv", "--decimal", ";"}), 2));
+  EXPECT_TRUE(is_refused(run({"info", "face.csv", "--value-unit", "furlong"}), 2));
+  EXPECT_TRUE(is_refused(run({"info", "face.csv", "--value-unit", "nm"}), 2));
+  EXPECT_TRUE(is_refused(run({"info", "face.csv", "--line", "row:1"}), 2));
+  EXPECT_TRUE(is_refused(run({"info", "face.csv", "--json", "face.csv"}), 2));
+}
+
+}  // namespace
+}  // namespace slideway
