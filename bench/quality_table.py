@@ -12,7 +12,8 @@ traverse_periodic""".split()
 OPEN = "stretched_exponential chirp double_bump switched_drift".split()
 CLOCK = {"stretched_exponential": "t", "switched_drift": "t", "chirp": "r", "double_bump": "r"}
 ON_CLOCK = {"t": {"linear_drift", "thermal_drift", "time_periodic", "revolution_periodic"},
-            "r": {"slide_periodic", "step", "centre_height", "speed_effect", "edge_roll_off", "cup"}}
+            "r": {"slide_periodic", "step", "centre_height", "speed_effect", "edge_roll_off", "cup",
+                  "straightness"}}
 SIGNATURE = {"feed_marks"}  # every turned face has them: finding them is not a false alarm
 TWIN = {"time_periodic": "revolution_periodic", "revolution_periodic": "time_periodic"}
 

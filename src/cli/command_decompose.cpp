@@ -8,7 +8,7 @@
 #include "low_band_arguments.hpp"
 #include "output.hpp"
 #include "slideway/base/error.hpp"
-#include "slideway/format/table.hpp"
+#include "slideway/format/format.hpp"
 
 namespace slideway {
 namespace {
@@ -56,21 +56,19 @@ class DecomposeCommand : public Command {
                 "Splits a profile into wavelet bands of full length, a1..aL, d1..dL") {
     add_input("FILE", &input_);
     low_band_.add_to(add_options());
-    add_options()("position", po::value(&position_)->value_name("COL")->default_value("1"),
-                  "column of the positions: header name or number");
-    add_options()("value", po::value(&value_)->value_name("COL")->default_value("2"),
-                  "column of the signal: header name or number");
+    add_options()("position", po::value(&request_.position_column)->value_name("COL"),
+                  "column of the positions: header name or number; default 1");
+    add_options()("value", po::value(&request_.value_column)->value_name("COL"),
+                  "column of the signal: header name or number; default 2");
     add_options()("out", po::value(&out_)->value_name("OUT.csv"), "file to write; - for stdout");
   }
 
   int run() override {
     keep_input(input_, out_);
-    const std::array<std::string, 2> names{position_, value_};
-    const Table table = read_table(input_, names);
-    const std::vector<double>& positions = table.columns[0];
-    const std::vector<double>& signal = table.columns[1];
-    check_numbers(positions, position_);
-    check_numbers(signal, value_);
+    const Trace trace = read_trace(input_, request_).trace;
+    const std::vector<double>& positions = trace.positions;
+    const std::vector<double>& signal = trace.values;
+    refuse_missing(signal);
     const std::size_t needed = std::size_t{1} << options_.level;
     if (signal.size() < needed)
       throw DataError(input_ + ": " + std::to_string(signal.size()) + " rows; --level " +
@@ -89,15 +87,16 @@ class DecomposeCommand : public Command {
     options_ = low_band_.checked(1);
   }
 
-  void check_numbers(const std::vector<double>& column, const std::string& name) const {
-    const auto bad = std::find_if_not(column.begin(), column.end(),
-                                      [](double value) { return std::isfinite(value); });
-    if (bad != column.end())
-      throw DataError(input_ + ": column '" + name + "', data row " +
-                      std::to_string(bad - column.begin() + 1) + ": no finite number");
+  void refuse_missing(const std::vector<double>& signal) const {
+    const auto missing =
+        std::find_if(signal.begin(), signal.end(), [](double value) { return std::isnan(value); });
+    if (missing != signal.end())
+      throw DataError(input_ + ": data row " + std::to_string(missing - signal.begin() + 1) +
+                      ": the value is missing; bands are made of whole profiles");
   }
 
-  std::string input_, position_, value_, out_;
+  std::string input_, out_;
+  TraceRequest request_;
   LowBandArguments low_band_{{"db4", 5, Boundary::symmetric}};
   LowBandOptions options_;
 };

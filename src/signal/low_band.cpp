@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kUniform = 1e-3;    // of the mean step
 constexpr double kGap = 1.9;         // steps: more than this between two samples is a gap
-constexpr double kOnGrid = 1e-2;     // steps off a grid point that a sample stands on
 constexpr double kMostFilled = 4.0;  // grid points per sample; beyond it gaps are the rule
 
 double mean_step(std::span<const double> positions) {
@@ -111,8 +110,7 @@ void LowBand::lay_grid(std::span<const double> positions) {
   std::size_t left = 0;
   for (std::size_t i = 0; i < inside_gaps.size(); ++i) {
     const double along = static_cast<double>(i) * step;
-    while (left + 2 < n && std::abs(positions[left + 1] - positions[0]) <= along + kOnGrid * step)
-      ++left;
+    while (left + 2 < n && std::abs(positions[left + 1] - positions[0]) <= along) ++left;
     const double cell = std::abs(positions[left + 1] - positions[left]);
     const double inside = along - std::abs(positions[left] - positions[0]);
     cell_.push_back(static_cast<Eigen::Index>(left));

@@ -55,7 +55,7 @@ std::string made_by(const Model& model, const Fit& fit, const Whitened& data,
     joined << all, wide;
     all = std::move(joined);
   }
-  const Eigen::VectorXd amplitudes = least_squares(all, column).values.head(k);
+  const Eigen::VectorXd amplitudes = least_squares(all, column).values.topRows(k);
   const Eigen::VectorXd parameters = fit.parameters.jacobian * amplitudes;
   const Eigen::MatrixXd back =
       Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fit.parameters.jacobian)

@@ -40,6 +40,7 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
   std::vector<Eigen::MatrixXd> rows;
   for (std::size_t i = 0; i < count; ++i)
     rows.push_back(white_rows(linear, data, i, candidate.columns));
+  double own_before = 0.0, own_after = 0.0;
   double before = 0.0, after = 0.0, values = 0.0, before_mm = 0.0, after_mm = 0.0, samples = 0.0;
   for (std::size_t left_out = 0; left_out < count; ++left_out) {
     if (rows[left_out].middleCols(k, a).isZero(0.0)) continue;
@@ -57,15 +58,23 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
     const LeastSquares with = least_squares(kept.leftCols(k + a), kept.col(k + a));
     const double gain = without.square - with.square;
     if (gain < std::max(kTold * kTold, kLeastShare * candidate.projection.gain)) continue;
-    const Eigen::VectorXd carried = rows[left_out].middleCols(k, a) * with.values.tail(a);
+    const Eigen::VectorXd carried = rows[left_out].middleCols(k, a) * with.values.bottomRows(a);
     if (carried.squaredNorm() < kTold * kTold) continue;
+    const Eigen::MatrixXd basis = orthonormal(rows[left_out].leftCols(k));
+    Eigen::MatrixXd own(carried.size(), 2);
+    own << rows[left_out].col(k + a), carried;
+    own -= basis * (basis.transpose() * own).eval();
+    if (own.col(1).squaredNorm() >= kTold * kTold) {
+      own_before += own.col(0).squaredNorm();
+      own_after += (own.col(0) - own.col(1)).squaredNorm();
+    }
     const Observation& observation = *linear.observations[left_out];
     Eigen::VectorXd rest_before =
         linear.residuals[left_out] - linear.columns[left_out] * without.values;
     Eigen::VectorXd rest_after =
-        linear.residuals[left_out] - linear.columns[left_out] * with.values.head(k) -
+        linear.residuals[left_out] - linear.columns[left_out] * with.values.topRows(k) -
         candidate.columns.middleRows(data.first_row(left_out), data.count(left_out)) *
-            with.values.tail(a);
+            with.values.bottomRows(a);
     if (observation.nuisances.cols() > 0) {
       rest_before -= observation.nuisances * fitted_nuisances(observation, rest_before);
       rest_after -= observation.nuisances * fitted_nuisances(observation, rest_after);
@@ -80,7 +89,7 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
     samples += static_cast<double>(observation.low_band.samples());
   }
   if (values == 0.0) return std::nullopt;
-  HeldOut out{std::sqrt(before / values), std::sqrt(after / values), std::nullopt, std::nullopt};
+  HeldOut out{own_before > 0.0 ? own_after < own_before : after < before, {}, {}};
   if (samples > 0.0) {
     out.before_um = std::sqrt(before_mm / samples) / kMicrometre;
     out.after_um = std::sqrt(after_mm / samples) / kMicrometre;

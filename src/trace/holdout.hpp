@@ -6,10 +6,12 @@
 
 namespace slideway {
 
-/// Error of predicting profiles that were left out of the fit, without and with a candidate. µm
+/// What a candidate does for profiles that were left out of the fit.
 struct HeldOut {
-  double before_rms = 0.0, after_rms = 0.0;   // in units of the noise, over all folds
-  std::optional<double> before_um, after_um;  // of the height profiles among them
+  /// Whether it carries over: the left-out profiles' white residual outside their own model falls
+  /// by it; where it shows only inside that, whether they are predicted better.
+  bool helps = false;
+  std::optional<double> before_um, after_um;  // rms error of predicting height profiles
 };
 
 /// Leaves out each fitted profile that shows the effect in turn, fits model and effect to the rest

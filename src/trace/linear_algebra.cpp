@@ -22,15 +22,15 @@ Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns) {
   return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
 }
 
-LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target) {
+LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& targets) {
   const Eigen::VectorXd unit = to_unit(columns);
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
   solver.setThreshold(kRankTolerance);
   solver.compute(columns * unit.asDiagonal());
   LeastSquares out;
-  const Eigen::VectorXd scaled = solver.solve(target);
+  const Eigen::MatrixXd scaled = solver.solve(targets);
   out.values = unit.asDiagonal() * scaled;
-  out.square = (target - columns * out.values).squaredNorm();
+  out.square = (targets - columns * out.values).squaredNorm();
   return out;
 }
 

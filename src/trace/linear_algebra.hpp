@@ -8,9 +8,9 @@ namespace slideway {
 Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns);
 
 struct LeastSquares {
-  Eigen::VectorXd values;  // of least size where the columns leave a choice
-  double square = 0.0;     // of what is left of the target
+  Eigen::MatrixXd values;  // one column per target, of least size where the columns leave a choice
+  double square = 0.0;     // of what is left of the targets
 };
-LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::VectorXd& target);
+LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& targets);
 
 }  // namespace slideway

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kWorthRefining = 30.0;  // behind the best on the grid, or
 constexpr double kWorthShare = 0.6;      // of it: a line between two points of the grid loses some
-constexpr std::size_t kMostRefined = 10;
+constexpr std::size_t kMostRefined = 12;
 constexpr int kNoiseRounds = 3;
 
 const Finding& best_of(const std::vector<Finding>& findings) {
@@ -56,8 +56,7 @@ std::string reason_against(const Refined& refined, double p_value, double signif
   if (refined.size_in_uncertainties < kLeastSize)
     return "its size is only " + significant(refined.size_in_uncertainties, 2) +
            " of its standard uncertainties";
-  if (held_out && !(held_out->after_rms < held_out->before_rms))
-    return "it predicts left-out profiles worse";
+  if (held_out && !held_out->helps) return "it predicts left-out profiles worse";
   return "";
 }
 
@@ -67,21 +66,31 @@ bool alike(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return std::abs(a.dot(b)) > kAlike * a.norm() * b.norm();
 }
 
-/// Candidates worth a closer look at their best shapes, best BIC first.
-std::vector<Refined> refine_best(const Model& model, const Whitened& data,
-                                 std::vector<Finding> findings) {
+/// Candidates worth a closer look at their best shapes, best BIC first: those near the best, and on
+/// down while none of them can be accepted.
+std::vector<Seen> look_closer(const Model& model, const Fit& fit, const Whitened& data,
+                              std::vector<Finding> findings, double significance,
+                              const Calibration& calibration) {
   std::stable_sort(findings.begin(), findings.end(),
                    [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
-  std::vector<Refined> out;
+  std::vector<Seen> out;
+  bool any = false;
   for (const Finding& finding : findings) {
     const double best = findings.front().delta_bic;
-    if (out.size() == kMostRefined || finding.rank == 0 ||
-        finding.delta_bic > std::max(best + kWorthRefining, kWorthShare * best))
-      break;
-    out.push_back(refine(model, data, finding));
+    const bool near = finding.delta_bic <= std::max(best + kWorthRefining, kWorthShare * best);
+    const bool pays = finding.delta_bic <= kWorthRefining - kEnough;
+    if (out.size() == kMostRefined || finding.rank == 0 || !(near || (!any && pays))) break;
+    Seen& seen = out.emplace_back();
+    seen.refined = refine(model, data, finding);
+    seen.p_value = calibration.p_value(-seen.refined.delta_bic);
+    seen.held_out = leave_one_out(fit.linear, data, seen.refined);
+    seen.refused = reason_against(seen.refined, seen.p_value, significance, seen.held_out);
+    seen.fitted = data.outside(seen.refined.columns * seen.refined.projection.amplitudes);
+    any = any || seen.refused.empty();
   }
-  std::stable_sort(out.begin(), out.end(),
-                   [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
+    return a.refined.delta_bic < b.refined.delta_bic;
+  });
   return out;
 }
 
@@ -150,22 +159,15 @@ Look look(const Model& model, const Fit& fit, const Candidates& candidates, doub
   Look out{std::move(data), {}};
   if (candidates.empty()) return out;
   if (!calibration) calibration = calibrate(out.data, candidates);
-  std::vector<Refined> refined = refine_best(model, out.data, findings);
-  if (!refined.empty() && is_centred(*refined.front().candidate->term.effect)) {
-    const Refined& best = refined.front();
+  out.seen = look_closer(model, fit, out.data, findings, significance, *calibration);
+  if (!out.seen.empty() && is_centred(*out.seen.front().refined.candidate->term.effect)) {
+    const Refined& best = out.seen.front().refined;
     const Eigen::MatrixXd looser =
         loose_values(model, fit, out.data.noise(), best.columns * best.projection.amplitudes);
     if (looser.cols() > loose.cols()) {
       std::tie(out.data, findings) = whiten_beside(fit, looser, candidates);
-      refined = refine_best(model, out.data, findings);
+      out.seen = look_closer(model, fit, out.data, findings, significance, *calibration);
     }
-  }
-  for (Refined& each : refined) {
-    const double p_value = calibration->p_value(-each.delta_bic);
-    const std::optional<HeldOut> held_out = leave_one_out(fit.linear, out.data, each);
-    std::string refused = reason_against(each, p_value, significance, held_out);
-    Eigen::VectorXd fitted = out.data.outside(each.columns * each.projection.amplitudes);
-    out.seen.push_back({std::move(each), p_value, held_out, std::move(refused), std::move(fitted)});
   }
   return out;
 }
