@@ -32,6 +32,7 @@ struct Experiment {
   std::vector<double> feeds{2.0};     // mm/min
   bool drift = false;                 // in the machine and in the model
   double noise_correlation_mm = 0.0;  // 0: white
+  bool gaps = false;                  // samples missing: one of fifty, and a seventh of the radius
 };
 
 std::map<std::string, double> truth(const Experiment& experiment) {
@@ -63,6 +64,19 @@ std::vector<turning::Face> faces(const Experiment& experiment) {
   return out;
 }
 
+void lose_samples(const Experiment& experiment, RandomStream& random, Profile& profile) {
+  std::vector<double> positions, values;
+  for (std::size_t i = 0; i < profile.positions.size(); ++i) {
+    const double r = profile.positions[i] / experiment.radius_mm;
+    const bool inside = i > 0 && i + 1 < profile.positions.size();
+    if (inside && (random.uniform() < 0.02 || (r > 0.3 && r < 0.443))) continue;
+    positions.push_back(profile.positions[i]);
+    values.push_back(profile.values[i]);
+  }
+  profile.positions = std::move(positions);
+  profile.values = std::move(values);
+}
+
 std::vector<Profile> measure(const Experiment& experiment, const std::vector<turning::Face>& faces,
                              RandomStream& random) {
   const std::vector<double> positions = cases::spaced(0.0, experiment.radius_mm, 4000);
@@ -76,6 +90,7 @@ std::vector<Profile> measure(const Experiment& experiment, const std::vector<tur
     const std::string name = "face" + std::to_string(i);
     out.push_back(cases::face(name, experiment.feeds[i], positions,
                               turning::trace(faces[i], positions, stylus, random)));
+    if (experiment.gaps) lose_samples(experiment, random, out.back());
     out.back().setup.spindle_rpm = experiment.spindle_rpm;
     out.back().setup.overhang_mm = experiment.overhang_mm;
   }
@@ -145,6 +160,8 @@ INSTANTIATE_TEST_SUITE_P(
         Experiment{.name = "OneLeverCorrelated", .degree = 5, .noise_correlation_mm = 0.08},
         Experiment{.name = "FewValuesCorrelated", .level = 5, .noise_correlation_mm = 0.32},
         Experiment{.name = "OneLeverWhite", .degree = 4},
+        Experiment{
+            .name = "GapsCorrelated", .degree = 4, .noise_correlation_mm = 0.08, .gaps = true},
         Experiment{.name = "SplitLeverCorrelated",
                    .lever = Lever::split,
                    .overhang_mm = 50.0,
