@@ -61,11 +61,13 @@ std::string picture(std::span<const double> positions, std::span<const double> v
       cells[y / 4 * kColumns + x / 2] |= kDots[x % 2][y % 4];
   }
   constexpr std::size_t kMargin = 11;  // for a number as "-1.234e-05"
+  int digits = 4;
+  while (digits < 7 && significant(up.low, digits) == significant(up.high, digits)) ++digits;
   std::string text;
   for (std::size_t row = 0; row < kRows; ++row) {
     std::string label;
-    if (row == 0) label = significant(up.high, 4);
-    if (row + 1 == kRows) label = significant(up.low, 4);
+    if (row == 0) label = significant(up.high, digits);
+    if (row + 1 == kRows) label = significant(up.low, digits);
     text += padded(label, kMargin) + " ";
     for (std::size_t x = 0; x < kColumns; ++x) text += braille(cells[row * kColumns + x]);
     text += '\n';

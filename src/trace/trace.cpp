@@ -18,6 +18,7 @@
 namespace slideway {
 namespace {
 
+constexpr double kBetter = 2.0;          // of BIC, for one effect to take another's place
 constexpr double kLeastJointSize = 3.0;  // standard uncertainties of an effect in the joint fit
 
 class Loop {
@@ -178,12 +179,12 @@ class Loop {
       const Seen* own = nullptr;
       for (const Seen& each : look.seen)
         if (!own && each.name() == state.added[i].name() && each.refused.empty()) own = &each;
-      if (!own || own->refined.delta_bic > best->refined.delta_bic) own = best;
-      if (own == best && best->refined.candidate != state.added[i].candidate) {
-        if (best->name() != state.added[i].name())
-          notes_.push_back(state.added[i].name() + " was exchanged for " + best->name() +
+      if (!own || own->refined.delta_bic > best->refined.delta_bic + kBetter) own = best;
+      if (own->refined.candidate != state.added[i].candidate) {
+        if (own->name() != state.added[i].name())
+          notes_.push_back(state.added[i].name() + " was exchanged for " + own->name() +
                            ", which fits better");
-        record(look, *best, state.added[i]);
+        record(look, *own, state.added[i]);
         state = extender_.extend(std::move(state.added));
         changed = true;
       }
