@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "linear_effect.hpp"
+#include "phasor.hpp"
 
 namespace slideway {
 namespace {
@@ -32,10 +33,11 @@ void PeriodicEffect::columns(const Stations& stations, std::span<const double> s
                              Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
   const double cycles = spec_.rate_is_period ? 1.0 / shape[0] : shape[0];
+  Phasor phasor;
   for (Eigen::Index i = 0; i < stations.size(); ++i) {
-    const double angle = kTurn * cycles * spec_.clock(stations, i);
-    out(i, 0) = std::cos(angle);
-    out(i, 1) = std::sin(angle);
+    phasor.turn_to(kTurn * cycles * spec_.clock(stations, i));
+    out(i, 0) = phasor.cosine();
+    out(i, 1) = phasor.sine();
   }
 }
 
@@ -44,12 +46,13 @@ void PeriodicEffect::derivatives(const Stations& stations, std::span<const doubl
   if (!applies_to(stations.setup())) return void(out.setZero());
   const double cycles = spec_.rate_is_period ? 1.0 / shape[0] : shape[0];
   const double cycles_slope = spec_.rate_is_period ? -cycles * cycles : 1.0;
+  Phasor phasor;
   for (Eigen::Index i = 0; i < stations.size(); ++i) {
     const double clock = spec_.clock(stations, i);
-    const double angle = kTurn * cycles * clock;
+    phasor.turn_to(kTurn * cycles * clock);
     const double angle_slope = kTurn * cycles_slope * clock;
-    out(i, 0) = -std::sin(angle) * angle_slope;
-    out(i, 1) = std::cos(angle) * angle_slope;
+    out(i, 0) = -phasor.sine() * angle_slope;
+    out(i, 1) = phasor.cosine() * angle_slope;
   }
 }
 

@@ -54,7 +54,12 @@ Extended Extender::extend(std::vector<Added> added) const {
   return out;
 }
 
-FitResult Extender::summary(const Extended& extended) const {
+const FitResult& Extender::summary(const Extended& extended) const {
+  if (!extended.numbers) extended.numbers = summarised(extended);
+  return *extended.numbers;
+}
+
+FitResult Extender::summarised(const Extended& extended) const {
   if (!declared_) return summarise(extended.model, extended.fit);
   Model model = with(*declared_, extended.added);
   leave_out_centre(model, extended.lost_centre_mm);

@@ -30,7 +30,8 @@ struct Extended {
   std::vector<Added> added;
   Model model;
   Fit fit;
-  double lost_centre_mm = 0.0;  // values within this radius are left out of the fit
+  double lost_centre_mm = 0.0;               // values within this radius are left out of the fit
+  mutable std::optional<FitResult> numbers;  // Extender::summary(), made once
 };
 
 /// Makes Extended models of one problem, in the low band effects are searched in: the declared one,
@@ -45,10 +46,11 @@ class Extender {
 
   [[nodiscard]] Extended extend(std::vector<Added> added) const;
 
-  /// The report's numbers, in the declared low band.
-  [[nodiscard]] FitResult summary(const Extended& extended) const;
+  /// The report's numbers, in the declared low band. They live as long as `extended`.
+  [[nodiscard]] const FitResult& summary(const Extended& extended) const;
 
  private:
+  [[nodiscard]] FitResult summarised(const Extended& extended) const;
   [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<Added>& added) const;
 
   Model base_;

@@ -98,14 +98,17 @@ class Loop {
     added.round.delta_bic = choice.refined.delta_bic;
     added.round.p_value = choice.p_value;
     added.round.candidates = tried(look, &choice, before_->rms_um);
+    added.round.ambiguous_with.clear();
+    for (const Seen* rival : look.rivals(choice))
+      added.round.ambiguous_with.push_back(rival->name());
   }
 
   bool try_adding(Extended& state, const Look& look, const Seen& choice) {
-    const FitResult before = extender_.summary(state);
+    const FitResult& before = extender_.summary(state);
     std::vector<Added> added = state.added;
     record(look, choice, added.emplace_back());
     Extended extended = extender_.extend(std::move(added));
-    const FitResult after = extender_.summary(extended);
+    const FitResult& after = extender_.summary(extended);
     TraceRound& round = extended.added.back().round;
     round.before_rms_um = before.rms_um;
     round.after_rms_um = after.rms_um;
@@ -203,10 +206,10 @@ class Loop {
   /// @return true if one did
   bool drop_small(Extended& state, double limit) {
     bool changed = false;
-    FitResult joint = extender_.summary(state);
     for (std::size_t i = state.added.size(); i-- > 0;) {
       const Added& effect = state.added[i];
-      const std::vector<FittedParameter> own = parameters_of(joint, effect.name());
+      const std::vector<FittedParameter> own =
+          parameters_of(extender_.summary(state), effect.name());
       if (!effect.candidate->term.effect->has_one_size() || effect.candidate->raises_degree ||
           own.empty() || !own[0].value || !own[0].standard_uncertainty ||
           std::abs(*own[0].value) >= limit * *own[0].standard_uncertainty)
@@ -214,7 +217,6 @@ class Loop {
       notes_.push_back(effect.name() + " was taken back: in the joint fit it is below " +
                        significant(limit, 1) + " of its standard uncertainties");
       state = extender_.extend(all_but(state.added, i));
-      joint = extender_.summary(state);
       changed = true;
     }
     return changed;
@@ -238,7 +240,7 @@ class Loop {
 
   TraceResult report(const Extended& state, const Look& last, bool retracted) {
     TraceResult out;
-    const FitResult after = extender_.summary(state);
+    const FitResult& after = extender_.summary(state);
     out.before = before_->parameters;
     out.after = after.parameters;
     out.before_rms_um = before_->rms_um;

@@ -3,6 +3,7 @@
 #include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../periodic_effect.hpp"
+#include "../phasor.hpp"
 #include "../request.hpp"
 
 namespace slideway {
@@ -87,17 +88,15 @@ class SpindleRunout : public LinearEffect {
 
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
-    fill(stations, out, [rpm = shape[0]](double angle_per_rpm, double& cosine, double& sine) {
-      cosine = std::cos(angle_per_rpm * rpm);
-      sine = std::sin(angle_per_rpm * rpm);
-    });
+    fill(stations, shape[0], out, [](double /*angle_per_rpm*/, double& /*c*/, double& /*s*/) {});
   }
 
   void derivatives(const Stations& stations, std::span<const double> shape, int /*which*/,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
-    fill(stations, out, [rpm = shape[0]](double angle_per_rpm, double& cosine, double& sine) {
-      cosine = -angle_per_rpm * std::sin(angle_per_rpm * rpm);
-      sine = angle_per_rpm * std::cos(angle_per_rpm * rpm);
+    fill(stations, shape[0], out, [](double angle_per_rpm, double& cosine, double& sine) {
+      const double slope = -angle_per_rpm * sine;
+      sine = angle_per_rpm * cosine;
+      cosine = slope;
     });
   }
 
@@ -107,14 +106,18 @@ class SpindleRunout : public LinearEffect {
 
  private:
   template <typename Line>
-  void fill(const Stations& stations, Eigen::Ref<Eigen::MatrixXd> out, Line&& line) const {
+  void fill(const Stations& stations, double rpm, Eigen::Ref<Eigen::MatrixXd> out,
+            Line&& line) const {
     if (!applies_to(stations.setup())) return void(out.setZero());
+    Phasor phasor;
     for (Eigen::Index i = 0; i < stations.size(); ++i) {
       const double position = scaled_position(stations, i);
       const double turn = 2.0 * kPi * stations.time(i) / kMinute;
+      phasor.turn_to(turn * rpm);
+      const double c = phasor.cosine(), s = phasor.sine();
+      const double cosines[] = {c, (c - s) * (c + s)}, sines[] = {s, 2.0 * s * c};
       for (int h = 1; h <= kHarmonics; ++h) {
-        double cosine = 0.0;
-        double sine = 0.0;
+        double cosine = cosines[h - 1], sine = sines[h - 1];
         line(h * turn, cosine, sine);
         out.row(i).segment<4>(4 * (h - 1)) << cosine, sine, position * cosine, position * sine;
       }
