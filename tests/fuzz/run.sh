@@ -11,7 +11,7 @@ if "$build/bin/fuzz_$target" -max_total_time="$seconds" -timeout=5 -rss_limit_mb
   echo "$target: $(sed -n 's/^stat::number_of_executed_units: *//p' "$run/log") inputs"
   exit
 fi
-tail -n 60 "$run/log"
+grep -v "^#[0-9]" "$run/log" | tail -n 60
 echo "fuzz_$target broke: the input is in $run/crashes; once mended, keep it in" \
   "tests/fuzz/crashes/$target" >&2
 exit 255 # xargs starts no other
