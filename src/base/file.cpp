@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -52,7 +54,7 @@ std::string read_all(int file, const fs::path& path) {
 }
 
 // 0, or what went wrong.
-int write_all(Descriptor& file, std::string_view bytes) {
+int write_all(const Descriptor& file, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(file.number(), bytes.data(), bytes.size());
     if (count >= 0)
@@ -60,7 +62,65 @@ int write_all(Descriptor& file, std::string_view bytes) {
     else if (errno != EINTR)
       return errno;
   }
-  return file.close();
+  return 0;
+}
+
+// Signals wait as long as it lives.
+class SignalsHeld {
+ public:
+  SignalsHeld() {
+    sigset_t all;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  ~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsHeld(const SignalsHeld&) = delete;
+  SignalsHeld& operator=(const SignalsHeld&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+// Makes a temporary file beside the target by `make(name)`, 0 or an error, and gives it the
+// target's name. Both under held signals, or one could leave the temporary file behind.
+template <typename Make>
+int replace(const fs::path& target, const Make& make) {
+  const SignalsHeld held;
+  const std::string stem = ".slideway." + std::to_string(::getpid()) + ".";
+  int error = EEXIST;
+  for (int attempt = 0; attempt < 100 && error == EEXIST; ++attempt) {
+    const fs::path temporary = target.parent_path() / (stem + std::to_string(attempt) + ".tmp");
+    error = make(temporary);
+    if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) {
+      error = errno;
+      ::unlink(temporary.c_str());
+    }
+  }
+  return error;
+}
+
+// A name for a file that has none: at once where the name is free.
+int give_name(const Descriptor& file, const fs::path& target) {
+  const std::string nameless = "/proc/self/fd/" + std::to_string(file.number());
+  const auto link = [&](const fs::path& name) {
+    const int flags = AT_SYMLINK_FOLLOW;
+    return ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), flags) == 0 ? 0 : errno;
+  };
+  const int error = link(target);
+  return error == EEXIST ? replace(target, link) : error;
+}
+
+// For file systems where a file needs a name from the start.
+int write_named(const fs::path& target, std::string_view contents, std::optional<mode_t> mode) {
+  return replace(target, [&](const fs::path& name) {
+    Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    if (file.number() < 0) return errno;
+    if (mode) ::fchmod(file.number(), *mode & 07777U);
+    int error = write_all(file, contents);
+    if (const int at_close = file.close(); error == 0) error = at_close;
+    if (error != 0) ::unlink(name.c_str());
+    return error;
+  });
 }
 
 [[noreturn]] void fail_to_write(const fs::path& path, int error) {
@@ -77,7 +137,8 @@ bool is_stream(const fs::path& path, const struct stat& status) {
 
 void write_through(const fs::path& path, std::string_view contents) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
-  const int error = file.number() < 0 ? errno : write_all(file, contents);
+  int error = file.number() < 0 ? errno : write_all(file, contents);
+  if (error == 0) error = file.close();
   if (error != 0) fail_to_write(path, error);
 }
 
@@ -150,23 +211,17 @@ void write_file(const fs::path& path, std::string_view contents) {
   if (exists && is_stream(path, status)) return write_through(path, contents);
 
   const fs::path target = exists ? fs::canonical(path) : path;  // a link stays a link
-  const std::string stem = ".slideway." + std::to_string(::getpid()) + ".";
-  fs::path temporary;
-  int number = -1;
-  for (int attempt = 0; attempt < 100 && number < 0; ++attempt) {
-    temporary = target.parent_path() / (stem + std::to_string(attempt) + ".tmp");
-    number = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (number < 0 && errno != EEXIST) fail_to_write(path, errno);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  const Descriptor file(::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666));
+  int error = file.number() < 0 ? errno : 0;
+  if (error == 0) {
+    if (exists) ::fchmod(file.number(), status.st_mode & 07777U);
+    error = write_all(file, contents);
+    if (error == 0) error = give_name(file, target);
   }
-  if (number < 0) fail_to_write(path, EEXIST);
-
-  Descriptor file(number);
-  if (exists) ::fchmod(number, status.st_mode & 07777U);
-  int error = write_all(file, contents);
-  if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) error = errno;
-  if (error == 0) return;
-  ::unlink(temporary.c_str());
-  fail_to_write(path, error);
+  if (error == EOPNOTSUPP || error == EISDIR || error == ENOENT)  // no O_TMPFILE, or no /proc
+    error = write_named(target, contents, exists ? std::optional(status.st_mode) : std::nullopt);
+  if (error != 0) fail_to_write(path, error);
 }
 
 }  // namespace slideway

@@ -87,7 +87,9 @@ int main(int argc, char** argv) {
   // Memory a matrix gives back serves the next: fresh pages cost more than the arithmetic on them.
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is a failed write, reported as one
+  // A closed pipe or a file beyond the limit is a failed write, reported as one.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
     return run({argv + 1, argv + argc});
   } catch (const UsageError& error) {

@@ -168,7 +168,7 @@ void Reader::read_irregular_row() {
   const std::string_view line = rest_of_line(at_);
   const bool ends_text = line.data() + line.size() == end_;
   const std::size_t needed = targets_.back().column + 1;
-  const auto fields = split(line, dialect_.delimiter, needed + 16);
+  const auto fields = split(line, dialect_.delimiter, needed);
   for (Target& target : targets_) {
     if (target.column >= fields.size())
       refuse(": " + std::to_string(fields.size()) + (fields.size() == 1 ? " field" : " fields") +
@@ -182,8 +182,10 @@ void Reader::read_irregular_row() {
     if (!value || !std::isfinite(*value)) refuse_field(field, target.column);
     target.value = *value;
   }
-  if (last_is_target_ && std::any_of(fields.begin() + static_cast<std::ptrdiff_t>(needed),
-                                     fields.end(), [](auto f) { return !f.empty(); }))
+  const char ends[] = {' ', '\t', '\r', '"', dialect_.delimiter};
+  const auto filled = line.find_last_not_of(std::string_view(ends, sizeof ends)) + 1;
+  if (last_is_target_ &&
+      split(line.substr(0, filled), dialect_.delimiter, needed + 1).size() > needed)
     refuse(": more than " + std::to_string(needed) + (needed == 1 ? " field" : " fields") +
            ", as the rows before it have");
 }

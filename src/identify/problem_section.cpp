@@ -13,12 +13,6 @@ namespace {
 
 const TomlValue::Table kNoEntries;
 
-bool is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
-
-bool has_control_character(std::string_view text) {
-  return std::any_of(text.begin(), text.end(), is_control);
-}
-
 std::optional<double> as_number(const TomlValue& value) {
   if (const auto* number = std::get_if<double>(&value.data)) return *number;
   if (const auto* whole = std::get_if<std::int64_t>(&value.data))
@@ -100,7 +94,7 @@ std::optional<std::string> Section::text(std::string_view key) const {
   const TomlEntry* entry = find(key);
   if (entry == nullptr) return std::nullopt;
   const auto* value = std::get_if<std::string>(&entry->value.data);
-  if (value == nullptr || trimmed(*value).empty() || has_control_character(*value))
+  if (value == nullptr || trimmed(*value).empty() || printable(*value, value->size()) != *value)
     fail(key, "must be a text on one line, \"...\"");
   return *value;
 }
@@ -193,10 +187,9 @@ void Section::fail(std::string_view key, const std::string& what) const {
   const TomlEntry* entry = find(key);
   // The root's own line is no place to send anybody to.
   const int line = entry != nullptr ? entry->line : name_.empty() ? 0 : line_;
-  std::string message =
+  const std::string message =
       *file_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " + called(key) + ": " + what;
-  std::replace_if(message.begin(), message.end(), is_control, '?');  // a quoted key may hold any
-  throw UsageError(message);
+  throw UsageError(printable(message, message.size()));  // a quoted key may hold anything
 }
 
 }  // namespace slideway

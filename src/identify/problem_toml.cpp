@@ -8,6 +8,7 @@
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
+#include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/problem.hpp"
 
@@ -49,7 +50,7 @@ toml::table parsed(const std::filesystem::path& path) {
     std::string what(error.description());
     std::replace(what.begin(), what.end(), '\n', ' ');
     throw UsageError(path.string() + ":" + std::to_string(line_of(error.source())) +
-                     ": no valid TOML: " + what);
+                     ": no valid TOML: " + printable(what, what.size()));
   }
 }
 

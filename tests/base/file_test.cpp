@@ -1,8 +1,10 @@
 #include "slideway/base/file.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -126,6 +128,38 @@ TEST(WriteFile, LeavesNothingBehindWhenItFails) {
       [] { write_file("/dev/full", "x"); },
       ThrowsMessage<std::runtime_error>("/dev/full: can not be written: No space left on device"));
   EXPECT_EQ(entries(folder.path()), 0U);
+}
+
+TEST(WriteFile, KeepsTheOldFileWholeWhenWritingBreaksOff) {
+  const TemporaryFolder folder;
+  const fs::path old = folder.file("old", "whole");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  for (const fs::path& path : {old, folder.path() / "new"})
+    EXPECT_THAT(
+        [&] { write_file(path, std::string(100000, 'x')); },
+        ThrowsMessage<std::runtime_error>(path.string() + ": can not be written: File too large"));
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(contents_of(old), "whole");
+  EXPECT_EQ(entries(folder.path()), 1U);
+}
+
+TEST(WriteFile, LeavesAReadOnlyFolderAsItIs) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may write into any folder";
+  const TemporaryFolder folder;
+  const fs::path old = folder.file("old", "whole");
+  fs::permissions(folder.path(), fs::perms::owner_read | fs::perms::owner_exec);
+  for (const fs::path& path : {old, folder.path() / "new"})
+    EXPECT_THAT([&] { write_file(path, "x"); },
+                ThrowsMessage<std::runtime_error>(path.string() +
+                                                  ": can not be written: Permission denied"));
+  fs::permissions(folder.path(), fs::perms::owner_all);
+  EXPECT_EQ(contents_of(old), "whole");
+  EXPECT_EQ(entries(folder.path()), 1U);
 }
 
 }  // namespace

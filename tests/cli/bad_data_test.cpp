@@ -103,4 +103,9 @@ TEST_F(GoodData, IsAccepted) {
 }
 
 }  // namespace
+
+std::vector<BadInputs> bad_data() {
+  return {{"BadField/Data", kFields}, {"BadFile/Data", kFiles}, {"BadAmount/Data", kAmounts}};
+}
+
 }  // namespace slideway

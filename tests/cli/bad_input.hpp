@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <span>
+
 #include "cli/run_program.hpp"
 
 namespace slideway {
@@ -40,13 +42,38 @@ struct BadInput {
 
 inline void PrintTo(const BadInput& input, std::ostream* out) { *out << input.name; }
 
-/// Runs identify on the case: refused in one line that says where and what, and nothing written.
+/// A list of cases by the name of its tests: "BadField/Data".
+struct BadInputs {
+  std::string test;
+  std::span<const BadInput> cases;
+};
+
+std::vector<BadInputs> bad_problems(), bad_data(), bad_formats();
+
+/// What a command is told that it can not do.
+struct BadUsage {
+  std::string name;
+  std::vector<std::string> arguments;
+  std::vector<std::string> fragments;  // of the message
+  std::string stdout_to = {};
+};
+
+inline void PrintTo(const BadUsage& usage, std::ostream* out) { *out << usage.name; }
+
+std::span<const BadUsage> bad_usages(), bad_outputs();
+
+/// Runs identify on the case.
+inline ProgramRun run_on(const BadInput& input, const TemporaryFolder& folder) {
+  folder.file("problem.toml", input.problem);
+  folder.file("face.csv", input.csv);
+  return run_program({"identify", "problem.toml", "--json", "report.json"}, {folder.path(), {}});
+}
+
+/// Refused in one line that says where and what, and nothing written.
 class BadInputTest : public ProgramTest, public testing::WithParamInterface<BadInput> {
  protected:
   void expect_refused() const {
-    folder_.file("problem.toml", GetParam().problem);
-    folder_.file("face.csv", GetParam().csv);
-    const ProgramRun refused = run({"identify", "problem.toml", "--json", "report.json"});
+    const ProgramRun refused = run_on(GetParam(), folder_);
     EXPECT_TRUE(is_refused(refused, GetParam().exit_code));
     EXPECT_THAT(refused.err, testing::StartsWith("slideway: "));
     for (const std::string& fragment : GetParam().fragments)

@@ -165,4 +165,12 @@ TEST_F(ProblemPath, TakesTheDataDirectoryFromOptionBeforeVariable) {
 }
 
 }  // namespace
+
+std::vector<BadInputs> bad_problems() {
+  return {{"BadKey/Problem", kKeys},
+          {"BadName/Problem", kNames},
+          {"BadWhole/Problem", kWholes},
+          {"BadSyntax/Problem", kSyntax}};
+}
+
 }  // namespace slideway

@@ -1,6 +1,6 @@
 #include <gmock/gmock.h>
 
-#include "cli/run_program.hpp"
+#include "cli/bad_input.hpp"
 #include "slideway/report/layout.hpp"
 
 namespace slideway {
@@ -62,14 +62,6 @@ TEST_F(Program, SaysItsVersion) {
   EXPECT_EQ(version.out, "slideway 0.1.0\n");
   EXPECT_EQ(version.err, "");
 }
-
-struct BadUsage {
-  std::string name;
-  std::vector<std::string> arguments;
-  std::vector<std::string> fragments;  // of the message
-};
-
-void PrintTo(const BadUsage& usage, std::ostream* out) { *out << usage.name; }
 
 class Usage : public ProgramTest, public testing::WithParamInterface<BadUsage> {};
 
@@ -167,4 +159,7 @@ INSTANTIATE_TEST_SUITE_P(Bad, Usage, testing::ValuesIn(kBadUsages),
                          [](const auto& usage) { return usage.param.name; });
 
 }  // namespace
+
+std::span<const BadUsage> bad_usages() { return kBadUsages; }
+
 }  // namespace slideway

@@ -1,4 +1,6 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -70,25 +72,47 @@ TEST_F(Output, OnAFullDiskFailsWithAMessage) {
               testing::StartsWith("slideway: /dev/full: "));
 }
 
-TEST_F(Output, IntoADirectoryThatIsNotThereFails) {
-  EXPECT_THAT(failure(run({"identify", kProblem, "--no-trace", "--json", "gone/report.json"})),
-              HasSubstr("gone/report.json: can not be written: No such file or directory"));
+TEST_F(Output, IntoAClosedPipeFailsWithAMessage) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  ::close(ends[0]);
+  const ProgramRun broken =
+      run_program({"effects"}, {.folder = folder_.path(), .stdout_number = ends[1]});
+  ::close(ends[1]);
+  EXPECT_EQ(failure(broken), "slideway: standard output: can not be written: Broken pipe\n");
 }
 
-TEST_F(Output, IntoADirectoryThatTakesNoFilesFails) {
-  if (!std::filesystem::exists("/proc/self")) GTEST_SKIP() << "no /proc on this system";
-  failure(
-      run({"identify", kProblem, "--no-trace", "--json", "/proc/report.json"}));  // not even root's
+class BadOutputs : public Output, public testing::WithParamInterface<BadUsage> {};
+
+TEST_P(BadOutputs, FailInOneLine) {
+  const std::string said =
+      failure(run_program(GetParam().arguments, {folder_.path(), GetParam().stdout_to}));
+  for (const std::string& fragment : GetParam().fragments) EXPECT_THAT(said, HasSubstr(fragment));
+  EXPECT_THAT(names_in(folder_.path()), IsEmpty());
 }
 
-TEST_F(Output, OverADirectoryOrBehindAFileFails) {
-  folder_.file("file", "x");
-  EXPECT_THAT(failure(run({"identify", kProblem, "--no-trace", "--json", "."})),
-              HasSubstr("Is a directory"));
-  EXPECT_THAT(failure(run({"identify", kProblem, "--no-trace", "--json", "file/report.json"})),
-              HasSubstr("Not a directory"));
-  EXPECT_THAT(names_in(folder_.path()), testing::ElementsAre("file"));
+std::vector<std::string> identify_to(const std::string& json) {
+  return {"identify", kProblem, "--no-trace", "--json", json};
 }
+
+const BadUsage kBadOutputs[] = {
+    {"StandardOutputOnAFullDisk",
+     {"effects"},
+     {"standard output: can not be written: No space left on device"},
+     "/dev/full"},
+    {"FileOnAFullDisk",
+     identify_to("/dev/full"),
+     {"/dev/full: can not be written: No space left on device"}},
+    {"IntoADirectoryThatIsNotThere",
+     identify_to("gone/report.json"),
+     {"gone/report.json: can not be written: No such file or directory"}},
+    // Not even root's.
+    {"IntoADirectoryThatTakesNoFiles", identify_to("/proc/report.json"), {"/proc/report.json: "}},
+    {"OverADirectory", identify_to("."), {".: can not be written: Is a directory"}},
+    {"BehindAFile", identify_to("/dev/null/report.json"), {"Not a directory"}},
+};
+INSTANTIATE_TEST_SUITE_P(Bad, BadOutputs, testing::ValuesIn(kBadOutputs),
+                         [](const auto& output) { return output.param.name; });
 
 TEST_F(Output, NeverReplacesTheInput) {
   const std::string problem = ProblemText{}.text(), csv = face_csv(64);
@@ -109,4 +133,7 @@ TEST_F(Output, NeverReplacesTheInput) {
 }
 
 }  // namespace
+
+std::span<const BadUsage> bad_outputs() { return kBadOutputs; }
+
 }  // namespace slideway

@@ -6,11 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+#include <thread>
 
 namespace slideway {
 namespace {
@@ -74,7 +76,9 @@ ProgramRun run_program(const std::vector<std::string>& arguments, const ProgramS
   SpawnActions actions;
   require(::posix_spawn_file_actions_addchdir_np(actions.get(), setup.folder.c_str()));
   require(::posix_spawn_file_actions_addopen(actions.get(), 0, "/dev/null", O_RDONLY, 0));
-  if (setup.stdout_to.empty())
+  if (setup.stdout_number >= 0)
+    require(::posix_spawn_file_actions_adddup2(actions.get(), setup.stdout_number, 1));
+  else if (setup.stdout_to.empty())
     require(::posix_spawn_file_actions_adddup2(actions.get(), out.descriptor(), 1));
   else
     require(::posix_spawn_file_actions_addopen(actions.get(), 1, setup.stdout_to.c_str(),
@@ -87,6 +91,10 @@ ProgramRun run_program(const std::vector<std::string>& arguments, const ProgramS
   pid_t child = 0;
   require(::posix_spawn(&child, SLIDEWAY_PROGRAM, actions.get(), nullptr, pointers(words).data(),
                         pointers(variables).data()));
+  if (setup.signal != 0) {
+    std::this_thread::sleep_for(setup.signal_after);
+    ::kill(child, setup.signal);
+  }
   int status = 0;
   while (::waitpid(child, &status, 0) < 0)
     if (errno != EINTR) require(errno);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -20,6 +21,9 @@ struct ProgramSetup {
   std::filesystem::path folder;                         // working directory
   std::filesystem::path stdout_to;                      // instead of being captured
   std::map<std::string, std::string> environment = {};  // added; SLIDEWAY_DATA is never passed on
+  int stdout_number = -1;                               // a descriptor to be stdout
+  int signal = 0;                                       // sent after so long
+  std::chrono::microseconds signal_after{};
 };
 
 /// Runs the program as a shell would and waits for its end.

@@ -155,6 +155,9 @@ TEST(Dialect, TakesEmptyAndNamedValuesForMissing) {
 TEST(Dialect, RefusesLongerRowsThanTheFirst) {
   EXPECT_EQ(complaint("x,z\n999.5,1\n1,234.5,1\n"),
             "line 3: more than 2 fields, as the rows before it have");
+  EXPECT_EQ(complaint("x,z\n0,1\n1,2" + std::string(100, ',') + "3\n"),
+            "line 3: more than 2 fields, as the rows before it have");
+  EXPECT_EQ(complaint("x,z\n0,1\n1,\"2\"" + std::string(100, ',') + "\"\" \n"), "no complaint");
 }
 
 TEST(Dialect, TakesUnitsFromNamesAndUnitRows) {

@@ -1,5 +1,4 @@
 #include <gmock/gmock.h>
-#include <zip.h>
 
 #include <cmath>
 #include <cstdint>
@@ -7,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "format/deflated.hpp"
 #include "format/hostile.hpp"
 #include "format/x3p_checksum.hpp"
 #include "format/zip_archive.hpp"
@@ -85,25 +85,6 @@ std::vector<double> heights_of(char type, const std::vector<Number>& numbers,
                 {{"bindata/data.bin", data}}),
             {})
       .values;
-}
-
-// The files deflated, as no program of ours does it.
-std::string deflated(const Files& files) {
-  zip_error_t error;
-  zip_source_t* const target = zip_source_buffer_create(nullptr, 0, 0, &error);
-  zip_source_keep(target);
-  zip_t* const zip = zip_open_from_source(target, ZIP_TRUNCATE, &error);
-  for (const auto& [name, bytes] : files)
-    zip_file_add(zip, name.c_str(), zip_source_buffer(zip, bytes.data(), bytes.size(), 0), 0);
-  EXPECT_EQ(zip_close(zip), 0);
-  zip_stat_t stat;
-  zip_source_stat(target, &stat);
-  std::string bytes(stat.size, '\0');
-  zip_source_open(target);
-  EXPECT_EQ(zip_source_read(target, bytes.data(), bytes.size()), bytes.size());
-  zip_source_close(target);
-  zip_source_free(target);
-  return bytes;
 }
 
 // ----- the samples of the openGPS library

@@ -34,7 +34,7 @@ inline void expect_current(const std::filesystem::path& document, const std::str
     line += shipped[i] == '\n';
   ADD_FAILURE() << document.string() << ":" << line
                 << ": not what the program says today. If the change is meant, run\n"
-                   "  SLIDEWAY_UPDATE=1 ctest -R problems/Documents\nand commit the file.";
+                   "  SLIDEWAY_UPDATE=1 ctest -R Documents\nand commit the file.";
 }
 
 }  // namespace slideway

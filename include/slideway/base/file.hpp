@@ -34,8 +34,10 @@ std::string sha256(std::string_view bytes);
 /// @throws std::runtime_error naming the path and the cause
 void make_directory(const std::filesystem::path& path);
 
-/// Writes a file whole or not at all: a temporary file beside it, then a rename. Devices and pipes
-/// are written directly.
+/// Writes a file whole or not at all, whatever signal ends the process meanwhile: a file without a
+/// name, which gets it when it is whole. Over an older file, or where the file system knows no such
+/// files, a temporary name beside it stands in, and signals wait. Devices and pipes are written
+/// directly.
 /// @throws std::runtime_error naming the path and the cause; the old file is then untouched.
 void write_file(const std::filesystem::path& path, std::string_view contents);
 

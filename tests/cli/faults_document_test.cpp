@@ -1,0 +1,82 @@
+#include "cli/bad_input.hpp"
+#include "problems/program.hpp"
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+/// "MarkOfAMissingValue" as "mark of a missing value".
+std::string in_words(const std::string& name) {
+  std::string text;
+  for (const char c : name) {
+    const bool begins_word = c >= 'A' && c <= 'Z';
+    if (begins_word && !text.empty()) text += ' ';
+    text += begins_word ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return text;
+}
+
+std::string header(const std::string& test) {
+  return "\n`cli/" + test + "`\n\n| what goes wrong | what slideway says | exit code | test |\n" +
+         "|---|---|---|---|\n";
+}
+
+std::string row(const std::string& name, const ProgramRun& run) {
+  constexpr std::size_t kPrefix = std::string_view("slideway: ").size();
+  constexpr std::size_t kLongest = 140;
+  std::string said = printable(run.err.substr(kPrefix, run.err.size() - kPrefix - 1), kLongest);
+  for (std::size_t at = 0; (at = said.find('|', at)) != std::string::npos; at += 2)
+    said.insert(at, 1, '\\');
+  return "| " + in_words(name) + " | `" + said + "` | " + std::to_string(run.exit_code) + " | `" +
+         name + "` |\n";
+}
+
+std::string section(const std::string& title, const std::vector<BadInputs>& lists) {
+  std::string text = "\n## " + title + "\n";
+  for (const BadInputs& list : lists) {
+    text += header(list.test + ".IsRefusedInOneLine");
+    for (const BadInput& input : list.cases) {
+      const TemporaryFolder folder;
+      text += row(input.name, run_on(input, folder));
+    }
+  }
+  return text;
+}
+
+std::string section(const std::string& title, const std::string& test,
+                    std::span<const BadUsage> list) {
+  std::string text = "\n## " + title + "\n" + header(test);
+  for (const BadUsage& usage : list) {
+    const TemporaryFolder folder;
+    std::string line =
+        row(usage.name, run_program(usage.arguments, {folder.path(), usage.stdout_to}));
+    if (const std::size_t at = line.find(SLIDEWAY_SOURCE_DIR "/"); at != std::string::npos)
+      line.erase(at, std::string_view(SLIDEWAY_SOURCE_DIR "/").size());
+    text += line;
+  }
+  return text;
+}
+
+// From the lists of the tests and from what the program says to each case.
+TEST(Documents, FaultsAreWhatTheProgramSays) {
+  const std::string text =
+      "# Faults\n\n"
+      "What can be wrong with what slideway is given, and what it then says: one line on standard\n"
+      "error behind `slideway: `, nothing on standard output, no file written. Long messages are "
+      "cut\n"
+      "here. Each row is a case of the test above its table; the tables are made by running "
+      "them.\n\n"
+      "Exit codes: 0 done, 1 failed while working, 2 bad usage or bad problem file, 3 unreadable "
+      "or\n"
+      "invalid data, 4 negative verdict (`--strict` only).\n\n"
+      "A file is written whole or not at all, also when a signal ends the program while it writes\n"
+      "(`cli/Signal/Interrupted`, `base/WriteFile`). Every reader is fuzzed: `./dev fuzz`.\n" +
+      section("Problem file", bad_problems()) + section("Data", bad_data()) +
+      section("File formats", bad_formats()) +
+      section("Command line", "Bad/Usage.IsRefusedInOneLine", bad_usages()) +
+      section("Output", "Bad/BadOutputs.FailInOneLine", bad_outputs());
+  expect_current(source_folder() / "docs/faults.md", text);
+}
+
+}  // namespace
+}  // namespace slideway
