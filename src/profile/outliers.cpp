@@ -79,7 +79,7 @@ struct Level {
   void find_scale();
   void find_errors();
   [[nodiscard]] double scale_of(std::vector<double>& part) const;
-  [[nodiscard]] double scale_at(std::size_t i) const;
+  [[nodiscard]] double scale_at(std::size_t i, double limit) const;
   [[nodiscard]] double peak_of_structure() const;
   [[nodiscard]] bool missed_from_either_side(std::size_t i, double error) const;
 };
@@ -140,8 +140,9 @@ double Level::scale_of(std::vector<double>& part) const {
 }
 
 // The scale beside a value, or if that is larger, of all errors. Of a short profile that of all
-// errors it does not touch, larger by what the median of so few may be too small.
-double Level::scale_at(std::size_t i) const {
+// errors it does not touch, larger by what the median of so few may be too small, and such that
+// `limit` times it is twice what recurs.
+double Level::scale_at(std::size_t i, double limit) const {
   const std::size_t first = outermost(), last = values.size() - first;
   const std::size_t left = std::max(first, i - std::min(i, touched()));
   const std::size_t right = std::min(last, i + touched() + 1);
@@ -152,7 +153,11 @@ double Level::scale_at(std::size_t i) const {
   if (!cubic) {
     add(first, left);
     add(right, last);
-    return scale_of(part) * few_factor(part.size());
+    const double others = scale_of(part) * few_factor(part.size());
+    // One other spike makes three large errors.
+    if (part.size() <= 3) return INFINITY;
+    std::ranges::nth_element(part, part.begin() + 3, std::greater<>());
+    return std::max(others, 2.0 * part[3] / limit);
   }
   double out = scale * few_factor(values.size());
   if (left >= first + kNear) {
@@ -274,7 +279,7 @@ void Search::look(int halvings, std::size_t lag) {
   for (const std::size_t i : candidates) {
     if (std::abs(level_.errors[i]) <= structure) break;
     const double error = level_.error(i) - level_.middle;  // now that larger ones are taken out
-    if (std::abs(error) > std::max(structure, limit * level_.scale_at(i)) &&
+    if (std::abs(error) > std::max(structure, limit * level_.scale_at(i, limit)) &&
         level_.missed_from_either_side(i, error))
       take_out(halvings, i, error);
   }
