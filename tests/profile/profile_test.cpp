@@ -12,6 +12,7 @@
 namespace slideway {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -139,7 +140,7 @@ TEST_F(ReadProfile, LeavesOutSpikesAndRowsWhereItIsAsked) {
   EXPECT_EQ(profile_.outliers.size(), 1U);
   EXPECT_EQ(profile_.values.size(), 28U);
   EXPECT_EQ(profile_.positions.size(), 28U);
-  EXPECT_THAT(profile_.notes, testing::Contains(HasSubstr("contradict, left out: data row 6")));
+  EXPECT_THAT(profile_.notes, Contains(HasSubstr("contradict, left out: data row 6")));
 
   profile_ = {};
   source_.leave_out_spikes = false;

@@ -32,9 +32,9 @@ struct Outlier {
 ///   - its error is above what the largest of so many normal ones reaches in 1 of 1000 profiles,
 ///     in robust standard deviations (MAD) of all errors and of the nearest 32 on either side;
 ///   - the line from either side alone misses it alike: a step, or the ridge between two feed
-///   marks,
-///     is foretold by one of them;
-///   - few others (3, or 1 in 400 samples) are even half as large: what recurs is structure.
+///     marks, is foretold by one of them;
+///   - few others (4, or 1 in 1000 samples; 3 in short profiles) are even half as large: what
+///     recurs is structure.
 /// Fewer than 64 samples are held against second differences, with a larger limit for so few.
 ///
 /// Not judged: fewer than 10 samples, the two at either end, what lies beside a gap. REQUIRES
