@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "picture.hpp"
 #include "report_command.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/profile/outliers.hpp"
 #include "slideway/report/layout.hpp"
 #include "trace_arguments.hpp"
 
@@ -50,6 +52,24 @@ Summary summarise(const Trace& trace) {
   return out;
 }
 
+// By data row, from 1, in the file's units; none where the positions turn back.
+std::vector<Outlier> outlier_rows(const Trace& trace) {
+  std::vector<double> positions, values;
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < trace.values.size(); ++i) {
+    if (std::isnan(trace.values[i])) continue;
+    positions.push_back(trace.positions[i]);
+    values.push_back(trace.values[i]);
+    rows.push_back(i + 1);
+  }
+  if (positions.size() > 1 && positions[1] < positions[0])
+    for (double& position : positions) position = -position;
+  if (std::ranges::adjacent_find(positions, std::greater_equal<>()) != positions.end()) return {};
+  std::vector<Outlier> outliers = find_outliers(positions, values);
+  for (Outlier& each : outliers) each.index = rows[each.index];
+  return outliers;
+}
+
 class InfoCommand : public ReportCommand {
  public:
   InfoCommand() : ReportCommand("info", "FILE [options]", "Shows what a profile file holds") {
@@ -62,6 +82,7 @@ class InfoCommand : public ReportCommand {
     TraceFile file = read_trace(input_, request_);
     arguments_.add_units(file);
     const Summary summary = summarise(file.trace);
+    outliers_ = outlier_rows(file.trace);
     report([&] { return text(file, summary); }, [&] { return json(file, summary); });
     return kDone;
   }
@@ -97,6 +118,17 @@ class InfoCommand : public ReportCommand {
       lines.emplace_back("p-v",
                          significant(summary.high - summary.low, 4) + unit(trace.value_unit));
     }
+    constexpr std::size_t kListed = 20;
+    for (std::size_t i = 0; i < std::min(outliers_.size(), kListed); ++i) {
+      const Outlier& each = outliers_[i];
+      lines.emplace_back(
+          i == 0 ? "spikes" : "",
+          "data row " + std::to_string(each.index) + ": " + significant(each.value, 7) +
+              ", neighbours say " + significant(each.expected, 7) +
+              (each.kind == OutlierKind::lost_minus_sign ? " (lost minus sign)" : ""));
+    }
+    if (outliers_.size() > kListed)
+      lines.emplace_back("", "and " + std::to_string(outliers_.size() - kListed) + " more");
     for (const std::string& decision : trace.decisions) lines.emplace_back("taken as", decision);
     std::string out = printable(input_, input_.size()) + "\n";
     for (const auto& [label, value] : lines)
@@ -109,6 +141,13 @@ class InfoCommand : public ReportCommand {
     const Trace& trace = file.trace;
     const auto or_null = [](bool known, const auto& value) { return known ? Json(value) : Json(); };
     const bool values = summary.has_values(), steps = trace.positions.size() > 1;
+    Json outliers = Json::array();
+    for (const Outlier& each : outliers_)
+      outliers.push_back({{"row", each.index},
+                          {"value", each.value},
+                          {"expected", each.expected},
+                          {"unit", or_null(!trace.value_unit.empty(), trace.value_unit)},
+                          {"kind", name(each.kind)}});
     const Json document = {
         {"schema", "slideway.info/1"},
         {"file", printable(input_, input_.size())},
@@ -126,6 +165,7 @@ class InfoCommand : public ReportCommand {
         {"value_max", or_null(values, summary.high)},
         {"rms", or_null(values, summary.rms)},
         {"pv", or_null(values, summary.high - summary.low)},
+        {"outliers", outliers},
         {"decisions", trace.decisions}};
     return document.dump(2) + "\n";
   }
@@ -133,6 +173,7 @@ class InfoCommand : public ReportCommand {
   std::string input_;
   TraceArguments arguments_;
   TraceRequest request_;
+  std::vector<Outlier> outliers_;
 };
 
 }  // namespace

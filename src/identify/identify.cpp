@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/fit.hpp"
@@ -10,6 +11,22 @@
 
 namespace slideway {
 namespace {
+
+std::vector<OutlierSummary> largest_outliers(const Profile& profile) {
+  constexpr std::size_t kListed = 20;
+  std::vector<OutlierRow> outliers = profile.outliers;
+  const auto size = [](const OutlierRow& each) { return std::abs(each.value - each.expected); };
+  std::ranges::stable_sort(outliers, std::greater<>(), size);
+  outliers.resize(std::min(outliers.size(), kListed));
+  std::ranges::sort(outliers, {}, &OutlierRow::row);
+  const bool height = profile.setup.quantity == Quantity::height;
+  const double unit = height ? kMicrometre : 1e-6;
+  std::vector<OutlierSummary> out;
+  for (const OutlierRow& each : outliers)
+    out.push_back({each.row, each.value / unit, each.expected / unit, height ? "um" : "urad",
+                   std::string(name(each.kind))});
+  return out;
+}
 
 InputSummary summarise_input(const Profile& profile) {
   InputSummary out{profile.name,
@@ -21,6 +38,9 @@ InputSummary summarise_input(const Profile& profile) {
                    profile.role == Role::fit ? "fit" : "holdout"};
   out.samples = profile.values.size();
   out.missing = profile.missing;
+  out.left_out = profile.left_out;
+  out.outlier_count = profile.outliers.size();
+  out.outliers = largest_outliers(profile);
   out.position_min_mm = profile.positions.front();
   out.position_max_mm = profile.positions.back();
   double mean = 0.0, squares = 0.0;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kKeys =
     "name file kind quantity position_column value_column position_unit value_unit delimiter "
-    "decimal encoding header_lines line base_mm window "
+    "decimal encoding header_lines line base_mm window leave_out "
     "center_mm z_mm overhang_mm feed_mm_per_min spindle_rpm cut_direction cut_radius_mm start_s "
     "traverse_mm_per_s free standard_uncertainty role";
 
@@ -83,6 +83,14 @@ void read_source(const Section& section, const PathRules& paths, ProfileEntry& e
   source.path = resolved(section, entry.profile.file, paths);
   source.request = read_request(section);
   source.window = section.range("window");
+  if (section.is_text("leave_out"))
+    source.leave_out_spikes = section.one_of("leave_out", "spikes").has_value();
+  else
+    source.left_out_rows =
+        section
+            .indices("leave_out",
+                     "must be \"spikes\" or a list of data rows, the first one 1: [120, 121]")
+            .value_or(source.left_out_rows);
   read_units(section, entry);
 }
 

@@ -118,6 +118,26 @@ std::optional<std::pair<double, double>> Section::range(std::string_view key) co
   return std::pair(*low, *high);
 }
 
+bool Section::is_text(std::string_view key) const {
+  const TomlEntry* entry = find(key);
+  return entry != nullptr && std::holds_alternative<std::string>(entry->value.data);
+}
+
+std::optional<std::vector<std::size_t>> Section::indices(std::string_view key,
+                                                         const std::string& what) const {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const auto* array = std::get_if<TomlValue::Array>(&entry->value.data);
+  if (array == nullptr) fail(key, what);
+  std::vector<std::size_t> result;
+  for (const TomlValue& element : *array) {
+    const auto* index = std::get_if<std::int64_t>(&element.data);
+    if (index == nullptr || *index < 1) fail(key, what);
+    result.push_back(static_cast<std::size_t>(*index));
+  }
+  return result;
+}
+
 void Section::check_word(std::string_view key, const std::string& word,
                          std::span<const std::string> accepted, std::string_view where) const {
   if (std::find(accepted.begin(), accepted.end(), word) != accepted.end()) return;

@@ -27,6 +27,7 @@ class Section {
   void accept(std::string_view keys) const { accept(words(keys)); }
 
   [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
+  [[nodiscard]] bool is_text(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;
 
   /// Values by key; nothing if the key is not there.
@@ -37,6 +38,9 @@ class Section {
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const;  // one line, not empty
   [[nodiscard]] std::optional<std::string> column(std::string_view key) const;  // name or number
   [[nodiscard]] std::optional<std::pair<double, double>> range(std::string_view key) const;
+  /// A list of whole numbers from 1 on; all else is refused with `what`.
+  [[nodiscard]] std::optional<std::vector<std::size_t>> indices(std::string_view key,
+                                                                const std::string& what) const;
   /// A text that must be one of `accepted`; `where` ends the sentence: " for a slope".
   [[nodiscard]] std::optional<std::string> one_of(std::string_view key,
                                                   std::span<const std::string> accepted,

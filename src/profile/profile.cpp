@@ -73,9 +73,25 @@ Conversion conversion(const ProfileSource& source, const TraceFile& file, const 
   return out;
 }
 
-// Keeps the samples inside the window that have a value, in place and in our units. Returns whether
-// they run upwards.
-bool keep_window(const std::string& file, const Conversion& convert, Profile& profile) {
+// The data rows to leave out, by index. A row may be named twice.
+std::vector<char> marked_rows(const ProfileSource& source, const std::string& name,
+                              std::size_t rows) {
+  std::vector<char> marked(rows, 0);
+  for (const std::size_t row : source.left_out_rows) {
+    if (row == 0 || row > rows)
+      throw UsageError("profile '" + name + "': leave_out: data row " + std::to_string(row) +
+                       " is not there; accepted: 1 to " + std::to_string(rows));
+    marked[row - 1] = 1;
+  }
+  return marked;
+}
+
+// Keeps the samples inside the window that have a value and are not left out, in place and in our
+// units. `rows` are their data rows. Returns whether they run upwards.
+bool keep_window(const ProfileSource& source, const Conversion& convert, Profile& profile,
+                 std::vector<std::size_t>& rows) {
+  const std::string file = source.path.string();
+  const std::vector<char> left_out = marked_rows(source, profile.name, profile.positions.size());
   std::vector<double>& positions = profile.positions;
   std::vector<double>& values = profile.values;
   std::size_t kept = 0;
@@ -87,6 +103,10 @@ bool keep_window(const std::string& file, const Conversion& convert, Profile& pr
       continue;
     if (std::isnan(values[i])) {
       ++profile.missing;
+      continue;
+    }
+    if (left_out[i] != 0) {
+      ++profile.left_out;
       continue;
     }
     const double position = convert.to_mm(convert.position(given));
@@ -102,6 +122,7 @@ bool keep_window(const std::string& file, const Conversion& convert, Profile& pr
     last = given;
     positions[kept] = position;
     values[kept] = value;
+    rows.push_back(i + 1);
     ++kept;
   }
   positions.resize(kept);
@@ -146,6 +167,62 @@ void note_blunders(Profile& profile) {
                             " is more than 100000: is it right?");
 }
 
+// "3, 120 to 122 and 5 more" of ascending rows.
+std::string in_words(const std::vector<std::size_t>& rows) {
+  constexpr std::size_t kNamed = 5;  // stretches
+  std::vector<std::string> named;
+  std::size_t first = 0;
+  while (first < rows.size() && named.size() < kNamed) {
+    std::size_t last = first;
+    while (last + 1 < rows.size() && rows[last + 1] == rows[last] + 1) ++last;
+    named.push_back(std::to_string(rows[first]) +
+                    (last > first ? " to " + std::to_string(rows[last]) : ""));
+    first = last + 1;
+  }
+  return joined(named) +
+         (first < rows.size() ? " and " + std::to_string(rows.size() - first) + " more" : "");
+}
+
+void note_outliers(const ProfileSource& source, Profile& profile) {
+  const std::size_t count = profile.outliers.size();
+  std::vector<std::size_t> rows;
+  for (const OutlierRow& outlier : profile.outliers) rows.push_back(outlier.row);
+  const auto size = [](const OutlierRow& a) { return std::abs(a.value - a.expected); };
+  const OutlierRow& largest = *std::ranges::max_element(profile.outliers, {}, size);
+  const auto in_unit = [&profile](double value) {
+    return profile.setup.quantity == Quantity::height
+               ? significant(value / kMicrometre, 4) + " \u00b5m"
+               : significant(value * 1e6, 4) + " \u00b5rad";
+  };
+  profile.notes.push_back(
+      std::to_string(count) + (count == 1 ? " sample" : " samples") +
+      " that neighbours contradict, " + (source.leave_out_spikes ? "left out" : "kept") +
+      ": data row" + (count == 1 ? " " : "s ") + in_words(rows) +
+      (count == 1 ? ", " : "; the largest in row " + std::to_string(largest.row) + ", ") +
+      in_unit(largest.value) + " where " + in_unit(largest.expected) + " would fit" +
+      (largest.kind == OutlierKind::lost_minus_sign ? ": a lost minus sign?" : ""));
+}
+
+void list_outliers(const ProfileSource& source, std::vector<std::size_t>& rows, Profile& profile) {
+  const std::vector<Outlier> outliers = find_outliers(profile.positions, profile.values);
+  if (outliers.empty()) return;
+  for (const Outlier& each : outliers)
+    profile.outliers.push_back({rows[each.index], each.value, each.expected, each.kind});
+  std::ranges::sort(profile.outliers, {}, &OutlierRow::row);
+  note_outliers(source, profile);
+  if (!source.leave_out_spikes) return;
+  for (const Outlier& each : outliers) profile.values[each.index] = NAN;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < profile.values.size(); ++i) {
+    if (std::isnan(profile.values[i])) continue;
+    profile.positions[kept] = profile.positions[i];
+    profile.values[kept++] = profile.values[i];
+  }
+  profile.positions.resize(kept);
+  profile.values.resize(kept);
+  profile.left_out += outliers.size();
+}
+
 Conversion named_conversion(const ProfileSource& source, const TraceFile& file,
                             const Profile& profile) {
   try {
@@ -167,17 +244,24 @@ void read_profile(const ProfileSource& source, Profile& profile) {
   if (!file.trace.decisions.empty())
     profile.notes.push_back(profile.format + ": " + joined(file.trace.decisions, "; "));
 
-  const bool upwards = keep_window(source.path.string(), convert, profile);
+  std::vector<std::size_t> rows;
+  const bool upwards = keep_window(source, convert, profile, rows);
   require_two_samples(source, profile.positions.size());
   if (profile.missing > 0)
     profile.notes.push_back(std::to_string(profile.missing) +
                             (profile.missing == 1 ? " missing point" : " missing points") +
                             " left out");
+  if (profile.left_out > 0)
+    profile.notes.push_back(std::to_string(profile.left_out) +
+                            (profile.left_out == 1 ? " sample" : " samples") +
+                            " left out by the problem's leave_out");
   if (!upwards) {
+    std::reverse(rows.begin(), rows.end());
     std::reverse(profile.positions.begin(), profile.positions.end());
     std::reverse(profile.values.begin(), profile.values.end());
     profile.notes.emplace_back("trace runs backwards in the file: reversed");
   }
+  list_outliers(source, rows, profile);
   Setup& setup = profile.setup;
   setup.first_mm = profile.positions.front();
   setup.last_mm = profile.positions.back();

@@ -32,6 +32,14 @@ Json combination(const Combination& terms) {
   return object;
 }
 
+Json outlier(const OutlierSummary& each) {
+  return {{"row", each.row},
+          {"value", each.value},
+          {"expected", each.expected},
+          {"unit", each.unit},
+          {"kind", each.kind}};
+}
+
 Json input(const InputSummary& in) {
   Json json = {{"name", in.name},
                {"file", in.file},
@@ -42,6 +50,9 @@ Json input(const InputSummary& in) {
                {"role", in.role},
                {"samples", in.samples},
                {"missing", in.missing},
+               {"left_out", in.left_out},
+               {"outlier_count", in.outlier_count},
+               {"outliers", array_of(in.outliers, outlier)},
                {"position_min_mm", in.position_min_mm},
                {"position_max_mm", in.position_max_mm},
                {"rms_um", or_null(in.rms_um)},

@@ -67,7 +67,8 @@ std::string inputs(const Result& result) {
                number(in.position_min_mm, 5) + " to " + number(in.position_max_mm, 5),
                size_in(in.rms_um, in.rms_urad), size_in(in.pv_um, in.pv_urad)});
     notes += note(in.name + ": " + in.file + ", sha256 " + in.sha256.substr(0, 16) +
-                  (in.missing > 0 ? ", " + counted(in.missing, "missing value") : ""));
+                  (in.missing > 0 ? ", " + counted(in.missing, "missing value") : "") +
+                  (in.left_out > 0 ? ", " + std::to_string(in.left_out) + " left out" : ""));
     for (const std::string& text : in.notes) notes += note(in.name + ": " + text);
   }
   return heading("Inputs") + table.text() + notes;

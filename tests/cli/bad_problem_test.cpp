@@ -90,6 +90,8 @@ const BadInput kWholes[] = {
          "\"split\""}),
     bad("LeverMissingInTheMachine", {.machine = "[machine]\nspindle_position_mm = 1.0\n"},
         {"problem.toml:1: machine.lever: missing", "accepted: \"paper\""}),
+    bad("RowToLeaveOutThatIsNotThere", {.profile_more = "leave_out = [99999]\n"},
+        {"profile 'face': leave_out: data row 99999 is not there", "accepted: 1 to "}),
     bad("OverhangOfThePaper", {.profile_more = "overhang_mm = 2.0\n"},
         {"problem.toml:12: profile.overhang_mm", "accepted: only with lever = \"split\""}),
     bad("CycleInBodies", {.machine = kPaper + body("x_carriage", 2) + body("z_carriage", 1)},

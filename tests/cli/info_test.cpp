@@ -15,6 +15,16 @@ using testing::HasSubstr;
 
 class Info : public ProgramTest {};
 
+TEST_F(Info, ListsSpikesByDataRow) {
+  folder_.file("face.csv", face_csv(30, 12, "12,-9000\n"));
+  const json info = json::parse(run({"info", "face.csv", "--json", "-"}).out);
+  ASSERT_EQ(info["outliers"].size(), 1U);
+  EXPECT_EQ(info["outliers"][0]["row"], 13);
+  EXPECT_EQ(info["outliers"][0]["value"], -9000.0);
+  EXPECT_EQ(info["outliers"][0]["kind"], "spike");
+  EXPECT_THAT(run({"info", "face.csv"}).out, HasSubstr("data row 13: -9000, neighbours say 0."));
+}
+
 TEST_F(Info, TellsWhatAFileHolds) {
   const std::string text = "x [mm];H\xf6he [\xb5m]\n0;3\n0,5;\n1;-1\n1,5;1\n";
   folder_.file("face.txt", text);

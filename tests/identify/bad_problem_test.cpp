@@ -55,6 +55,22 @@ TEST_F(ProblemFile, TakesTimeForAPositionOnlyWithAFeed) {
   EXPECT_EQ(problem.profiles[0].source.position_unit, "s");
 }
 
+TEST_F(ProblemFile, LeavesOutSpikesOrDataRows) {
+  const std::string rule =
+      "profile.leave_out: must be \"spikes\" or a list of data rows, the first one 1: [120, 121]";
+  for (const char* bad : {"true", "12", "[0]", "[1.5]", "[\"spikes\"]", "[-1]"})
+    EXPECT_THAT(profile_refusal(std::string("leave_out = ") + bad), HasSubstr(rule)) << bad;
+  EXPECT_THAT(profile_refusal("leave_out = \"spike\""),
+              HasSubstr("profile.leave_out: \"spike\" is not accepted (did you mean 'spikes'?); "
+                        "accepted: spikes"));
+  EXPECT_TRUE(read(kMachine + profile("leave_out = \"spikes\"") + kEffect)
+                  .profiles[0]
+                  .source.leave_out_spikes);
+  EXPECT_THAT(
+      read(kMachine + profile("leave_out = [120, 121]") + kEffect).profiles[0].source.left_out_rows,
+      ElementsAre(120, 121));
+}
+
 TEST_F(ProblemFile, RefusesWordsThatAreNoDialect) {
   EXPECT_THAT(profile_refusal("delimiter = \"|\""),
               HasSubstr("profile.delimiter: \"|\" is not accepted; accepted: , ; tab blank"));

@@ -12,6 +12,7 @@
 namespace slideway {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -97,6 +98,66 @@ TEST_F(ReadProfile, LeavesOutMissingPointsAndCountsThoseInTheWindow) {
   EXPECT_THAT(profile_.values, ElementsAre(0.001, 0.003, 0.004));
   EXPECT_EQ(profile_.missing, 1U);
   EXPECT_EQ(profile_.notes.back(), "1 missing point left out");
+}
+
+// A straight line with a bad value in data row 6, the missing one of row 3 and the window before
+// it.
+std::string line_with_a_spike() {
+  std::string text = "x,z\n-1,77\n";
+  for (int i = 0; i < 30; ++i)
+    text += std::to_string(i) + "," + (i == 1 ? "" : std::to_string(i == 4 ? 5000 : i * 37 % 101)) +
+            "\n";
+  return text;
+}
+
+TEST_F(ReadProfile, ListsOutliersByTheirDataRowAndKeepsThem) {
+  source_.window = {0.0, 40.0};
+  read(line_with_a_spike());
+  ASSERT_EQ(profile_.outliers.size(), 1U);
+  EXPECT_EQ(profile_.outliers[0].row, 6U);
+  EXPECT_DOUBLE_EQ(profile_.outliers[0].value, 5.0);
+  EXPECT_EQ(profile_.values.size(), 29U);
+  EXPECT_EQ(profile_.left_out, 0U);
+  EXPECT_THAT(
+      profile_.notes.back(),
+      StartsWith("1 sample that neighbours contradict, kept: data row 6, 5000 \u00b5m where "));
+}
+
+TEST_F(ReadProfile, ListsTheSameRowOfATraceThatRunsBackwards) {
+  std::string text;
+  for (int i = 0; i < 30; ++i)
+    text += std::to_string(30 - i) + "," + std::to_string(i == 4 ? 5000 : i * 37 % 101) + "\n";
+  read(text);
+  ASSERT_EQ(profile_.outliers.size(), 1U);
+  EXPECT_EQ(profile_.outliers[0].row, 5U);
+}
+
+TEST_F(ReadProfile, LeavesOutSpikesAndRowsWhereItIsAsked) {
+  source_.window = {0.0, 40.0};
+  source_.leave_out_spikes = true;
+  read(line_with_a_spike());
+  EXPECT_EQ(profile_.left_out, 1U);
+  EXPECT_EQ(profile_.outliers.size(), 1U);
+  EXPECT_EQ(profile_.values.size(), 28U);
+  EXPECT_EQ(profile_.positions.size(), 28U);
+  EXPECT_THAT(profile_.notes, Contains(HasSubstr("contradict, left out: data row 6")));
+
+  profile_ = {};
+  source_.leave_out_spikes = false;
+  source_.left_out_rows = {6, 1, 7, 3, 6};  // 1 is outside the window, 3 is missing anyway
+  read(line_with_a_spike());
+  EXPECT_EQ(profile_.left_out, 2U);
+  EXPECT_EQ(profile_.missing, 1U);
+  EXPECT_EQ(profile_.values.size(), 27U);
+  EXPECT_TRUE(profile_.outliers.empty());
+  EXPECT_EQ(profile_.notes.back(), "2 samples left out by the problem's leave_out");
+}
+
+TEST_F(ReadProfile, RefusesToLeaveOutARowThatIsNotThere) {
+  source_.left_out_rows = {4};
+  EXPECT_THAT([&] { read("0,0\n1,0\n2,0\n"); },
+              ThrowsMessage<UsageError>(
+                  "profile 'face': leave_out: data row 4 is not there; accepted: 1 to 3"));
 }
 
 TEST_F(ReadProfile, HoldsTheUnitOfTheHeaderAgainstTheSource) {

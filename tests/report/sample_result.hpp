@@ -36,6 +36,9 @@ inline std::vector<InputSummary> sample_inputs() {
   face.role = "fit";
   face.samples = 20000;
   face.missing = 1;
+  face.left_out = 1;
+  face.outlier_count = 1;
+  face.outliers = {{120, 2.5, 0.5, "um", "spike"}};
   face.position_max_mm = 10.0;
   face.rms_um = 0.5;
   face.pv_um = 2.0;

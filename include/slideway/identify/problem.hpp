@@ -90,7 +90,8 @@ Problem read_problem(const std::filesystem::path& path,
 std::vector<Profile> read_profiles(const Problem& problem);
 
 /// The problem file without its [truth], each profile's `file` replaced by one of `files` with the
-/// columns x_mm and z_um (slopes: slope_urad), and no window. The same text on every machine.
+/// columns x_mm and z_um (slopes: slope_urad), no window and no
+/// leave_out. The same text on every machine.
 /// REQUIRES one file per profile.
 /// @throws UsageError  the problem file can no longer be read
 std::string simulated_problem_text(const Problem& problem, const std::vector<std::string>& files);

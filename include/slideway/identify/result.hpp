@@ -10,10 +10,20 @@
 /// name says; a number that could not be determined is std::nullopt, never NaN.
 namespace slideway {
 
+/// A sample that its neighbours contradict, by its data row from 1.
+struct OutlierSummary {
+  std::size_t row = 0;
+  double value = 0.0, expected = 0.0;
+  std::string unit, kind;  // um or urad; "spike", "lost minus sign"
+};
+
 struct InputSummary {
   std::string name, file, format, sha256, kind, quantity, role;
   std::size_t samples = 0;
   std::size_t missing = 0;
+  std::size_t left_out = 0;
+  std::size_t outlier_count = 0;
+  std::vector<OutlierSummary> outliers;  // the 20 largest at most, by row
   double position_min_mm = 0.0, position_max_mm = 0.0;
   std::optional<double> rms_um, pv_um;      // heights: about the mean; none for slopes
   std::optional<double> rms_urad, pv_urad;  // slopes

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "slideway/format/format.hpp"
+#include "slideway/profile/outliers.hpp"
 #include "slideway/profile/setup.hpp"
 
 namespace slideway {
@@ -14,6 +15,13 @@ namespace slideway {
 enum class Role {
   fit,
   holdout  // never fitted, only predicted
+};
+
+/// An outlier by its data row, counted from 1 as the file has them; mm or rad.
+struct OutlierRow {
+  std::size_t row = 0;
+  double value = 0.0, expected = 0.0;
+  OutlierKind kind = OutlierKind::spike;
 };
 
 /// One measured profile, ready for use: positions in mm, strictly increasing; values in mm
@@ -27,8 +35,10 @@ struct Profile {
   Role role = Role::fit;
   std::vector<double> positions;
   std::vector<double> values;
-  std::size_t missing = 0;  // points of the file that have no value, left out here
-  bool free_offset = true;  // what levelling left undetermined: nuisances of this profile
+  std::size_t missing = 0;           // points of the file that have no value, left out here
+  std::vector<OutlierRow> outliers;  // what find_outliers() says, left out or not
+  std::size_t left_out = 0;          // samples that are, as the problem asks
+  bool free_offset = true;           // what levelling left undetermined: nuisances of this profile
   bool free_tilt = true;
   std::optional<double> standard_uncertainty;  // of one sample, mm or rad
   std::vector<std::string> notes;              // what was done to the data on the way in
@@ -46,14 +56,19 @@ struct ProfileSource {
   std::string position_unit;                        // of kLengthUnits; "s": time * feed_mm_per_min
   std::string value_unit;                           // of kLengthUnits or kSlopeUnits
   std::optional<std::pair<double, double>> window;  // in position_unit
+  std::vector<std::size_t> left_out_rows;           // data rows treated as missing, from 1
+  bool leave_out_spikes = false;                    // outliers treated as missing
 };
 
 /// Reads, converts and sorts out one profile: window applied, missing points left out, a trace that
-/// runs backwards reversed, cut_radius_mm completed. Notes tell what was decided, and of sizes that
-/// a wrong unit makes. A file that states its units is converted from those.
+/// runs backwards reversed, outliers listed, and left out if asked, cut_radius_mm completed. Notes
+/// tell what was decided, and of sizes that a wrong unit makes. A file that states its units is
+/// converted from those.
 /// @throws DataError   what read_trace() refuses; a unit in the header that is not the source's;
 ///                     naming file and row: unsorted or repeated positions, too few rows
-/// @throws UsageError  no unit, no feed where the positions are times, a cut smaller than the trace
+/// @throws UsageError  no unit, no feed where the positions are times, a cut smaller than the
+/// trace,
+///                     a row to leave out that is not there
 void read_profile(const ProfileSource& source, Profile& profile);
 
 }  // namespace slideway
