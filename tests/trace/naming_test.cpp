@@ -119,7 +119,9 @@ TEST(Named, WhatIsSteepAtTheCentreIsNoOtherAlone) {
     std::vector<std::string> set = named(result);
     for (const TraceRound& round : result.rounds)
       set.insert(set.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
-    if (!result.unnamed) EXPECT_THAT(set, ::testing::Contains("speed_effect"));
+    if (!result.unnamed) {
+      EXPECT_THAT(set, ::testing::Contains("speed_effect"));
+    }
     expect_within_4u(result.after, "squareness.dbeta_xz", turning::kFaceSquareness);
   }
 }
