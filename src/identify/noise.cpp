@@ -43,6 +43,9 @@ class LaggedProducts {
         products_[a][b] = products_[a - 1][b - 1] +
                           columns.row(max_order - a).transpose() * columns.row(max_order - b) -
                           columns.row(n - a).transpose() * columns.row(n - b);
+    for (int a = 0; a <= max_order; ++a)  // they only come in pairs
+      for (int b = a + 1; b <= max_order; ++b)
+        products_[a][b] += products_[a][b].transpose().eval();
   }
 
   /// columns' R^-1 columns, R the correlation structure with unit innovations.
@@ -54,8 +57,7 @@ class LaggedProducts {
     Eigen::MatrixXd out = Eigen::MatrixXd::Zero(head_.cols(), head_.cols());
     for (int a = 0; a <= p; ++a) {
       out += filter[a] * filter[a] * products_[a][a];
-      for (int b = a + 1; b <= p; ++b)
-        out += filter[a] * filter[b] * (products_[a][b] + products_[a][b].transpose());
+      for (int b = a + 1; b <= p; ++b) out += filter[a] * filter[b] * products_[a][b];
     }
     for (int t = 0; t < max_order; ++t) {
       const int m = std::min(t, p);
@@ -246,8 +248,12 @@ class Estimator {
 
   std::vector<Noise> run() {
     constexpr int kSweeps = 3;  // the profiles are coupled only through a few shared parameters
-    for (int sweep = 0; sweep < kSweeps; ++sweep)
-      for (std::size_t i = 0; i < profiles_.size(); ++i) refine(i);
+    constexpr double kSettled = 1e-6;
+    double moved = INFINITY;
+    for (int sweep = 0; sweep < kSweeps && moved > kSettled; ++sweep) {
+      moved = 0.0;
+      for (std::size_t i = 0; i < profiles_.size(); ++i) moved = std::max(moved, refine(i));
+    }
     std::vector<Noise> out;
     for (std::size_t i = 0; i < profiles_.size(); ++i) out.push_back(conclude(i));
     return out;
@@ -284,12 +290,15 @@ class Estimator {
     return rest;
   }
 
-  void refine(std::size_t i) {
+  /// @return the largest change of a parameter
+  double refine(std::size_t i) {
     const Eigen::MatrixXd rest = others(i);
     const Eigen::Index n = profiles_[i].residual.size();
     const auto cost = [&](const Eigen::VectorXd& x) { return likelihood_[i](limited(x, n), rest); };
-    parameters_[i] = limited(minimise(cost, parameters_[i]), n);
+    const Eigen::VectorXd before = parameters_[i];
+    parameters_[i] = limited(minimise(cost, before), n);
     information_[i] = likelihood_[i].information(parameters_[i], nullptr);
+    return (parameters_[i] - before).lpNorm<Eigen::Infinity>();
   }
 
   [[nodiscard]] Noise conclude(std::size_t i) const {
