@@ -75,7 +75,9 @@ TEST(LowBand, GapsLeaveTheOtherCoefficientsAlone) {
   const std::vector<double> expected = applied(whole, signal);
   const std::vector<double> found = applied(gapped, kept_signal);
   for (std::size_t j = 0; j < expected.size(); ++j)
-    if ((j < 5 || j > 8) && j != 12) EXPECT_NEAR(found[j], expected[j], 1e-11) << j;
+    if ((j < 5 || j > 8) && j != 12) {
+      EXPECT_NEAR(found[j], expected[j], 1e-11) << j;
+    }
   // A straight line is what interpolation keeps.
   const std::vector<double> line = applied(gapped, kept_positions);
   EXPECT_THAT(line, Pointwise(DoubleNear(1e-10), applied(whole, positions)));
