@@ -45,7 +45,7 @@ double limit_of(double count) {
 // By how much a limit rises where the scale is the MAD of so few errors: what holds kFalseAlarm in
 // simulations of 10 to 63 white samples. Correlated ones need less.
 double few_factor(std::size_t count) {
-  const double m = static_cast<double>(count);
+  const auto m = static_cast<double>(count);
   return 1.0 + 16.0 / m * (1.0 + 65.0 / (m * m));
 }
 

@@ -100,7 +100,7 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Fit& fit,
                                                         const Eigen::MatrixXd& loose,
                                                         const Candidates& candidates) {
   Whitened data(fit.linear, background_noise(fit, loose), loose);
-  if (candidates.empty()) return {std::move(data), {}};
+  if (candidates.empty()) return {std::move(data), std::vector<Finding>{}};
   std::vector<Finding> findings = search(data, candidates);
   for (int round = 0; round < kNoiseRounds && best_of(findings).delta_bic < 0.0; ++round) {
     const Finding suspect = best_of(findings);

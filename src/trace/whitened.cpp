@@ -42,7 +42,7 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
   basis_ = orthonormal(std::move(span));
   residual_ = stack(linear, 1, [&](std::size_t i) { return linear.residuals[i]; });
   residual_.tail(linear.prior_rows.rows()) = linear.prior_residuals;
-  residual_ = outside(std::move(residual_));
+  residual_ = outside(residual_);
 }
 
 void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
