@@ -3,6 +3,7 @@
 #include "output.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/report/report.hpp"
+#include "slideway/trace/analysis.hpp"
 
 namespace slideway {
 namespace po = boost::program_options;
@@ -29,15 +30,6 @@ ProblemCommand::ProblemCommand(std::string name, std::string arguments, std::str
                 "read a file whose checksum is wrong; the report then says so");
 }
 
-template <typename Error, typename Work>
-auto ProblemCommand::in_problem(Work&& work) const {
-  try {
-    return work();
-  } catch (const Error& error) {
-    throw Error(input_ + ": " + error.what());
-  }
-}
-
 void ProblemCommand::add_strict() {
   add_options()("strict", po::bool_switch(&strict_), "exit code 4 if the verdict is negative");
 }
@@ -49,20 +41,14 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
     keep_input(entry.source.path, json_file());
     entry.source.request.ignore_checksum = ignore_checksum_;
   }
-  const std::vector<Profile> profiles =
-      in_problem<UsageError>([&] { return read_profiles(problem); });
-  const Result result = in_problem<UsageError>(
-      [&] { return in_problem<DataError>([&] { return identify(problem, profiles, scope); }); });
-  std::optional<TraceResult> trace;
-  if (closes_loop) {
-    const ProgressLine line(!is_quiet());
-    trace = close_loop(problem, profiles,
-                       [&](const std::string& stage) { line.show("closing the loop: " + stage); });
-  }
-  const TraceResult* found = trace ? &*trace : nullptr;
-  report([&] { return text_report(result, found); }, [&] { return json_report(result, found); });
-  const bool negative = is_negative(result) || (trace && is_negative(*trace));
-  return strict_ && negative ? kNegativeVerdict : kDone;
+  const Analysis analysis = [&] {
+    const ProgressLine line(closes_loop && !is_quiet());
+    return analyse(problem, read_profiles(problem), {scope, closes_loop},
+                   [&](const std::string& stage) { line.show("closing the loop: " + stage); });
+  }();
+  report([&] { return text_report(analysis.result, analysis.trace); },
+         [&] { return json_report(analysis.result, analysis.trace); });
+  return strict_ && is_negative(analysis) ? kNegativeVerdict : kDone;
 }
 
 std::optional<std::filesystem::path> data_directory(const std::string& option) {

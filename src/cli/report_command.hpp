@@ -39,10 +39,6 @@ class ProblemCommand : public ReportCommand {
   [[nodiscard]] const std::string& input() const { return input_; }
 
  private:
-  /// What the work returns; an error of this kind gets the problem file in front.
-  template <typename Error, typename Work>
-  auto in_problem(Work&& work) const;
-
   std::string input_, data_;
   bool strict_ = false, ignore_checksum_ = false;
 };

@@ -284,6 +284,8 @@ std::vector<Profile> read_profiles(const Problem& problem) {
       read_profile(entry.source, profiles.back());
     } catch (const DataError& error) {
       throw DataError("profile '" + entry.profile.name + "': " + error.what());
+    } catch (const UsageError& error) {
+      throw UsageError(problem.path.string() + ": " + error.what());
     }
   }
   return profiles;

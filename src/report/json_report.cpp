@@ -187,7 +187,7 @@ void require_finite(const Json& json, const std::string& path) {
 
 }  // namespace
 
-std::string json_report(const Result& result, const TraceResult* trace) {
+std::string json_report(const Result& result, const std::optional<TraceResult>& trace) {
   const RankingResult ranking = result.ranking.value_or(RankingResult{});
   Json report = {{"schema", "slideway.report/1"},
                  {"version", result.version},

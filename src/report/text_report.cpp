@@ -337,7 +337,7 @@ std::string notes(const FitResult& fit) {
 
 }  // namespace
 
-std::string text_report(const Result& result, const TraceResult* trace) {
+std::string text_report(const Result& result, const std::optional<TraceResult>& trace) {
   std::string text = title(result) + inputs(result) + low_band(result);
   if (result.ranking) text += ranking(*result.ranking);
   text += dominant(result.dominant);

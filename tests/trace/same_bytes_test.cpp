@@ -17,7 +17,7 @@ TEST(SameBytes, RunForRun) {
   const Problem problem = problem_of();
   const auto report = [&] {
     const TraceResult trace = close_loop(problem, cut);
-    return json_report(identify(problem, cut), &trace);
+    return json_report(identify(problem, cut), trace);
   };
   const std::string first = report();
   EXPECT_THAT(first, ::testing::HasSubstr("slide_periodic"));

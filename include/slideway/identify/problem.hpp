@@ -86,7 +86,7 @@ struct Problem {
 Problem read_problem(const std::filesystem::path& path,
                      const std::optional<std::filesystem::path>& data_dir = std::nullopt);
 
-/// Reads all profiles of a problem, in order. @throws DataError
+/// Reads all profiles of a problem, in order. @throws DataError, UsageError
 std::vector<Profile> read_profiles(const Problem& problem);
 
 /// The problem file without its [truth], each profile's `file` replaced by one of `files` with the

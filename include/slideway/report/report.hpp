@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "slideway/identify/result.hpp"
@@ -10,10 +11,10 @@ namespace slideway {
 /// The report as JSON, schema "slideway.report/1", two blanks of indent and a final newline.
 /// Deterministic: keys in a fixed order, numbers in their shortest round-trip form.
 /// @throws std::logic_error if a number is not finite.
-std::string json_report(const Result& result, const TraceResult* trace = nullptr);
+std::string json_report(const Result& result, const std::optional<TraceResult>& trace = {});
 
 /// The report for people: aligned plain text in at most 80 columns, values with units, at most two
 /// digits of uncertainty.
-std::string text_report(const Result& result, const TraceResult* trace = nullptr);
+std::string text_report(const Result& result, const std::optional<TraceResult>& trace = {});
 
 }  // namespace slideway
