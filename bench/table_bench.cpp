@@ -30,9 +30,16 @@ void BM_ReadTable(benchmark::State& state) {
   const std::array<std::string, 2> columns{"x_mm", "z_um"};
   for (auto _ : state) benchmark::DoNotOptimize(read_table(path, columns));
   state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(text.size()));
+  state.counters["bytes"] = static_cast<double>(text.size());
   std::filesystem::remove(path);
 }
-BENCHMARK(BM_ReadTable)->Arg(20000)->Arg(1000000)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_ReadTable)
+    ->Arg(20'000)
+    ->Arg(1'000'000)
+    ->Arg(10'000'000)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 void BM_Sha256(benchmark::State& state) {
   const std::string text = profile_text(state.range(0));
