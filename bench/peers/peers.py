@@ -55,8 +55,9 @@ def run_timed(n, command):
     return statistics.median(processor), min(wall), memory
 
 
-def ours(program, pattern):
-    """{name: median processor time in s} of a benchmark program"""
+def ours(program, benchmark):
+    """{name: median processor time in s} of a benchmark program at the sizes of this run"""
+    pattern = f"{benchmark}/(.*/)?({'|'.join(map(str, SIZES))})/process_time"
     out = subprocess.run(
         [BIN / program, f"--benchmark_filter={pattern}", "--benchmark_format=json",
          "--benchmark_repetitions=3", "--benchmark_min_time=0.05"],

@@ -300,7 +300,8 @@ Bands reconstruct_bands(const Wavelet& wavelet, Boundary boundary, int levels,
   bands.approximations.resize(count);
   bands.details.resize(count);
   const std::span<const std::size_t> lengths(parts.lengths);
-  parallel_for(count + (count > 0 ? 1 : 0), [&](std::size_t j) {  // a_L, then d_1 ... d_L
+  constexpr std::size_t kPart = 1 << 16;     // samples: all bands of a part stay in the cache
+  const auto restore = [&](std::size_t j) {  // a_L, then d_1 ... d_L
     std::array<std::vector<double>, 2> scratch;
     if (j == 0)
       to_full_length(wavelet, boundary, lengths, parts.approximation, {}, scratch,
@@ -308,9 +309,14 @@ Bands reconstruct_bands(const Wavelet& wavelet, Boundary boundary, int levels,
     else
       to_full_length(wavelet, boundary, lengths.first(j), {}, parts.details[j - 1], scratch,
                      bands.details[j - 1]);
-  });
+  };
+  const std::size_t restored = count > 0 ? count + 1 : 0;
+  if (signal.size() <= kPart) {  // not worth a thread
+    for (std::size_t j = 0; j < restored; ++j) restore(j);
+  } else {
+    parallel_for(restored, restore);
+  }
   for (std::size_t j = count; j > 1; --j) bands.approximations[j - 2].resize(signal.size());
-  constexpr std::size_t kPart = 1 << 16;  // samples: all bands of a part stay in the cache
   parallel_for((signal.size() + kPart - 1) / kPart, [&](std::size_t part) {
     const std::size_t first = part * kPart, last = std::min(signal.size(), first + kPart);
     for (std::size_t j = count; j > 1; --j)  // a_(j-1) = a_j + d_j

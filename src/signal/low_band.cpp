@@ -39,7 +39,8 @@ bool is_uniform(std::span<const double> positions) {
   const auto n = std::ssize(positions) - 1;
   const Eigen::Map<const Eigen::ArrayXd> before(positions.data(), n),
       after(positions.data() + 1, n);
-  const double least = (after - before).minCoeff(), most = (after - before).maxCoeff();
+  const double least = (after - before).minCoeff<Eigen::PropagateNaN>();
+  const double most = (after - before).maxCoeff<Eigen::PropagateNaN>();
   if (least * mean > 0.0 && most * mean > 0.0)
     return std::max(std::abs(least - mean), std::abs(most - mean)) <= kUniform * std::abs(mean);
   bool uniform = true;
