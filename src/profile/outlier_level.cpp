@@ -85,8 +85,14 @@ bool Level::any_above(double least) const {
   std::vector<char> above(parts_of(last - first));
   parallel_for(above.size(), [&](std::size_t part) {
     const std::size_t from = first + part * kPart, to = std::min(last, from + kPart);
-    for (std::size_t i = from; i < to && above[part] == 0; ++i)
-      above[part] = judged(i) && std::abs(error(i) - middle) > least;
+    double largest = 0.0;
+    if (uniform)
+      for (std::size_t i = from; i < to; ++i)
+        largest = std::max(largest, std::abs(even_error(i) - middle));
+    else
+      for (std::size_t i = from; i < to; ++i)
+        if (judged(i)) largest = std::max(largest, std::abs(uneven_error(i) - middle));
+    above[part] = largest > least;
   });
   return std::ranges::find(above, 1) != above.end();
 }
