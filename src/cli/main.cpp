@@ -1,6 +1,9 @@
 #include <malloc.h>
+#include <sys/mman.h>
 
 #include <csignal>
+#include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <new>
@@ -74,6 +77,19 @@ int run(const std::vector<std::string>& arguments) {
   return command->run();
 }
 
+// Fresh pages cost more than the arithmetic on them: what a matrix gives back serves the next, and
+// the pages are huge ones where the system has them.
+void prepare_memory() {
+  constexpr std::size_t kRoom = 1 << 30, kHugePage = 1 << 21;
+  mallopt(M_MMAP_THRESHOLD, kRoom);
+  mallopt(M_TRIM_THRESHOLD, kRoom);
+  void* const room = std::malloc(kRoom - kHugePage);  // addresses only, no memory yet
+  if (room == nullptr) return;
+  const auto first = (reinterpret_cast<std::uintptr_t>(room) + kHugePage - 1) & ~(kHugePage - 1);
+  ::madvise(reinterpret_cast<void*>(first), kRoom - 2 * kHugePage, MADV_HUGEPAGE);
+  std::free(room);
+}
+
 int failed(int code, std::string_view message) {
   say(message);
   return code;
@@ -84,9 +100,7 @@ int failed(int code, std::string_view message) {
 
 int main(int argc, char** argv) {
   using namespace slideway;
-  // Memory a matrix gives back serves the next: fresh pages cost more than the arithmetic on them.
-  mallopt(M_MMAP_THRESHOLD, 1 << 30);
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  prepare_memory();
   // A closed pipe or a file beyond the limit is a failed write, reported as one.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "slideway/effects/effect.hpp"
 
@@ -36,32 +37,45 @@ CarriageReading carriage_reading(const Stations& stations, int body, double pitc
 bool sees_carriage(const Setup& setup);
 
 // Fills `out` with what every kind of reading shows of the loci `basis(x, value, slope)`, which
-// sets two rows of out.cols() numbers: f_j(x) and f_j'(x).
+// sets a column of f_j(x) and one of f_j'(x) for each column of out, at as many x as there are
+// rows.
 template <typename Basis>
 void fill_from_locus(const Stations& stations, const CarriageReading& reading, Basis&& basis,
                      Eigen::Ref<Eigen::MatrixXd> out) {
+  constexpr Eigen::Index kStrip = 256;  // samples: what the cache holds
   const Setup& setup = stations.setup();
   if (!sees_carriage(setup)) return void(out.setZero());
-  Eigen::RowVectorXd value(out.cols());
-  Eigen::RowVectorXd slope(out.cols());
-  Eigen::RowVectorXd behind(out.cols());
+  const auto along = [](const AlongCut& cut, const Eigen::ArrayXd& r) {
+    return cut.at_centre + cut.per_mm * r;
+  };
+  Eigen::ArrayXd x, r;
+  Eigen::ArrayXXd value, slope, behind;
   const double ratio = reading.pitch_ratio;
-  for (Eigen::Index i = 0; i < stations.size(); ++i) {
-    const double x = stations.slide(i);
+  for (Eigen::Index first = 0; first < stations.size(); first += kStrip) {
+    const Eigen::Index count = std::min(kStrip, stations.size() - first);
+    x.resize(count);
+    r.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      x[i] = stations.slide(first + i);
+      r[i] = stations.radius(first + i);
+    }
+    for (Eigen::ArrayXXd* each : {&value, &slope, &behind}) each->resize(count, out.cols());
+    auto rows = out.middleRows(first, count).array();
     if (setup.quantity == Quantity::slope && setup.base_mm) {
-      basis(x - *setup.base_mm / 2.0, behind, slope);
-      basis(x + *setup.base_mm / 2.0, value, slope);
-      out.row(i) = ratio / *setup.base_mm * (value - behind);
+      basis(Eigen::ArrayXd(x - *setup.base_mm / 2.0), behind, slope);
+      basis(Eigen::ArrayXd(x + *setup.base_mm / 2.0), value, slope);
+      rows = ratio / *setup.base_mm * (value - behind);
       continue;
     }
     basis(x, value, slope);
     if (setup.quantity == Quantity::slope) {
-      out.row(i) = ratio * slope;
+      rows = ratio * slope;
     } else if (setup.kind == Kind::slide) {
-      out.row(i) = value;
+      rows = value;
     } else {
-      const double r = stations.radius(i);
-      out.row(i) = reading.height(r) * value + reading.pitch(r) * ratio * slope;
+      const Eigen::ArrayXd height = along(reading.height, r);
+      const Eigen::ArrayXd pitch = along(reading.pitch, r) * ratio;
+      rows = value.colwise() * height + slope.colwise() * pitch;
     }
   }
 }

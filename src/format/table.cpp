@@ -1,6 +1,7 @@
 #include "slideway/format/table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -13,6 +14,7 @@
 #include "fields.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
+#include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/format/format.hpp"
 
@@ -20,6 +22,8 @@ namespace slideway {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kChunk = 1 << 20;  // bytes read at a time, up to the end of a line
+constexpr std::size_t kTogether = 16;    // chunks that are read at once
 
 class Reader {
  public:
@@ -37,7 +41,10 @@ class Reader {
   [[nodiscard]] std::string_view rest_of_line(const char* at) const;
   void pass_line(const char* stop);
   bool to_next_line();
-  [[nodiscard]] std::size_t estimate_rows() const;
+  void read_plain_rows(const char* regular_end, std::vector<std::vector<double>>& columns);
+  void read_rows(std::vector<std::vector<double>>& columns);
+  void read_all_rows(std::vector<std::vector<double>>& columns);
+  Reader take_chunk();
   [[nodiscard]] bool is_padding(char c) const {
     return c == ' ' || c == '\r' || (c == '\t' && dialect_.delimiter != '\t');
   }
@@ -50,16 +57,17 @@ class Reader {
   void read_irregular_row();
   double read_missing(std::string_view field, const Target& target, bool ends_text);
   [[noreturn]] void refuse(const std::string& what) const {
-    throw DataError("line " + std::to_string(line_) + what);
+    const auto line = dialect_.first_line + static_cast<std::size_t>(std::count(first_, at_, '\n'));
+    throw DataError("line " + std::to_string(line) + what);
   }
   [[nodiscard]] std::string name_of(std::size_t column) const;
   [[noreturn]] void refuse_field(std::string_view field, std::size_t column) const;
 
   const TableRequest* request_;
   Dialect dialect_;
-  const char* at_;  // start of the line at hand
+  const char* first_;  // row of the text
+  const char* at_;     // start of the line at hand
   const char* end_;
-  std::size_t line_;
   bool last_is_target_ = false;  // nothing but delimiters may follow the last value of a row
   std::size_t missing_ = 0;
   std::vector<Target> targets_;  // by column
@@ -68,9 +76,9 @@ class Reader {
 Reader::Reader(std::string_view text, const std::string& encoding, const TableRequest& request)
     : request_(&request),
       dialect_(find_dialect(text, encoding, request)),
-      at_(text.data() + dialect_.first_row),
-      end_(text.data() + text.size()),
-      line_(dialect_.first_line) {
+      first_(text.data() + dialect_.first_row),
+      at_(first_),
+      end_(text.data() + text.size()) {
   const std::vector<std::size_t>& columns = dialect_.columns;
   for (std::size_t slot = 0; slot < columns.size(); ++slot)
     if (std::find(columns.begin(), columns.begin() + slot, columns[slot]) == columns.begin() + slot)
@@ -89,7 +97,6 @@ std::string_view Reader::rest_of_line(const char* at) const {
 // Ends the line at hand, of which everything before `stop` has been read.
 void Reader::pass_line(const char* stop) {
   at_ = *stop == '\n' ? stop + 1 : std::min(end_, stop + rest_of_line(stop).size() + 1);
-  ++line_;
 }
 
 // Goes on to the first line, from the one at hand on, that is neither empty nor a comment.
@@ -100,14 +107,6 @@ bool Reader::to_next_line() {
     if (first < end_ && *first != '\n' && *first != '#') return true;
   }
   return false;
-}
-
-std::size_t Reader::estimate_rows() const {
-  const auto rest = static_cast<std::size_t>(end_ - at_);
-  const std::size_t sample = std::min<std::size_t>(rest, 4096);
-  const auto lines = static_cast<std::size_t>(std::count(at_, at_ + sample, '\n')) + 1;
-  // No row is shorter than one character and one delimiter a column.
-  return std::min(rest / sample * (lines + 1) + lines, rest / (2 * targets_.back().column + 2) + 1);
 }
 
 // From the start of one field to the start of the next; nullptr if it is the last or quoted.
@@ -190,6 +189,83 @@ void Reader::read_irregular_row() {
            ", as the rows before it have");
 }
 
+// Appends the rows from the one at hand on that are two numbers, a delimiter and nothing else: what
+// instruments write, read in half the time.
+void Reader::read_plain_rows(const char* regular_end, std::vector<std::vector<double>>& columns) {
+  const bool plain = last_is_target_ && targets_.size() == 2 && targets_[0].column == 0 &&
+                     targets_[1].column == 1 && dialect_.delimiter != kBlanks;
+  std::array<std::array<double, 256>, 2> rows;
+  std::size_t count = rows[0].size();
+  while (plain && count == rows[0].size()) {
+    for (count = 0; count < rows[0].size() && at_ < regular_end; ++count) {
+      const char* at = read_number(at_, end_, dialect_.decimal, rows[0][count]);
+      if (!at || *at != dialect_.delimiter) break;
+      at = read_number(at + 1, end_, dialect_.decimal, rows[1][count]);
+      if (!at) break;
+      at += *at == '\r';
+      if (*at != '\n') break;
+      at_ = at + 1;
+    }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      std::vector<double>& column = columns[targets_[i].slot];
+      column.insert(column.end(), rows[i].begin(), rows[i].begin() + count);
+    }
+  }
+}
+
+// Appends the rows of the text, or of a chunk of it, to the columns asked for.
+void Reader::read_rows(std::vector<std::vector<double>>& columns) {
+  const std::string_view rest(at_, static_cast<std::size_t>(end_ - at_));
+  const char* const regular_end = at_ + (rest.rfind('\n') + 1);  // at_ if there is no newline
+  for (read_plain_rows(regular_end, columns); to_next_line();
+       read_plain_rows(regular_end, columns)) {
+    const char* stop = at_ < regular_end ? read_row(at_) : nullptr;
+    if (!stop) {
+      read_irregular_row();
+      stop = at_;
+    }
+    for (const Target& target : targets_) columns[target.slot].push_back(target.value);
+    pass_line(stop);
+  }
+}
+
+// A reader of the next lines, which this one passes.
+Reader Reader::take_chunk() {
+  Reader chunk = *this;
+  if (static_cast<std::size_t>(end_ - at_) > kChunk)
+    chunk.end_ = std::min(end_, at_ + kChunk + rest_of_line(at_ + kChunk).size() + 1);
+  at_ = chunk.end_;
+  return chunk;
+}
+
+// Where the chunks begin and the order of what is in them do not depend on the number of threads.
+void Reader::read_all_rows(std::vector<std::vector<double>>& columns) {
+  const auto size = static_cast<double>(end_ - at_);
+  std::vector<std::vector<std::vector<double>>> read(kTogether);
+  while (at_ < end_) {
+    std::vector<Reader> chunks;
+    while (at_ < end_ && chunks.size() < kTogether) chunks.push_back(take_chunk());
+    parallel_for(chunks.size(), [&](std::size_t i) {
+      read[i].resize(columns.size());
+      for (std::vector<double>& column : read[i]) column.clear();
+      chunks[i].read_rows(read[i]);
+    });
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+      missing_ += chunks[i].missing_;
+      for (const Target& target : targets_) {
+        std::vector<double>& column = columns[target.slot];
+        const std::vector<double>& more = read[i][target.slot];
+        if (column.empty()) {  // 2 % for shorter lines to come
+          const auto bytes = static_cast<double>(chunks[i].end_ - first_);
+          column.reserve(
+              static_cast<std::size_t>(1.02 * static_cast<double>(more.size()) * (size / bytes)));
+        }
+        column.insert(column.end(), more.begin(), more.end());
+      }
+    }
+  }
+}
+
 Table Reader::read() {
   Table table;
   table.names = dialect_.names;
@@ -197,20 +273,10 @@ Table Reader::read() {
   table.decisions.push_back(dialect_.decision);
   table.columns.resize(dialect_.columns.size());
   if (targets_.empty()) return table;
-  const std::size_t rows = estimate_rows();
-  for (const Target& target : targets_) table.columns[target.slot].reserve(rows);
-
-  const std::string_view rest(at_, static_cast<std::size_t>(end_ - at_));
-  const char* const regular_end = at_ + (rest.rfind('\n') + 1);  // at_ if there is no newline
-  while (to_next_line()) {
-    const char* stop = at_ < regular_end ? read_row(at_) : nullptr;
-    if (!stop) {
-      read_irregular_row();
-      stop = at_;
-    }
-    for (const Target& target : targets_) table.columns[target.slot].push_back(target.value);
-    pass_line(stop);
-  }
+  if (static_cast<std::size_t>(end_ - at_) > kChunk)
+    read_all_rows(table.columns);
+  else
+    read_rows(table.columns);
   const std::vector<std::size_t>& columns = dialect_.columns;
   for (std::size_t slot = 0; slot < columns.size(); ++slot) {
     const auto first = std::find(columns.begin(), columns.end(), columns[slot]) - columns.begin();

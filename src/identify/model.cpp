@@ -1,20 +1,31 @@
 #include "slideway/identify/model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/signal/low_band_parts.hpp"
 
 namespace slideway {
 namespace {
+
+// The samples between which the slide coordinate of all others lies: the ends of the trace and the
+// two next to the spindle axis.
+std::array<Eigen::Index, 4> extreme_samples(const Profile& profile) {
+  const std::vector<double>& s = profile.positions;
+  const Eigen::Index last = std::ssize(s) - 1;
+  const Eigen::Index axis = std::ranges::lower_bound(s, profile.setup.center_mm) - s.begin();
+  return {0, std::clamp<Eigen::Index>(axis - 1, 0, last), std::min(axis, last), last};
+}
 
 TravelRange travel_range(const std::vector<Profile>& profiles, const Machine& machine) {
   TravelRange range{INFINITY, -INFINITY, INFINITY, -INFINITY};
   for (const Profile& profile : profiles) {
     const Stations stations = profile.stations(machine);
-    for (Eigen::Index i = 0; i < stations.size(); ++i) {
+    for (const Eigen::Index i : extreme_samples(profile)) {
       range.slide_min = std::min(range.slide_min, stations.slide(i));
       range.slide_max = std::max(range.slide_max, stations.slide(i));
     }
@@ -33,23 +44,24 @@ TravelRange travel_range(const std::vector<Profile>& profiles, const Machine& ma
 
 /// Offset and tilt of the trace. A slope reading knows no offset of height, and a tilt of the line
 /// is the zero of the reading: one constant column.
-Eigen::MatrixXd nuisance_columns(const Profile& profile, std::vector<std::string>& names) {
+Eigen::MatrixXd nuisance_columns(const Profile& profile, const LowBand& low_band,
+                                 std::vector<std::string>& names) {
   const auto n = static_cast<Eigen::Index>(profile.positions.size());
   const bool slope = profile.setup.quantity == Quantity::slope;
-  std::vector<Eigen::VectorXd> columns;
-  if (slope ? (profile.free_offset || profile.free_tilt) : profile.free_offset) {
-    columns.emplace_back(Eigen::VectorXd::Ones(n));
+  if (slope ? (profile.free_offset || profile.free_tilt) : profile.free_offset)
     names.emplace_back(slope ? "zero" : "offset");
-  }
-  if (!slope && profile.free_tilt) {
-    const double middle = 0.5 * (profile.setup.first_mm + profile.setup.last_mm);
-    columns.emplace_back(Eigen::Map<const Eigen::VectorXd>(profile.positions.data(), n).array() -
-                         middle);
-    names.emplace_back("tilt");
-  }
-  Eigen::MatrixXd out(n, static_cast<Eigen::Index>(columns.size()));
-  for (Eigen::Index j = 0; j < out.cols(); ++j) out.col(j) = columns[j];
-  return out;
+  if (!slope && profile.free_tilt) names.emplace_back("tilt");
+  const double middle = 0.5 * (profile.setup.first_mm + profile.setup.last_mm);
+  const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
+    const Eigen::Map<const Eigen::ArrayXd> s(profile.positions.data() + first, rows.rows());
+    for (Eigen::Index j = 0; j < rows.cols(); ++j) {
+      if (names[static_cast<std::size_t>(j)] == "tilt")
+        rows.col(j) = s - middle;
+      else
+        rows.col(j).setOnes();
+    }
+  };
+  return apply_in_parts(low_band, n, std::ssize(names), fill);
 }
 
 }  // namespace
@@ -66,15 +78,22 @@ void leave_out(Observation& observation, const std::vector<Eigen::Index>& values
 namespace {
 
 Observation observe(const Profile& profile, const LowBandOptions& options) {
-  std::vector<std::string> names;
-  const Eigen::MatrixXd nuisances = nuisance_columns(profile, names);
   LowBand low_band(options, profile.positions);
-  Eigen::VectorXd values(low_band.values());
-  low_band.apply(profile.values, {values.data(), static_cast<std::size_t>(values.size())});
-  Observation out{&profile, std::move(low_band), std::move(values), {}, std::move(names)};
-  out.nuisances = out.low_band.apply(nuisances);
+  const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
+    rows = Eigen::Map<const Eigen::VectorXd>(profile.values.data() + first, rows.rows());
+  };
+  Eigen::VectorXd values = apply_in_parts(low_band, std::ssize(profile.values), 1, fill);
+  Observation out{&profile, std::move(low_band), std::move(values), {}, {}};
+  out.nuisances = nuisance_columns(profile, out.low_band, out.nuisance_names);
   leave_out(out, out.low_band.hollow());
   return out;
+}
+
+Stations part_of(const Profile& profile, const Machine& machine, Eigen::Index first,
+                 Eigen::Index count) {
+  const std::span<const double> positions = profile.positions;
+  return {positions.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)),
+          profile.setup, machine};
 }
 
 void require_metadata(const ModelTerm& term, const Profile& profile) {
@@ -155,10 +174,10 @@ Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
   const Eigen::Index amplitudes = term.effect->amplitudes();
   if (!term.effect->applies_to(profile.setup))
     return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
-  const Stations stations = profile.stations(model.machine);
-  Eigen::MatrixXd columns(stations.size(), amplitudes);
-  term.effect->columns(stations, shape, columns);
-  return observation.low_band.apply(columns);
+  const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
+    term.effect->columns(part_of(profile, model.machine, first, rows.rows()), shape, rows);
+  };
+  return apply_in_parts(observation.low_band, std::ssize(profile.positions), amplitudes, fill);
 }
 
 Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
@@ -178,10 +197,11 @@ Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
             low_band_columns(model, term, observation, below)) /
            (2.0 * reach);
   }
-  const Stations stations = profile.stations(model.machine);
-  Eigen::MatrixXd columns(stations.size(), amplitudes);
-  term.effect->derivatives(stations, shape, which, columns);
-  return observation.low_band.apply(columns);
+  const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
+    term.effect->derivatives(part_of(profile, model.machine, first, rows.rows()), shape, which,
+                             rows);
+  };
+  return apply_in_parts(observation.low_band, std::ssize(profile.positions), amplitudes, fill);
 }
 
 Eigen::VectorXd effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,

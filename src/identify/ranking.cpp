@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <set>
 
 #include "residual.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/format/table.hpp"
 #include "slideway/signal/correlation.hpp"
@@ -140,12 +142,17 @@ std::string doubt(const Lead& correlation, const Lead& share, const Identifiabil
 RankingResult rank_effects(const Model& model, const Fit& fit) {
   RankingResult out;
   for (const Observation& observation : model.observations) {
-    std::vector<Signal> signals;
-    for (const ModelTerm& term : model.terms) {
-      if (!term.effect->applies_to(observation.profile->setup)) continue;
-      signals.push_back(signal_of(model, fit, term, observation));
-      out.entries.push_back(rank_one(signals.back(), observation));
-    }
+    std::vector<const ModelTerm*> terms;
+    for (const ModelTerm& term : model.terms)
+      if (term.effect->applies_to(observation.profile->setup)) terms.push_back(&term);
+    std::vector<Signal> signals(terms.size());
+    std::vector<Ranking> entries(terms.size());
+    parallel_for(terms.size(), [&](std::size_t i) {
+      signals[i] = signal_of(model, fit, *terms[i], observation);
+      entries[i] = rank_one(signals[i], observation);
+      signals[i].raw.resize(0);
+    });
+    std::ranges::move(entries, std::back_inserter(out.entries));
     compare_candidates(signals, observation.profile->name, out);
   }
   if (model.terms.size() > 1)

@@ -6,9 +6,12 @@
 #include <cmath>
 
 #include "residual.hpp"
+#include "slideway/base/parallel.hpp"
 
 namespace slideway {
 namespace {
+
+constexpr Eigen::Index kLarge = 1 << 14;  // low-band values that are worth a second thread
 
 Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Eigen::MatrixXd& columns) {
   constexpr double kStep = 1e-3;  // of atanh π and ln σ
@@ -20,8 +23,16 @@ Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Eigen::MatrixXd&
     const Eigen::MatrixXd z = coloured(noise.at(moved), columns);
     return Eigen::MatrixXd(z.transpose() * z);
   };
-  for (Eigen::Index j = 0; j < at.size(); ++j)
-    out.derivatives.emplace_back((gram(j, kStep) - gram(j, -kStep)) / (2.0 * kStep));
+  const auto differentiate = [&](std::size_t j) {
+    const auto moved = static_cast<Eigen::Index>(j);
+    out.derivatives[j] = (gram(moved, kStep) - gram(moved, -kStep)) / (2.0 * kStep);
+  };
+  out.derivatives.resize(static_cast<std::size_t>(at.size()));
+  if (columns.rows() < kLarge) {
+    for (std::size_t j = 0; j < out.derivatives.size(); ++j) differentiate(j);
+  } else {
+    parallel_for(out.derivatives.size(), differentiate);
+  }
   return out;
 }
 

@@ -4,29 +4,19 @@
 #include <cmath>
 #include <functional>
 
+#include "outlier_level.hpp"
+#include "slideway/base/parallel.hpp"
+
 namespace slideway {
 namespace {
 
-constexpr double kFalseAlarm = 1e-3;        // per profile
-constexpr std::size_t kLeast = 10;          // samples
-constexpr std::size_t kShort = 64;          // samples; fewer are held against second differences
-constexpr int kCoarsest = 4;                // means of 2^4 samples
-constexpr std::size_t kNear = 32;           // errors on either side
-constexpr std::size_t kScaleFrom = 2048;    // errors: the scale of more is that of a part of them
-constexpr std::size_t kWindow = 16;         // values that make one peak
-constexpr std::size_t kLonely = 4;          // peaks that may be half as large, or ...
-constexpr std::size_t kPerPeak = 1000;      // ... one in so many values
-constexpr double kUniform = 1e-3;           // of the mean step
-constexpr double kGap = 1.9;                // steps
-constexpr double kMad = 1.482602218505602;  // of a normal distribution
-constexpr double kGolden = 0.6180339887498949;
-constexpr double kGain = 1.4;  // of rounding in a prediction error
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
+constexpr double kFalseAlarm = 1e-3;  // per profile
+constexpr std::size_t kLeast = 10;    // samples
+constexpr std::size_t kShort = 64;    // samples; fewer are held against second differences
+constexpr int kCoarsest = 4;          // means of 2^4 samples
+constexpr double kUniform = 1e-3;     // of the mean step
+constexpr double kGap = 1.9;          // steps
+constexpr double kGain = 1.4;         // of rounding in a prediction error
 
 double mean(std::span<const double> values, std::size_t first, std::size_t count) {
   double sum = 0.0;
@@ -40,162 +30,6 @@ double limit_of(double count) {
   for (int i = 0; i < 4; ++i)
     z = std::sqrt(2.0 * std::log(2.0 * count / (kFalseAlarm * std::sqrt(2.0 * M_PI) * z)));
   return z;
-}
-
-// By how much a limit rises where the scale is the MAD of so few errors: what holds kFalseAlarm in
-// simulations of 10 to 63 white samples. Correlated ones need less.
-double few_factor(std::size_t count) {
-  const auto m = static_cast<double>(count);
-  return 1.0 + 16.0 / m * (1.0 + 65.0 / (m * m));
-}
-
-// A profile or its means, and how a value follows from its neighbours: from those `lag` to either
-// side (second difference), or by a cubic from those 2 lag away as well (fourth difference).
-struct Level {
-  std::vector<double> positions, values;
-  std::size_t lag = 1;
-  bool cubic = true;
-  bool uniform = true;
-  double widest = 0.0;  // step that is no gap
-
-  std::vector<double> errors;  // about their median; 0 where not judged
-  double middle = 0.0, scale = 0.0;
-  double rounding = 0.0;  // standard deviation of what rounding makes of an error
-
-  [[nodiscard]] std::size_t outermost() const { return cubic ? 2 * lag : lag; }
-  // Errors that far away know nothing of a value and its next ones.
-  [[nodiscard]] std::size_t touched() const { return cubic ? 3 * lag - 1 : lag; }
-  [[nodiscard]] bool judged(std::size_t i) const;
-  [[nodiscard]] double error(std::size_t i) const {
-    return uniform ? even_error(i) : uneven_error(i);
-  }
-  [[nodiscard]] double even_error(std::size_t i) const {
-    const double* z = values.data() + i;
-    const auto d = static_cast<std::ptrdiff_t>(lag);
-    return cubic ? z[0] - (2.0 / 3.0) * (z[-d] + z[d]) + (1.0 / 6.0) * (z[-2 * d] + z[2 * d])
-                 : z[0] - 0.5 * (z[-d] + z[d]);
-  }
-  [[nodiscard]] double uneven_error(std::size_t i) const;
-  void find_scale();
-  void find_errors();
-  [[nodiscard]] double scale_of(std::vector<double>& part) const;
-  [[nodiscard]] double scale_at(std::size_t i, double limit) const;
-  [[nodiscard]] double peak_of_structure() const;
-  [[nodiscard]] bool missed_from_either_side(std::size_t i, double error) const;
-};
-
-bool Level::judged(std::size_t i) const {
-  if (uniform) return true;
-  for (std::size_t j = i - outermost() + 1; j <= i + outermost(); ++j)
-    if (positions[j] - positions[j - 1] > widest) return false;
-  return true;
-}
-
-double Level::uneven_error(std::size_t i) const {
-  const double *z = values.data() + i, *s = positions.data() + i;
-  const auto d = static_cast<std::ptrdiff_t>(lag);
-  const auto meet = [s](std::ptrdiff_t a, double at_a, std::ptrdiff_t b, double at_b) {
-    return (at_a * (s[b] - s[0]) - at_b * (s[a] - s[0])) / (s[b] - s[a]);
-  };
-  const double inner = meet(-d, z[-d], d, z[d]);
-  if (!cubic) return z[0] - inner;
-  // Neville's scheme
-  const double left = meet(-2 * d, z[-2 * d], -d, z[-d]), right = meet(d, z[d], 2 * d, z[2 * d]);
-  const double before = meet(-2 * d, left, d, inner), after = meet(-d, inner, 2 * d, right);
-  return z[0] - meet(-2 * d, before, 2 * d, after);
-}
-
-// The middle of all errors, and their scale.
-void Level::find_scale() {
-  const std::size_t first = outermost(), count = values.size() - 2 * first;
-  const std::size_t take = std::min(count, kScaleFrom);
-  std::vector<double> part;
-  double along = 0.0;
-  for (std::size_t k = 0; k < take; ++k) {
-    // By the golden section: every so many-th might keep step with the feed.
-    along += along + kGolden < 1.0 ? kGolden : kGolden - 1.0;
-    const std::size_t i =
-        first + (take == count ? k : static_cast<std::size_t>(along * static_cast<double>(count)));
-    if (judged(i)) part.push_back(error(i));
-  }
-  if (!cubic && !part.empty()) middle = median(part);  // the curvature of the whole
-  for (double& each : part) each -= middle;
-  scale = scale_of(part);
-}
-
-void Level::find_errors() {
-  const std::size_t first = outermost(), last = values.size() - first;
-  errors.assign(values.size(), 0.0);
-  if (uniform)
-    for (std::size_t i = first; i < last; ++i) errors[i] = even_error(i) - middle;
-  else
-    for (std::size_t i = first; i < last; ++i)
-      if (judged(i)) errors[i] = uneven_error(i) - middle;
-}
-
-// The standard deviation of normal errors by their MAD, which rounding may make too small.
-double Level::scale_of(std::vector<double>& part) const {
-  for (double& error : part) error = std::abs(error);
-  return (part.empty() ? 0.0 : kMad * median(part)) + rounding;
-}
-
-// The scale beside a value, or if that is larger, of all errors. Of a short profile that of all
-// errors it does not touch, larger by what the median of so few may be too small, and such that
-// `limit` times it is twice what recurs.
-double Level::scale_at(std::size_t i, double limit) const {
-  const std::size_t first = outermost(), last = values.size() - first;
-  const std::size_t left = std::max(first, i - std::min(i, touched()));
-  const std::size_t right = std::min(last, i + touched() + 1);
-  std::vector<double> part;
-  const auto add = [&](std::size_t from, std::size_t to) {
-    for (std::size_t j = from; j < to; ++j) part.push_back(errors[j]);
-  };
-  if (!cubic) {
-    add(first, left);
-    add(right, last);
-    const double others = scale_of(part) * few_factor(part.size());
-    // One other spike makes three large errors.
-    if (part.size() <= 3) return INFINITY;
-    std::ranges::nth_element(part, part.begin() + 3, std::greater<>());
-    return std::max(others, 2.0 * part[3] / limit);
-  }
-  double out = scale * few_factor(values.size());
-  if (left >= first + kNear) {
-    add(left - kNear, left);
-    out = std::max(out, scale_of(part));
-    part.clear();
-  }
-  if (right + kNear <= last) {
-    add(right, right + kNear);
-    out = std::max(out, scale_of(part));
-  }
-  return out;
-}
-
-// What an error must be twice as large as: so many peaks may be larger.
-double Level::peak_of_structure() const {
-  if (!cubic) return 0.0;
-  std::vector<double> peaks;
-  for (std::size_t i = 0; i < errors.size(); i += kWindow) {
-    double peak = 0.0;
-    for (std::size_t j = i; j < std::min(i + kWindow, errors.size()); ++j)
-      peak = std::max(peak, std::abs(errors[j]));
-    peaks.push_back(peak);
-  }
-  const std::size_t lonely = std::max(kLonely, errors.size() / kPerPeak);
-  if (lonely >= peaks.size()) return 0.0;
-  std::ranges::nth_element(peaks, peaks.begin() + static_cast<std::ptrdiff_t>(lonely),
-                           std::greater<>());
-  return peaks[lonely];
-}
-
-bool Level::missed_from_either_side(std::size_t i, double error) const {
-  const auto misses = [&](std::size_t near, std::size_t far) {
-    const double slope = (values[near] - values[far]) / (positions[near] - positions[far]);
-    const double miss = values[i] - (values[near] + slope * (positions[i] - positions[near]));
-    return miss * error > 0.0 && std::abs(miss) > 0.5 * std::abs(error);
-  };
-  return misses(i - lag, i - 2 * lag) && misses(i + lag, i + 2 * lag);
 }
 
 class Search {
@@ -212,32 +46,57 @@ class Search {
   [[nodiscard]] double between(std::size_t left, std::size_t right, std::size_t i) const;
 
   std::span<const double> positions_, values_;
-  std::vector<double> clean_;  // values; what was found, as expected
-  std::vector<char> found_;
-  Level level_;  // the one looked at
+  std::span<const double> clean_;  // values; what was found, as expected
+  std::vector<double> cleaned_;    // those, once something was found
+  std::vector<char> found_;        // by sample; empty until then
+  Level level_;                    // the one looked at
+  std::vector<double> level_positions_, level_values_;
   bool uniform_ = true;
   double step_ = 0.0;      // median
   double rounding_ = 0.0;  // standard deviation of a value's rounding
   double scale_ = 0.0;     // of the error of one sample
 };
 
+// Smallest and largest steps and changes of a profile.
+struct Extremes {
+  double least_step = INFINITY, largest_step = -INFINITY;
+  double resolution = INFINITY;  // smallest change of the values
+  double largest = 0.0;          // value but the first
+};
+
+Extremes extremes_of(std::span<const double> positions, std::span<const double> values) {
+  const std::size_t n = values.size();
+  std::vector<Extremes> parts(parts_of(n - 1));
+  parallel_for(parts.size(), [&](std::size_t part) {
+    Extremes all;
+    for (std::size_t i = part * kPart + 1; i < std::min(n, (part + 1) * kPart + 1); ++i) {
+      const double step = positions[i] - positions[i - 1];
+      const double change = std::abs(values[i] - values[i - 1]);
+      all.least_step = std::min(all.least_step, step);
+      all.largest_step = std::max(all.largest_step, step);
+      all.resolution = std::min(all.resolution, change > 0.0 ? change : INFINITY);
+      all.largest = std::max(all.largest, std::abs(values[i]));
+    }
+    parts[part] = all;
+  });
+  Extremes out;
+  for (const Extremes& part : parts)
+    out = {std::min(out.least_step, part.least_step), std::max(out.largest_step, part.largest_step),
+           std::min(out.resolution, part.resolution), std::max(out.largest, part.largest)};
+  return out;
+}
+
 Search::Search(std::span<const double> positions, std::span<const double> values)
-    : positions_(positions),
-      values_(values),
-      clean_(values.begin(), values.end()),
-      found_(values.size(), 0) {
+    : positions_(positions), values_(values), clean_(values) {
   const std::size_t n = values.size();
   const double mean = (positions[n - 1] - positions[0]) / static_cast<double>(n - 1);
-  double resolution = INFINITY, largest = 0.0, off = 0.0;
-  for (std::size_t i = 1; i < n; ++i) {
-    off = std::max(off, std::abs(positions[i] - positions[i - 1] - mean));
-    const double change = std::abs(values[i] - values[i - 1]);
-    resolution = change > 0.0 ? std::min(resolution, change) : resolution;
-    largest = std::max(largest, std::abs(values[i]));
-  }
+  const Extremes extremes = extremes_of(positions, values);
+  const double off =
+      std::max(std::abs(extremes.least_step - mean), std::abs(extremes.largest_step - mean));
   uniform_ = off <= kUniform * mean;
-  rounding_ = 1e-12 * largest;
-  if (std::isfinite(resolution)) rounding_ = std::max(rounding_, resolution / std::sqrt(12.0));
+  rounding_ = 1e-12 * extremes.largest;
+  if (std::isfinite(extremes.resolution))
+    rounding_ = std::max(rounding_, extremes.resolution / std::sqrt(12.0));
   std::vector<double> steps;
   for (std::size_t i = 1; i < n; i += 1 + n / kScaleFrom)
     steps.push_back(positions[i] - positions[i - 1]);
@@ -251,24 +110,32 @@ void Search::fill_level(int halvings) {
   const std::size_t block = std::size_t{1} << halvings, n = size() / block;
   level_.cubic = !is_short();
   level_.uniform = uniform_;
+  level_.block = block;
   level_.widest = kGap * step_ * static_cast<double>(block);
   level_.rounding = kGain * rounding_ / std::sqrt(static_cast<double>(block));
-  level_.positions.resize(n);
-  level_.values.resize(n);
-  for (std::size_t j = 0; j < n; ++j) {
-    const double ends = positions_[j * block] + positions_[(j + 1) * block - 1];
-    level_.positions[j] = uniform_ ? 0.5 * ends : mean(positions_, j * block, block);
-    level_.values[j] = mean(clean_, j * block, block);
-  }
+  level_.samples = level_.positions = positions_;
+  level_.values = clean_;
+  if (block == 1) return;
+  level_positions_.resize(uniform_ ? 0 : n);
+  level_values_.resize(n);
+  parallel_for(parts_of(n), [&](std::size_t part) {
+    for (std::size_t j = part * kPart; j < std::min(n, (part + 1) * kPart); ++j) {
+      if (!uniform_) level_positions_[j] = mean(positions_, j * block, block);
+      level_values_[j] = mean(clean_, j * block, block);
+    }
+  });
+  level_.positions = level_positions_;
+  level_.values = level_values_;
 }
 
 void Search::look(int halvings, std::size_t lag) {
   if (level_.values.size() != size() >> halvings) fill_level(halvings);
   level_.lag = lag;
   level_.find_scale();
-  level_.find_errors();
   const double limit = limit_of(3.0 * static_cast<double>(size()));  // errors of all levels
   const double least = is_short() ? 0.0 : limit * level_.scale;
+  if (!level_.any_above(least)) return;
+  level_.find_errors();
   std::vector<std::size_t> candidates;
   for (std::size_t i = 2 * lag; i + 2 * lag < level_.errors.size(); ++i)
     if (std::abs(level_.errors[i]) > least) candidates.push_back(i);
@@ -295,7 +162,7 @@ double Search::between(std::size_t left, std::size_t right, std::size_t i) const
 void Search::take_out(int halvings, std::size_t i, double error) {
   const std::size_t block = std::size_t{1} << halvings;
   const std::size_t from = (i - level_.lag + 1) * block, to = (i + level_.lag) * block;
-  const double left = level_.positions[i - level_.lag], right = level_.positions[i + level_.lag];
+  const double left = level_.position(i - level_.lag), right = level_.position(i + level_.lag);
   const auto deviation = [&](std::size_t k) {
     const double along = (positions_[k] - left) / (right - left);
     const double expected =
@@ -309,15 +176,21 @@ void Search::take_out(int halvings, std::size_t i, double error) {
   std::size_t first = peak, last = peak;
   while (first > from && deviation(first - 1) > least) --first;
   while (last + 1 < to && deviation(last + 1) > least) ++last;
+  if (found_.empty()) {
+    cleaned_.assign(values_.begin(), values_.end());
+    clean_ = cleaned_;
+    found_.resize(size());
+    if (block == 1) level_.values = clean_;
+  }
   for (std::size_t k = first; k <= last; ++k) found_[k] = 1;
-  for (std::size_t k = first; k <= last; ++k) clean_[k] = between(first - 1, last + 1, k);
-  for (std::size_t j = first / block; j <= last / block; ++j)
-    level_.values[j] = mean(clean_, j * block, block);
+  for (std::size_t k = first; k <= last; ++k) cleaned_[k] = between(first - 1, last + 1, k);
+  for (std::size_t j = first / block; block > 1 && j <= last / block; ++j)
+    level_values_[j] = mean(clean_, j * block, block);
 }
 
 std::vector<Outlier> Search::found() const {
   std::vector<Outlier> out;
-  for (std::size_t first = 0, last = 0; first < size(); first = last + 1) {
+  for (std::size_t first = 0, last = 0; first < found_.size(); first = last + 1) {
     last = first;
     if (found_[first] == 0) continue;
     while (found_[last + 1] != 0) ++last;

@@ -1,7 +1,10 @@
 #include "slideway/profile/profile.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <iterator>
+#include <span>
 #include <utility>
 
 #include "slideway/base/error.hpp"
@@ -73,31 +76,98 @@ Conversion conversion(const ProfileSource& source, const TraceFile& file, const 
   return out;
 }
 
-// The data rows to leave out, by index. A row may be named twice.
-std::vector<char> marked_rows(const ProfileSource& source, const std::string& name,
-                              std::size_t rows) {
-  std::vector<char> marked(rows, 0);
-  for (const std::size_t row : source.left_out_rows) {
+// The data rows to leave out, ascending. A row may be named twice.
+std::vector<std::size_t> marked_rows(const ProfileSource& source, const std::string& name,
+                                     std::size_t rows) {
+  std::vector<std::size_t> marked = source.left_out_rows;
+  for (const std::size_t row : marked)
     if (row == 0 || row > rows)
       throw UsageError("profile '" + name + "': leave_out: data row " + std::to_string(row) +
                        " is not there; accepted: 1 to " + std::to_string(rows));
-    marked[row - 1] = 1;
-  }
+  std::ranges::sort(marked);
   return marked;
 }
+
+// The data row of each sample, as runs of rows that follow one another.
+class DataRows {
+ public:
+  void add(std::size_t sample, std::size_t row, std::size_t count) {
+    if (runs_.empty() || runs_.back().second + (sample - runs_.back().first) != row)
+      runs_.emplace_back(sample, row);
+    samples_ = sample + count;
+  }
+  void reverse() { reversed_ = true; }
+  std::size_t operator[](std::size_t sample) const {
+    if (reversed_) sample = samples_ - 1 - sample;
+    const auto after = std::ranges::upper_bound(runs_, sample, {}, &Run::first);
+    return std::prev(after)->second + (sample - std::prev(after)->first);
+  }
+
+ private:
+  using Run = std::pair<std::size_t, std::size_t>;  // its first sample and that one's row
+  std::vector<Run> runs_;
+  std::size_t samples_ = 0;
+  bool reversed_ = false;
+};
+
+// Samples converted together, as most are: none missing, outside the window or out of order.
+class PlainSamples {
+ public:
+  static constexpr std::size_t kCount = 1024;
+
+  // False if one of them is not plain.
+  bool convert(const Conversion& convert, std::span<const double> positions,
+               std::span<const double> values, double last, bool upwards) {
+    double largest = 0.0, missing = 0.0;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      positions_[i] = convert.to_mm(convert.position(positions[i]));
+      values_[i] = convert.value(values[i]);
+    }
+    for (std::size_t i = 0; i < kCount; ++i) {
+      largest = std::max({largest, std::abs(positions_[i]), std::abs(values_[i])});
+      missing += values_[i] - values_[i];  // NaN if one is
+    }
+    const double sign = upwards ? 1.0 : -1.0;
+    double least = sign * (positions_[0] - last);
+    for (std::size_t i = 1; i < kCount; ++i)
+      least = std::min(least, sign * (positions_[i] - positions_[i - 1]));
+    return largest <= kLargest && least > 0.0 && missing == 0.0;
+  }
+  void write(double* positions, double* values) const {
+    std::ranges::copy(positions_, positions);
+    std::ranges::copy(values_, values);
+  }
+
+ private:
+  std::array<double, kCount> positions_, values_;
+};
 
 // Keeps the samples inside the window that have a value and are not left out, in place and in our
 // units. `rows` are their data rows. Returns whether they run upwards.
 bool keep_window(const ProfileSource& source, const Conversion& convert, Profile& profile,
-                 std::vector<std::size_t>& rows) {
+                 DataRows& rows) {
   const std::string file = source.path.string();
-  const std::vector<char> left_out = marked_rows(source, profile.name, profile.positions.size());
+  const std::vector<std::size_t> left_out =
+      marked_rows(source, profile.name, profile.positions.size());
   std::vector<double>& positions = profile.positions;
   std::vector<double>& values = profile.values;
+  const bool may_be_plain = !convert.window && left_out.empty();
+  PlainSamples plain;
   std::size_t kept = 0;
   bool upwards = true;
   double last = 0.0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (may_be_plain && i % PlainSamples::kCount == 0 && kept > 1 &&
+        positions.size() - i >= PlainSamples::kCount &&
+        plain.convert(convert, std::span(positions).subspan(i), std::span(values).subspan(i),
+                      positions[kept - 1], upwards)) {
+      last = positions[i + PlainSamples::kCount - 1];
+      plain.write(&positions[kept], &values[kept]);
+      rows.add(kept, i + 1, PlainSamples::kCount);
+      kept += PlainSamples::kCount;
+      i += PlainSamples::kCount - 1;
+      continue;
+    }
     const double given = positions[i];
     if (convert.window && !(given >= convert.window->first && given <= convert.window->second))
       continue;
@@ -105,7 +175,7 @@ bool keep_window(const ProfileSource& source, const Conversion& convert, Profile
       ++profile.missing;
       continue;
     }
-    if (left_out[i] != 0) {
+    if (std::ranges::binary_search(left_out, i + 1)) {
       ++profile.left_out;
       continue;
     }
@@ -122,7 +192,7 @@ bool keep_window(const ProfileSource& source, const Conversion& convert, Profile
     last = given;
     positions[kept] = position;
     values[kept] = value;
-    rows.push_back(i + 1);
+    rows.add(kept, i + 1, 1);
     ++kept;
   }
   positions.resize(kept);
@@ -154,10 +224,10 @@ void complete_cut_radius(const std::string& name, Setup& setup) {
 // Sizes that nobody turns or measures with: a unit or a digit is more likely wrong.
 void note_blunders(Profile& profile) {
   const Setup& setup = profile.setup;
-  const auto [low, high] = std::minmax_element(profile.values.begin(), profile.values.end());
+  const auto [low, high] = std::ranges::minmax(profile.values);
   constexpr double kLargestRange = 1.0, kLargestFeed = 10000.0, kLargestSpeed = 1e5;
-  if (setup.quantity == Quantity::height && *high - *low > kLargestRange)
-    profile.notes.push_back("heights range over " + significant(*high - *low, 3) +
+  if (setup.quantity == Quantity::height && high - low > kLargestRange)
+    profile.notes.push_back("heights range over " + significant(high - low, 3) +
                             " mm, more than 1 mm: is value_unit right?");
   if (setup.feed_mm_per_min.value_or(0.0) > kLargestFeed)
     profile.notes.push_back("feed_mm_per_min = " + shortest(*setup.feed_mm_per_min) +
@@ -203,7 +273,7 @@ void note_outliers(const ProfileSource& source, Profile& profile) {
       (largest.kind == OutlierKind::lost_minus_sign ? ": a lost minus sign?" : ""));
 }
 
-void list_outliers(const ProfileSource& source, std::vector<std::size_t>& rows, Profile& profile) {
+void list_outliers(const ProfileSource& source, const DataRows& rows, Profile& profile) {
   const std::vector<Outlier> outliers = find_outliers(profile.positions, profile.values);
   if (outliers.empty()) return;
   for (const Outlier& each : outliers)
@@ -244,7 +314,7 @@ void read_profile(const ProfileSource& source, Profile& profile) {
   if (!file.trace.decisions.empty())
     profile.notes.push_back(profile.format + ": " + joined(file.trace.decisions, "; "));
 
-  std::vector<std::size_t> rows;
+  DataRows rows;
   const bool upwards = keep_window(source, convert, profile, rows);
   require_two_samples(source, profile.positions.size());
   if (profile.missing > 0)
@@ -256,7 +326,7 @@ void read_profile(const ProfileSource& source, Profile& profile) {
                             (profile.left_out == 1 ? " sample" : " samples") +
                             " left out by the problem's leave_out");
   if (!upwards) {
-    std::reverse(rows.begin(), rows.end());
+    rows.reverse();
     std::reverse(profile.positions.begin(), profile.positions.end());
     std::reverse(profile.values.begin(), profile.values.end());
     profile.notes.emplace_back("trace runs backwards in the file: reversed");

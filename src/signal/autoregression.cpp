@@ -90,21 +90,21 @@ void Autoregression::colour(Eigen::Ref<Eigen::MatrixXd> rows) const {
 
 void Autoregression::colour_transposed(Eigen::Ref<Eigen::MatrixXd> rows) const {
   const std::span<const double> settled = predictor(order());
-  for (Eigen::Index column = 0; column < rows.cols(); ++column) {
-    double* v = rows.col(column).data();
-    Eigen::Index t = rows.rows() - 1;
-    for (; t >= order(); --t) {
-      const double now = v[t];
-      double* before = v + t;
+  Eigen::Index t = rows.rows() - 1;
+  // One row of all columns at a time: each waits for the row after it, not for its neighbours.
+  for (; t >= order(); --t)
+    for (Eigen::Index column = 0; column < rows.cols(); ++column) {
+      double* before = rows.col(column).data() + t;
+      const double now = *before;
       for (const double phi : settled) *--before += phi * now;
     }
-    for (; t >= 0; --t) {
-      const int m = static_cast<int>(t);
+  for (; t >= 0; --t)
+    for (Eigen::Index column = 0; column < rows.cols(); ++column) {
+      double* v = rows.col(column).data();
       double* before = v + t;
-      for (const double phi : predictor(m)) *--before += phi * v[t];
-      v[t] *= std::sqrt(relative_variance(m));
+      for (const double phi : predictor(static_cast<int>(t))) *--before += phi * v[t];
+      v[t] *= std::sqrt(relative_variance(static_cast<int>(t)));
     }
-  }
 }
 
 double Autoregression::log_determinant(Eigen::Index n) const {

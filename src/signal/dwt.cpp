@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <functional>
 #include <string>
 
 #include "slideway/base/error.hpp"
+#include "slideway/base/parallel.hpp"
 
 namespace slideway {
 namespace {
@@ -82,61 +82,88 @@ class Extension {
   Boundary boundary_;
 };
 
+// The filters of one level, high only if there is one, and where their outputs go.
+struct Pair {
+  const double *low, *high;
+  double *low_out, *high_out;
+};
+
 // out[o] = Σ_j filter[j] x[2 o + taps - 1 - j]. Taps = 0: their number is known at run time only.
-template <int Taps>
-void convolve(std::span<const double> filter, const double* x, Index count, double* out) {
-  const Index taps = Taps > 0 ? Taps : std::ssize(filter);
-  const double* f = filter.data();
+template <int Taps, bool High>
+void convolve(const Pair& pair, Index taps, const double* x, Index count) {
+  if constexpr (Taps > 0) taps = Taps;
+  const double *low = pair.low, *high = pair.high;
+  double *low_out = pair.low_out, *high_out = pair.high_out;
   for (Index o = 0; o < count; ++o, x += 2) {
-    double sum = 0.0;
-    for (Index j = 0; j < taps; ++j) sum += f[j] * x[taps - 1 - j];
-    out[o] = sum;
+    double low_sum = 0.0, high_sum = 0.0;
+    for (Index j = 0; j < taps; ++j) {
+      low_sum += low[j] * x[taps - 1 - j];
+      if constexpr (High) high_sum += high[j] * x[taps - 1 - j];
+    }
+    low_out[o] = low_sum;
+    if constexpr (High) high_out[o] = high_sum;
   }
 }
 
-void convolve(std::span<const double> filter, const double* x, Index count, double* out) {
-  switch (filter.size()) {
+template <int Taps>
+void convolve(const Pair& pair, Index taps, const double* x, Index count) {
+  if (pair.high != nullptr)
+    convolve<Taps, true>(pair, taps, x, count);
+  else
+    convolve<Taps, false>(pair, taps, x, count);
+}
+
+void convolve(const Pair& pair, Index taps, const double* x, Index count) {
+  switch (taps) {
     case 2:
-      return convolve<2>(filter, x, count, out);
+      return convolve<2>(pair, taps, x, count);
     case 4:
-      return convolve<4>(filter, x, count, out);
+      return convolve<4>(pair, taps, x, count);
     case 6:
-      return convolve<6>(filter, x, count, out);
+      return convolve<6>(pair, taps, x, count);
     case 8:
-      return convolve<8>(filter, x, count, out);
+      return convolve<8>(pair, taps, x, count);
     default:
-      return convolve<0>(filter, x, count, out);
+      return convolve<0>(pair, taps, x, count);
   }
 }
 
-// One filter and the dyadic decimation. The filter's window of output o is x[start + 2 o] onwards;
-// only windows that reach beyond an end ask for the extension.
-void downsample(std::span<const double> filter, Boundary boundary, std::span<const double> signal,
-                std::vector<double>& out) {
+// Both filters, or the low one, and the dyadic decimation. The filters' window of output o is
+// x[start + 2 o] onwards; only windows that reach beyond an end ask for the extension.
+void downsample(const Wavelet& wavelet, Boundary boundary, std::span<const double> signal,
+                std::vector<double>& low, std::vector<double>* high) {
   const Index n = std::ssize(signal);
-  const Index taps = std::ssize(filter);
-  out.resize(dwt_length(signal.size(), static_cast<int>(taps), boundary));
-  const Index count = std::ssize(out);
+  const Index taps = wavelet.taps();
+  low.resize(dwt_length(signal.size(), static_cast<int>(taps), boundary));
+  if (high != nullptr) high->resize(low.size());
+  const Index count = std::ssize(low);
   const Index start = (boundary == Boundary::periodization ? taps / 2 : 1) - taps + 1;
   const Index first_inside = std::min((1 - start) / 2, count);
   const Index end_inside = std::max(first_inside, (n - taps - start + 2) / 2);
+  const auto outputs = [&](Index o) {
+    const bool both = high != nullptr;
+    return Pair{wavelet.decompose_low.data(), both ? wavelet.decompose_high.data() : nullptr,
+                low.data() + o, both ? high->data() + o : nullptr};
+  };
 
-  std::vector<double> window(filter.size());
+  std::vector<double> window(static_cast<std::size_t>(taps));
   const Extension extended(signal, boundary);
   const auto at_an_end = [&](Index o) {
     for (Index k = 0; k < taps; ++k) window[k] = extended(start + 2 * o + k);
-    convolve(filter, window.data(), 1, &out[o]);
+    convolve(outputs(o), taps, window.data(), 1);
   };
   for (Index o = 0; o < first_inside; ++o) at_an_end(o);
   if (end_inside > first_inside)
-    convolve(filter, signal.data() + start + 2 * first_inside, end_inside - first_inside,
-             out.data() + first_inside);
+    convolve(outputs(first_inside), taps, signal.data() + start + 2 * first_inside,
+             end_inside - first_inside);
   for (Index o = end_inside; o < count; ++o) at_an_end(o);
 }
 
-// out[2 i] += Σ_j filter[2 j] c[i - j], out[2 i + 1] += Σ_j filter[2 j + 1] c[i - j].
+// out[2 i] += Σ_j filter[2 j] c[i - j], out[2 i + 1] += Σ_j filter[2 j + 1] c[i - j]; as if from
+// zeros if `fresh`.
 template <int Half>
-void add_pairs(std::span<const double> filter, const double* c, Index count, double* out) {
+void add_pairs(bool fresh, std::span<const double> filter, const double* c, Index count,
+               double* out) {
   const Index half = Half > 0 ? Half : std::ssize(filter) / 2;
   const double* f = filter.data();
   for (Index i = 0; i < count; ++i) {
@@ -146,31 +173,32 @@ void add_pairs(std::span<const double> filter, const double* c, Index count, dou
       even += f[2 * j] * c[i - j];
       odd += f[2 * j + 1] * c[i - j];
     }
-    out[2 * i] += even;
-    out[2 * i + 1] += odd;
+    out[2 * i] = (fresh ? 0.0 : out[2 * i]) + even;
+    out[2 * i + 1] = (fresh ? 0.0 : out[2 * i + 1]) + odd;
   }
 }
 
-void add_pairs(std::span<const double> filter, const double* c, Index count, double* out) {
+void add_pairs(bool fresh, std::span<const double> filter, const double* c, Index count,
+               double* out) {
   switch (filter.size()) {
     case 2:
-      return add_pairs<1>(filter, c, count, out);
+      return add_pairs<1>(fresh, filter, c, count, out);
     case 4:
-      return add_pairs<2>(filter, c, count, out);
+      return add_pairs<2>(fresh, filter, c, count, out);
     case 6:
-      return add_pairs<3>(filter, c, count, out);
+      return add_pairs<3>(fresh, filter, c, count, out);
     case 8:
-      return add_pairs<4>(filter, c, count, out);
+      return add_pairs<4>(fresh, filter, c, count, out);
     default:
-      return add_pairs<0>(filter, c, count, out);
+      return add_pairs<0>(fresh, filter, c, count, out);
   }
 }
 
 // Adds the dyadic upsampling of c, filtered: with u = m + shift, i = floor(u / 2), p = u mod 2,
 // signal[m] += Σ_j filter[2 j + p] c[i - j]. The transform is orthonormal on a circle of twice as
 // many samples as coefficients under periodization, hence the indices that wrap there.
-void add_upsampled(std::span<const double> filter, Boundary boundary, std::span<const double> c,
-                   std::vector<double>& signal) {
+void add_upsampled(bool fresh, std::span<const double> filter, Boundary boundary,
+                   std::span<const double> c, std::vector<double>& signal) {
   if (c.empty()) return;
   const Index n = std::ssize(signal);
   const Index size = std::ssize(c);
@@ -181,6 +209,7 @@ void add_upsampled(std::span<const double> filter, Boundary boundary, std::span<
 
   const auto at_an_end = [&](Index m) {
     const Index i = (m + shift) / 2;
+    if (fresh) signal[m] = 0.0;
     for (Index j = 0; j < half; ++j) {
       const Index k = wraps ? floor_mod(i - j, size) : i - j;
       if (k >= 0 && k < size) signal[m] += f[2 * j + (m + shift) % 2] * c[k];
@@ -190,7 +219,7 @@ void add_upsampled(std::span<const double> filter, Boundary boundary, std::span<
   const Index end = std::max(first, std::min(size, (n + shift) / 2));
   for (Index m = 0; m < std::min(n, 2 * first - shift); ++m) at_an_end(m);
   if (end > first)
-    add_pairs(filter, c.data() + first, end - first, signal.data() + 2 * first - shift);
+    add_pairs(fresh, filter, c.data() + first, end - first, signal.data() + 2 * first - shift);
   for (Index m = 2 * end - shift; m < n; ++m) at_an_end(m);
 }
 
@@ -235,15 +264,15 @@ std::size_t dwt_length(std::size_t n, int taps, Boundary boundary) {
 void dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> signal,
          std::vector<double>& low, std::vector<double>* high) {
   if (signal.empty()) throw DataError("signal: 0 samples; accepted: at least 1");
-  downsample(wavelet.decompose_low, boundary, signal, low);
-  if (high != nullptr) downsample(wavelet.decompose_high, boundary, signal, *high);
+  downsample(wavelet, boundary, signal, low, high);
 }
 
 void inverse_dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> low,
                  std::span<const double> high, std::size_t n, std::vector<double>& signal) {
-  signal.assign(n, 0.0);
-  add_upsampled(wavelet.reconstruct_low, boundary, low, signal);
-  add_upsampled(wavelet.reconstruct_high, boundary, high, signal);
+  signal.resize(n);
+  if (low.empty() && high.empty()) std::ranges::fill(signal, 0.0);
+  add_upsampled(true, wavelet.reconstruct_low, boundary, low, signal);
+  add_upsampled(low.empty(), wavelet.reconstruct_high, boundary, high, signal);
 }
 
 Decomposition decompose(const Wavelet& wavelet, Boundary boundary, int levels,
@@ -270,19 +299,30 @@ Bands reconstruct_bands(const Wavelet& wavelet, Boundary boundary, int levels,
   Bands bands;
   bands.approximations.resize(count);
   bands.details.resize(count);
-  std::array<std::vector<double>, 2> scratch;
   const std::span<const std::size_t> lengths(parts.lengths);
-  for (std::size_t j = 1; j <= count; ++j)
-    to_full_length(wavelet, boundary, lengths.first(j), {}, parts.details[j - 1], scratch,
-                   bands.details[j - 1]);
-  if (count > 0)
-    to_full_length(wavelet, boundary, lengths, parts.approximation, {}, scratch,
-                   bands.approximations[count - 1]);
-  for (std::size_t j = count; j > 1; --j) {  // a_(j-1) = a_j + d_j
-    bands.approximations[j - 2].resize(signal.size());
-    std::ranges::transform(bands.approximations[j - 1], bands.details[j - 1],
-                           bands.approximations[j - 2].begin(), std::plus<>());
+  constexpr std::size_t kPart = 1 << 16;     // samples: all bands of a part stay in the cache
+  const auto restore = [&](std::size_t j) {  // a_L, then d_1 ... d_L
+    std::array<std::vector<double>, 2> scratch;
+    if (j == 0)
+      to_full_length(wavelet, boundary, lengths, parts.approximation, {}, scratch,
+                     bands.approximations[count - 1]);
+    else
+      to_full_length(wavelet, boundary, lengths.first(j), {}, parts.details[j - 1], scratch,
+                     bands.details[j - 1]);
+  };
+  const std::size_t restored = count > 0 ? count + 1 : 0;
+  if (signal.size() <= kPart) {  // not worth a thread
+    for (std::size_t j = 0; j < restored; ++j) restore(j);
+  } else {
+    parallel_for(restored, restore);
   }
+  for (std::size_t j = count; j > 1; --j) bands.approximations[j - 2].resize(signal.size());
+  parallel_for((signal.size() + kPart - 1) / kPart, [&](std::size_t part) {
+    const std::size_t first = part * kPart, last = std::min(signal.size(), first + kPart);
+    for (std::size_t j = count; j > 1; --j)  // a_(j-1) = a_j + d_j
+      for (std::size_t i = first; i < last; ++i)
+        bands.approximations[j - 2][i] = bands.approximations[j - 1][i] + bands.details[j - 1][i];
+  });
   return bands;
 }
 

@@ -36,6 +36,13 @@ void check_size(const LowBandOptions& options, std::size_t samples) {
 // Whether the steps are all the same. A trace that turns back or stands still has no grid.
 bool is_uniform(std::span<const double> positions) {
   const double mean = mean_step(positions);
+  const auto n = std::ssize(positions) - 1;
+  const Eigen::Map<const Eigen::ArrayXd> before(positions.data(), n),
+      after(positions.data() + 1, n);
+  const double least = (after - before).minCoeff<Eigen::PropagateNaN>();
+  const double most = (after - before).maxCoeff<Eigen::PropagateNaN>();
+  if (least * mean > 0.0 && most * mean > 0.0)
+    return std::max(std::abs(least - mean), std::abs(most - mean)) <= kUniform * std::abs(mean);
   bool uniform = true;
   for (std::size_t i = 1; i < positions.size(); ++i) {
     const double step = positions[i] - positions[i - 1];

@@ -41,10 +41,11 @@ class GantrySag : public LinearEffect {
 
   void columns(const Stations& stations, std::span<const double> /*shape*/,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
-    const auto locus = [this](double x, Eigen::RowVectorXd& value, Eigen::RowVectorXd& slope) {
-      const double a = std::clamp(x / span_, 0.0, 1.0);  // no beam, no sag outside the span
-      value[0] = 16.0 * a * a * (1.0 - a) * (1.0 - a);
-      slope[0] = 32.0 * a * (1.0 - a) * (1.0 - 2.0 * a) / span_;
+    const auto locus = [this](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value,
+                              Eigen::ArrayXXd& slope) {
+      const Eigen::ArrayXd a = (x / span_).max(0.0).min(1.0);  // no beam, no sag outside the span
+      value.col(0) = 16.0 * a * a * (1.0 - a) * (1.0 - a);
+      slope.col(0) = 32.0 * a * (1.0 - a) * (1.0 - 2.0 * a) / span_;
     };
     fill_from_locus(stations, carriage_reading(stations, body_, kPitchOfSag), locus, out);
   }

@@ -26,9 +26,9 @@ class SlidePeriodic : public PeriodicEffect {
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
     const double wave = kTurn / shape[0];
-    const auto line = [wave](double x, Eigen::RowVectorXd& value, Eigen::RowVectorXd& slope) {
-      const double cosine = std::cos(wave * x);
-      const double sine = std::sin(wave * x);
+    const auto line = [wave](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value,
+                             Eigen::ArrayXXd& slope) {
+      const Eigen::ArrayXd cosine = (wave * x).cos(), sine = (wave * x).sin();
       value << cosine, sine;
       slope << -wave * sine, wave * cosine;
     };
@@ -39,9 +39,8 @@ class SlidePeriodic : public PeriodicEffect {
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
     const double wave = kTurn / shape[0];
     const double change = -wave / shape[0];  // d wave / d period
-    const auto line = [=](double x, Eigen::RowVectorXd& value, Eigen::RowVectorXd& slope) {
-      const double cosine = std::cos(wave * x);
-      const double sine = std::sin(wave * x);
+    const auto line = [=](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value, Eigen::ArrayXXd& slope) {
+      const Eigen::ArrayXd cosine = (wave * x).cos(), sine = (wave * x).sin();
       value << -change * x * sine, change * x * cosine;
       slope << -change * (sine + wave * x * cosine), change * (cosine - wave * x * sine);
     };

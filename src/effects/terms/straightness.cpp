@@ -93,16 +93,17 @@ class Straightness : public LinearEffect {
 
   void columns(const Stations& stations, std::span<const double> /*shape*/,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
-    const auto legendre = [this](double x, Eigen::RowVectorXd& value, Eigen::RowVectorXd& slope) {
-      const double u = (x - interval_.centre) / interval_.half;
-      value[0] = 1.0;
-      slope[0] = 0.0;
-      if (value.size() == 1) return;
-      value[1] = u;
-      slope[1] = rise_[0];
-      for (Eigen::Index k = 1; k + 1 < value.size(); ++k) {
-        value[k + 1] = ahead_[k] * u * value[k] - back_[k] * value[k - 1];
-        slope[k + 1] = slope[k - 1] + rise_[k] * value[k];
+    const auto legendre = [this](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value,
+                                 Eigen::ArrayXXd& slope) {
+      const Eigen::ArrayXd u = (x - interval_.centre) / interval_.half;
+      value.col(0) = 1.0;
+      slope.col(0) = 0.0;
+      if (value.cols() == 1) return;
+      value.col(1) = u;
+      slope.col(1) = rise_[0];
+      for (Eigen::Index k = 1; k + 1 < value.cols(); ++k) {
+        value.col(k + 1) = ahead_[k] * u * value.col(k) - back_[k] * value.col(k - 1);
+        slope.col(k + 1) = slope.col(k - 1) + rise_[k] * value.col(k);
       }
     };
     const CarriageReading reading = carriage_reading(stations, body_, 1.0);

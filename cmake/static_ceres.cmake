@@ -1,0 +1,36 @@
+# Ceres with what it needs as static libraries where Debian has them: two dozen shared ones cost the
+# loader more time than a profile of 20,000 samples costs the program. Else everything stays shared.
+include(CheckCXXSourceCompiles)
+
+set(parts "")
+foreach(name IN ITEMS glog gflags cholmod amd camd ccolamd colamd suitesparseconfig cxsparse
+                      lapack f77blas cblas atlas)
+  find_library(SLIDEWAY_${name}_ARCHIVE lib${name}.a)
+  mark_as_advanced(SLIDEWAY_${name}_ARCHIVE)
+  list(APPEND parts "${SLIDEWAY_${name}_ARCHIVE}")
+endforeach()
+foreach(name IN ITEMS gfortran quadmath gomp)  # the compiler knows where
+  list(APPEND parts "-l:lib${name}.a")
+endforeach()
+find_library(SLIDEWAY_metis libmetis.so.5)  # not to be had as a static one, no more than unwind
+mark_as_advanced(SLIDEWAY_metis)
+list(APPEND parts "${SLIDEWAY_metis}" unwind Threads::Threads)
+
+if(NOT "${parts}" MATCHES NOTFOUND)
+  get_target_property(archive Ceres::ceres LOCATION)
+  set(CMAKE_REQUIRED_LIBRARIES ${archive} ${parts} Eigen3::Eigen)
+  get_target_property(CMAKE_REQUIRED_INCLUDES Ceres::ceres INTERFACE_INCLUDE_DIRECTORIES)
+  check_cxx_source_compiles("
+    #include <ceres/problem.h>
+    #include <ceres/solver.h>
+    int main() {
+      ceres::Problem problem;
+      ceres::Solver::Summary summary;
+      ceres::Solve({}, &problem, &summary);
+    }" SLIDEWAY_STATIC_CERES)
+  unset(CMAKE_REQUIRED_LIBRARIES)
+  unset(CMAKE_REQUIRED_INCLUDES)
+endif()
+if(SLIDEWAY_STATIC_CERES)
+  set_target_properties(Ceres::ceres PROPERTIES INTERFACE_LINK_LIBRARIES "${parts};Eigen3::Eigen")
+endif()

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace slideway {
+
+inline constexpr std::size_t kPart = 1 << 16;    // samples looked at by one thread at a time
+inline constexpr std::size_t kScaleFrom = 2048;  // errors: the scale of more is that of a part
+inline std::size_t parts_of(std::size_t count) { return (count + kPart - 1) / kPart; }
+
+// REQUIRES values; they change their order.
+double median(std::vector<double>& values);
+
+// A profile or its means, and how a value follows from its neighbours: from those `lag` to either
+// side (second difference), or by a cubic from those 2 lag away as well (fourth difference).
+struct Level {
+  std::span<const double> samples;    // positions
+  std::span<const double> positions;  // of the means, where they are not uniform
+  std::span<const double> values;
+  std::size_t block = 1;  // samples in a mean
+  std::size_t lag = 1;
+  bool cubic = true;
+  bool uniform = true;
+  double widest = 0.0;  // step that is no gap
+
+  std::vector<double> errors;  // about their median; 0 where not judged
+  double middle = 0.0, scale = 0.0;
+  double rounding = 0.0;  // standard deviation of what rounding makes of an error
+
+  [[nodiscard]] std::size_t outermost() const { return cubic ? 2 * lag : lag; }
+  // Errors that far away know nothing of a value and its next ones.
+  [[nodiscard]] std::size_t touched() const { return cubic ? 3 * lag - 1 : lag; }
+  [[nodiscard]] double position(std::size_t j) const {
+    return uniform ? 0.5 * (samples[j * block] + samples[(j + 1) * block - 1]) : positions[j];
+  }
+  [[nodiscard]] bool judged(std::size_t i) const;
+  [[nodiscard]] double error(std::size_t i) const {
+    return uniform ? even_error(i) : uneven_error(i);
+  }
+  [[nodiscard]] double even_error(std::size_t i) const {
+    const double* z = values.data() + i;
+    const auto d = static_cast<std::ptrdiff_t>(lag);
+    return cubic ? z[0] - (2.0 / 3.0) * (z[-d] + z[d]) + (1.0 / 6.0) * (z[-2 * d] + z[2 * d])
+                 : z[0] - 0.5 * (z[-d] + z[d]);
+  }
+  [[nodiscard]] double uneven_error(std::size_t i) const;
+  void find_scale();
+  void find_errors();
+  [[nodiscard]] bool any_above(double least) const;
+  [[nodiscard]] double scale_of(std::vector<double>& part) const;
+  [[nodiscard]] double scale_at(std::size_t i, double limit) const;
+  [[nodiscard]] double peak_of_structure() const;
+  [[nodiscard]] bool missed_from_either_side(std::size_t i, double error) const;
+};
+
+}  // namespace slideway

@@ -1,0 +1,55 @@
+#include "slideway/signal/low_band_parts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace slideway {
+namespace {
+
+std::vector<double> uniform(Eigen::Index n) {
+  std::vector<double> positions;
+  for (Eigen::Index i = 0; i < n; ++i) positions.push_back(0.03 * static_cast<double>(i));
+  return positions;
+}
+
+double wave(Eigen::Index i, Eigen::Index column) {
+  return std::sin(1e-3 * static_cast<double>(i * (column + 1))) + 1e-3 * static_cast<double>(i % 7);
+}
+
+void fill(Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
+  for (Eigen::Index j = 0; j < rows.cols(); ++j)
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) rows(i, j) = wave(first + i, j);
+}
+
+// Exactly: a part sees the same numbers in the same order as the whole.
+TEST(ApplyInParts, IsTheTransformOfTheWholeToTheLastBit) {
+  for (const std::string wavelet : {"db1", "db4", "db19"})
+    for (const std::string_view boundary :
+         {"symmetric", "smooth", "zero", "reflect", "periodic", "periodization", "antireflect"})
+      for (const Eigen::Index n : {40'000, 40'001, 40'031, 300'000}) {
+        const LowBand low_band({wavelet, 5, slideway::boundary(boundary)}, uniform(n));
+        Eigen::MatrixXd whole(n, 2);
+        fill(0, whole);
+        EXPECT_EQ(apply_in_parts(low_band, n, 2, fill), low_band.apply(whole))
+            << wavelet << ' ' << boundary << ' ' << n;
+      }
+}
+
+TEST(ApplyInParts, TakesNoLevelManyLevelsAndAGrid) {
+  const Eigen::Index n = 50'000;
+  std::vector<double> positions = uniform(n);
+  Eigen::MatrixXd whole(n, 1);
+  fill(0, whole);
+  for (const int level : {0, 1, 10})
+    EXPECT_EQ(apply_in_parts(LowBand({"db4", level}, positions), n, 1, fill),
+              LowBand({"db4", level}, positions).apply(whole));
+  for (double& position : positions) position += 0.3 * std::sin(position);
+  EXPECT_EQ(apply_in_parts(LowBand({"db4", 5}, positions), n, 1, fill),
+            LowBand({"db4", 5}, positions).apply(whole));
+}
+
+}  // namespace
+}  // namespace slideway
