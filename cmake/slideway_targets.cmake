@@ -12,17 +12,24 @@ if(SLIDEWAY_SANITIZE)
   target_link_options(slideway_options INTERFACE -fsanitize=${SLIDEWAY_SANITIZE})
 endif()
 
-# slideway_room(name SOURCES a.cpp ... DEPENDS slideway::x ... PRIVATE_DEPENDS lib ...)
+# slideway_room(name SOURCES a.cpp ... DEPENDS slideway::x ... PRIVATE_DEPENDS lib ...
+#               HEADER_ONLY lib ...)
 # One room of the house: sources in src/<name>, public headers in include/slideway/<name>. The
-# link line is the layer arrow.
+# link line is the layer arrow. What is HEADER_ONLY and private, who installs slideway need not have.
 function(slideway_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;HEADER_ONLY" ${ARGN})
   add_library(slideway_${name} STATIC ${ROOM_SOURCES})
   add_library(slideway::${name} ALIAS slideway_${name})
+  set_target_properties(slideway_${name} PROPERTIES EXPORT_NAME ${name}
+                        POSITION_INDEPENDENT_CODE ON)  # for the Python module
+  target_compile_features(slideway_${name} PUBLIC cxx_std_20)
   target_include_directories(slideway_${name} PUBLIC
                              $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>)
-  target_link_libraries(slideway_${name} PUBLIC ${ROOM_DEPENDS} PRIVATE slideway_options
-                        ${ROOM_PRIVATE_DEPENDS})
+  target_link_libraries(slideway_${name} PUBLIC ${ROOM_DEPENDS} PRIVATE ${ROOM_PRIVATE_DEPENDS})
+  foreach(library IN ITEMS slideway_options ${ROOM_HEADER_ONLY})
+    target_link_libraries(slideway_${name} PRIVATE $<BUILD_INTERFACE:${library}>)
+  endforeach()
+  set_property(GLOBAL APPEND PROPERTY SLIDEWAY_ROOMS slideway_${name})
 endfunction()
 
 # slideway_test(room SOURCES a_test.cpp ... DEPENDS lib ... [SLOW Suite.Case ...])

@@ -31,6 +31,8 @@ if(NOT "${parts}" MATCHES NOTFOUND)
   unset(CMAKE_REQUIRED_LIBRARIES)
   unset(CMAKE_REQUIRED_INCLUDES)
 endif()
-if(SLIDEWAY_STATIC_CERES)
-  set_target_properties(Ceres::ceres PROPERTIES INTERFACE_LINK_LIBRARIES "${parts};Eigen3::Eigen")
+if(SLIDEWAY_STATIC_CERES)  # of programs only: gomp and gfortran do not go into a module
+  get_target_property(shared Ceres::ceres INTERFACE_LINK_LIBRARIES)
+  set_target_properties(Ceres::ceres PROPERTIES INTERFACE_LINK_LIBRARIES
+    "$<IF:$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>,${parts},${shared}>;Eigen3::Eigen")
 endif()

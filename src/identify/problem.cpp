@@ -10,6 +10,8 @@
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/problem_tree.hpp"
+#include "slideway/profile/given.hpp"
 
 namespace slideway {
 namespace {
@@ -254,11 +256,8 @@ std::optional<Truth> read_truth(const Section& root, const Problem& problem) {
   return truth;
 }
 
-}  // namespace
-
-Problem read_problem(const std::filesystem::path& path,
-                     const std::optional<std::filesystem::path>& data_dir) {
-  const TomlValue tree = read_toml(path);
+Problem problem_of(const TomlValue& tree, const std::filesystem::path& path,
+                   const PathRules& paths) {
   const std::string file = path.string();
   const Section root(file, "", tree);
   root.accept("title machine low_band profile effect runout trace truth");
@@ -267,7 +266,7 @@ Problem read_problem(const std::filesystem::path& path,
   problem.title = root.text("title").value_or("");
   const MachineDefaults machine = read_machine(root, problem);
   problem.low_band = read_low_band(root);
-  read_profile_entries(root, machine, {path.parent_path(), data_dir}, problem);
+  read_profile_entries(root, machine, paths, problem);
   check_lever_is_given(root, problem);
   read_effects(root, problem);
   problem.runout = read_runout(root);
@@ -276,12 +275,44 @@ Problem read_problem(const std::filesystem::path& path,
   return problem;
 }
 
-std::vector<Profile> read_profiles(const Problem& problem) {
+void check_names(const Problem& problem, const GivenTraces& given) {
+  std::vector<std::string> names;
+  for (const ProfileEntry& entry : problem.profiles) names.push_back(entry.profile.name);
+  for (const auto& [name, trace] : given)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw UsageError(problem.path.string() + ": numbers for '" + printable(name) +
+                       "', which is no [[profile]]" + did_you_mean(name, names) +
+                       "; accepted: " + joined(names, " "));
+}
+
+void take_or_read(const ProfileEntry& entry, const GivenTraces& given, Profile& profile) {
+  if (const auto at = given.find(entry.profile.name); at != given.end())
+    return take_profile(entry.source, at->second, profile);
+  if (entry.source.path.empty())
+    throw UsageError("profile '" + entry.profile.name + "': no numbers; accepted: arrays, or file");
+  read_profile(entry.source, profile);
+}
+
+}  // namespace
+
+Problem read_problem(const std::filesystem::path& path,
+                     const std::optional<std::filesystem::path>& data_dir) {
+  return problem_of(read_toml(path), path, {path.parent_path(), data_dir, true});
+}
+
+Problem read_problem(const TomlValue& tree, const std::optional<std::filesystem::path>& data_dir) {
+  return problem_of(tree, "problem", {{}, data_dir, false});
+}
+
+std::vector<Profile> read_profiles(const Problem& problem) { return read_profiles(problem, {}); }
+
+std::vector<Profile> read_profiles(const Problem& problem, const GivenTraces& given) {
+  check_names(problem, given);
   std::vector<Profile> profiles;
   for (const ProfileEntry& entry : problem.profiles) {
     profiles.push_back(entry.profile);
     try {
-      read_profile(entry.source, profiles.back());
+      take_or_read(entry, given, profiles.back());
     } catch (const DataError& error) {
       throw DataError("profile '" + entry.profile.name + "': " + error.what());
     } catch (const UsageError& error) {

@@ -79,8 +79,10 @@ TraceRequest read_request(const Section& section) {
 
 void read_source(const Section& section, const PathRules& paths, ProfileEntry& entry) {
   ProfileSource& source = entry.source;
-  entry.profile.file = section.required("file", section.text("file"), "path of a data file");
-  source.path = resolved(section, entry.profile.file, paths);
+  if (paths.file_is_needed || section.has("file")) {
+    entry.profile.file = section.required("file", section.text("file"), "path of a data file");
+    source.path = resolved(section, entry.profile.file, paths);
+  }
   source.request = read_request(section);
   source.window = section.range("window");
   if (section.is_text("leave_out"))

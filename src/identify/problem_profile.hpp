@@ -20,6 +20,7 @@ struct MachineDefaults {
 struct PathRules {
   std::filesystem::path base;
   std::optional<std::filesystem::path> data_dir;
+  bool file_is_needed = true;
 };
 
 /// One [[profile]]. @throws UsageError

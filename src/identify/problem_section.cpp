@@ -190,7 +190,11 @@ std::vector<Section> Section::tables(std::string_view key) const {
   const auto* array = std::get_if<TomlValue::Array>(&entry->value.data);
   if (array == nullptr) fail(key, "must be a list of tables, [[" + called(key) + "]]");
   std::vector<Section> result;
-  for (const TomlValue& element : *array) result.emplace_back(*file_, called(key), element);
+  for (const TomlValue& element : *array) {
+    std::string name = called(key);
+    if (element.line == 0) name.append("[").append(std::to_string(result.size())).append("]");
+    result.emplace_back(*file_, name, element);
+  }
   return result;
 }
 

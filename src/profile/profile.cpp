@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "slideway/base/error.hpp"
+#include "slideway/base/file.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/profile/given.hpp"
 
 namespace slideway {
 namespace {
@@ -34,7 +36,8 @@ struct Conversion {
 std::string checked_unit(const std::string& in_file, const std::string& asked, bool file_states,
                          const std::string& key) {
   if (file_states) return in_file;
-  if (asked.empty()) throw UsageError(key + " is missing: delimited text needs it");
+  if (asked.empty())
+    throw UsageError(key + " is missing: only a file that states its units needs none");
   if (!in_file.empty() && in_file != asked)
     throw DataError("the header has the unit " + in_file + ", the problem " + key + " = \"" +
                     asked + "\"; accepted: the same");
@@ -302,10 +305,18 @@ Conversion named_conversion(const ProfileSource& source, const TraceFile& file,
   }
 }
 
-}  // namespace
+std::string_view bytes_of(const std::vector<double>& numbers) {
+  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)};
+}
 
-void read_profile(const ProfileSource& source, Profile& profile) {
-  TraceFile file = read_trace(source.path, source.request);
+void require_finite_positions(const std::vector<double>& positions) {
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (!std::isfinite(positions[i]))
+      throw DataError("data row " + std::to_string(i + 1) + ": the position is " +
+                      shortest(positions[i]) + "; accepted: a finite number");
+}
+
+void convert_profile(const ProfileSource& source, TraceFile file, Profile& profile) {
   const Conversion convert = named_conversion(source, file, profile);
   profile.format = std::move(file.format);
   profile.sha256 = std::move(file.sha256);
@@ -337,6 +348,28 @@ void read_profile(const ProfileSource& source, Profile& profile) {
   setup.last_mm = profile.positions.back();
   complete_cut_radius(profile.name, setup);
   note_blunders(profile);
+}
+
+}  // namespace
+
+void read_profile(const ProfileSource& source, Profile& profile) {
+  convert_profile(source, read_trace(source.path, source.request), profile);
+}
+
+void take_profile(const ProfileSource& source, const Trace& numbers, Profile& profile) {
+  constexpr const char* kArrays = "arrays";
+  if (numbers.positions.size() != numbers.values.size())
+    throw DataError(std::to_string(numbers.positions.size()) + " positions and " +
+                    std::to_string(numbers.values.size()) + " values; accepted: as many");
+  require_finite_positions(numbers.positions);
+  ProfileSource named = source;
+  named.path = kArrays;
+  profile.file = kArrays;
+  convert_profile(
+      named,
+      {kArrays, false,
+       sha256(std::string(bytes_of(numbers.positions)).append(bytes_of(numbers.values))), numbers},
+      profile);
 }
 
 }  // namespace slideway

@@ -1,0 +1,179 @@
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+#include <variant>
+
+#include "slideway/base/error.hpp"
+#include "slideway/identify/problem_tree.hpp"
+#include "slideway/identify/simulate.hpp"
+#include "slideway/report/report.hpp"
+#include "slideway/signal/dwt.hpp"
+#include "slideway/trace/analysis.hpp"
+
+/// The compiled half of the Python module: plain containers in and out. What users see, its units
+/// and its shapes are in slideway/__init__.py.
+namespace slideway {
+namespace {
+
+namespace py = pybind11;
+using Column = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Directory = std::optional<std::filesystem::path>;
+
+/// slideway/_problem.py leaves nothing but these types.
+TomlValue tree(py::handle node) {
+  if (py::isinstance<py::bool_>(node)) return {0, py::cast<bool>(node)};
+  if (py::isinstance<py::int_>(node)) return {0, py::cast<std::int64_t>(node)};
+  if (py::isinstance<py::float_>(node)) return {0, py::cast<double>(node)};
+  if (py::isinstance<py::str>(node)) return {0, py::cast<std::string>(node)};
+  if (py::isinstance<py::list>(node)) {
+    TomlValue::Array elements;
+    for (const py::handle element : node) elements.push_back(tree(element));
+    return {0, std::move(elements)};
+  }
+  TomlValue::Table entries;
+  for (const auto& [key, value] : py::cast<py::dict>(node))
+    entries.push_back({py::cast<std::string>(key), 0, tree(value)});
+  return {0, std::move(entries)};
+}
+
+/// A problem as Python gave it, to be read without the interpreter's lock.
+class GivenProblem {
+ public:
+  GivenProblem(const py::object& problem, Directory data) : data_(std::move(data)) {
+    if (py::isinstance<py::dict>(problem))
+      source_ = tree(problem);
+    else
+      source_ = py::cast<std::filesystem::path>(problem);
+  }
+  [[nodiscard]] Problem read() const {
+    return std::visit([this](const auto& source) { return read_problem(source, data_); }, source_);
+  }
+
+ private:
+  std::variant<std::filesystem::path, TomlValue> source_;
+  Directory data_;
+};
+
+std::vector<double> numbers(const Column& column, const std::string& what) {
+  if (column.ndim() != 1)
+    throw UsageError(what + ": an array of " + std::to_string(column.ndim()) +
+                     " dimensions; accepted: 1");
+  return {column.data(), column.data() + column.size()};
+}
+
+py::array_t<double> array(const std::vector<double>& values) {
+  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+py::str text(const std::string& utf8) {  // a file's name in it need not be UTF-8
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(utf8.data(), static_cast<py::ssize_t>(utf8.size()), "replace"));
+}
+
+void let_interrupt(const std::string& /*stage*/) {
+  const py::gil_scoped_acquire lock;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
+
+py::tuple analysed(const py::object& problem,
+                   const std::map<std::string, std::pair<Column, Column>>& profiles,
+                   const Directory& data, bool ranks_only, bool closes_loop) {
+  const GivenProblem given(problem, data);
+  GivenTraces traces;
+  for (const auto& [name, columns] : profiles)
+    traces[name] = {numbers(columns.first, "positions of '" + name + "'"),
+                    numbers(columns.second, "values of '" + name + "'")};
+  std::string json, report;
+  {
+    const py::gil_scoped_release unlocked;
+    const Problem read = given.read();
+    const Analysis analysis =
+        analyse(read, read_profiles(read, traces),
+                {ranks_only ? Scope::rank : Scope::identify, closes_loop}, let_interrupt);
+    json = json_report(analysis.result, analysis.trace);
+    report = text_report(analysis.result, analysis.trace);
+  }
+  return py::make_tuple(text(json), text(report));
+}
+
+py::list simulated(const py::object& problem, std::optional<std::uint64_t> seed,
+                   const Directory& data) {
+  const GivenProblem given(problem, data);
+  const std::vector<Profile> profiles = [&] {
+    const py::gil_scoped_release unlocked;
+    Problem read = given.read();
+    if (seed && read.truth) read.truth->seed = *seed;
+    return simulate(read);
+  }();
+  py::list result;
+  for (const Profile& profile : profiles) {
+    const bool slope = profile.setup.quantity == Quantity::slope;
+    std::vector<double> values = profile.values;
+    for (double& value : values) value = slope ? value * 1e6 : value / kMicrometre;
+    result.append(
+        py::make_tuple(text(profile.name), profile.setup.kind == Kind::face ? "face" : "slide",
+                       slope ? "slope" : "height", array(profile.positions), array(values)));
+  }
+  return result;
+}
+
+void check_signal(const std::vector<double>& signal, int level) {
+  constexpr int kHighestLevel = 30;
+  if (level < 1 || level > kHighestLevel)
+    throw UsageError("level: " + std::to_string(level) + " is out of range; accepted: 1 to " +
+                     std::to_string(kHighestLevel));
+  const std::size_t needed = std::size_t{1} << level;
+  if (signal.size() < needed)
+    throw DataError("signal: " + std::to_string(signal.size()) + " samples; level " +
+                    std::to_string(level) + " needs " + std::to_string(needed));
+  for (std::size_t i = 0; i < signal.size(); ++i)
+    if (!std::isfinite(signal[i]))
+      throw DataError("signal: sample " + std::to_string(i) +
+                      " is not finite; bands are made of whole profiles");
+}
+
+py::array_t<double> rows(const std::vector<std::vector<double>>& bands) {
+  py::array_t<double> matrix({bands.size(), bands.front().size()});
+  for (std::size_t j = 0; j < bands.size(); ++j)
+    std::copy(bands[j].begin(), bands[j].end(),
+              matrix.mutable_data(static_cast<py::ssize_t>(j), 0));
+  return matrix;
+}
+
+py::tuple decomposed(const Column& signal, const std::string& wavelet, int level,
+                     const std::string& mode) {
+  const std::vector<double> samples = numbers(signal, "signal");
+  const Bands bands = [&] {
+    const py::gil_scoped_release unlocked;
+    check_signal(samples, level);
+    return reconstruct_bands(daubechies(wavelet), boundary(mode), level, samples);
+  }();
+  return py::make_tuple(rows(bands.approximations), rows(bands.details));
+}
+
+template <typename Error>
+void register_error(py::module_& module, const char* name, const char* doc) {
+  auto& type = py::register_exception<Error>(module, name, PyExc_ValueError);
+  type.attr("__module__") = "slideway";
+  type.attr("__doc__") = doc;
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_slideway, module) {
+  module.attr("__version__") = SLIDEWAY_VERSION;
+  register_error<UsageError>(module, "UsageError",
+                             "The problem, or an argument, is wrong: what, and what is accepted.");
+  register_error<DataError>(module, "DataError",
+                            "Numbers or a data file can not be used: what is wrong, and where.");
+  module.def("analyse", &analysed, py::arg("problem"), py::arg("profiles"), py::arg("data"),
+             py::arg("ranks_only"), py::arg("closes_loop"));
+  module.def("simulate", &simulated, py::arg("problem"), py::arg("seed"), py::arg("data"));
+  module.def("decompose", &decomposed, py::arg("signal"), py::arg("wavelet"), py::arg("level"),
+             py::arg("boundary"));
+}
+
+}  // namespace slideway

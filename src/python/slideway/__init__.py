@@ -1,0 +1,164 @@
+"""Carriage errors of a lathe from the measured flatness of a turned face.
+
+>>> import slideway
+>>> report = slideway.identify("problem.toml")
+>>> print(report.trace.verdict)
+
+A problem is the path of a problem file, or a dict of the same keys; its profiles come from the
+files it names, or from arrays. What is wrong with a problem raises `UsageError`, what is wrong with
+the numbers `DataError`; both are `ValueError`. Results are those of the program to the last digit.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from slideway import _slideway
+from slideway._problem import Problem, source
+from slideway._slideway import DataError, UsageError, __version__
+from slideway.report import Report, made
+
+__all__ = [
+    "DataError",
+    "Decomposition",
+    "Report",
+    "SimulatedProfile",
+    "UsageError",
+    "__version__",
+    "decompose",
+    "identify",
+    "rank",
+    "simulate",
+]
+
+
+@dataclass(frozen=True, eq=False)
+class Decomposition:
+    """Bands at full length: ``approximations[-1] + details.sum(axis=0)`` is the signal."""
+
+    approximations: NDArray[np.float64]
+    """shape (level, n): a_1 ... a_L, in the signal's unit"""
+    details: NDArray[np.float64]
+    """shape (level, n): d_1 ... d_L, in the signal's unit"""
+
+
+@dataclass(frozen=True, eq=False)
+class SimulatedProfile:
+    """A profile as an instrument would have it."""
+
+    kind: str
+    """face or slide"""
+    quantity: str
+    """height or slope"""
+    unit: str
+    """of ``value``, as ``value_unit`` of a problem has it: "um" (heights) or "urad" (slopes)"""
+    position: NDArray[np.float64]
+    """shape (n,), mm, increasing"""
+    value: NDArray[np.float64]
+    """shape (n,), in ``unit``"""
+
+
+Profiles = Mapping[str, tuple[ArrayLike, ArrayLike]]
+
+
+def _analysed(
+    problem: Problem,
+    profiles: Profiles | None,
+    data: str | os.PathLike[str] | None,
+    ranks_only: bool,
+    closes_loop: bool,
+) -> Report:
+    columns = {
+        name: (np.asarray(position, float), np.asarray(value, float))
+        for name, (position, value) in (profiles or {}).items()
+    }
+    document, text = _slideway.analyse(source(problem), columns, data, ranks_only, closes_loop)
+    report: Report = made(Report, json.loads(document) | {"text": text})
+    return report
+
+
+def identify(
+    problem: Problem,
+    profiles: Profiles | None = None,
+    *,
+    data: str | os.PathLike[str] | None = None,
+    trace: bool = True,
+) -> Report:
+    """The main job: low band, ranking, fit, cross-check, and the closed loop.
+
+    :param problem: path of a problem file, or a dict of the same keys: ``{"machine": {"lever":
+        "paper"}, "profile": [{"name": ...}], "effect": [{"name": ...}]}``. Paths are relative to
+        the problem file, those of a dict to the working directory.
+    :param profiles: arrays instead of files, ``{name: (position, value)}``, the name that of a
+        ``[[profile]]``; two arrays of shape (n,), in the ``position_unit`` and ``value_unit`` of
+        that profile. A value that is NaN is a missing point. A profile of a dict that has arrays
+        needs no ``file``.
+    :param data: what ``${SLIDEWAY_DATA}`` in the problem stands for; default: the environment
+        variable
+    :param trace: False stops before the closed loop
+    :raises UsageError: the problem is wrong, or an argument
+    :raises DataError: the numbers can not be used
+    """
+    return _analysed(problem, profiles, data, False, trace)
+
+
+def rank(
+    problem: Problem,
+    profiles: Profiles | None = None,
+    *,
+    data: str | os.PathLike[str] | None = None,
+) -> Report:
+    """The correlations alone, Eqs. (6), (19), (20): a report without ``fit`` and ``trace``.
+
+    Arguments and errors as in `identify`.
+    """
+    return _analysed(problem, profiles, data, True, False)
+
+
+def simulate(
+    problem: Problem,
+    *,
+    seed: int | None = None,
+    data: str | os.PathLike[str] | None = None,
+) -> dict[str, SimulatedProfile]:
+    """The profiles that ``[truth]`` of a problem makes, by name.
+
+    Positions are those of the profile's file where it exists, else ``truth.samples`` over its
+    ``window``, else over the face of ``cut_radius_mm``.
+
+    :param seed: instead of the seed in ``[truth]``
+    :raises UsageError: no ``[truth]``, nothing that tells the positions
+    """
+    if seed is not None and not 0 <= seed < 2**64:
+        raise UsageError(f"seed: {seed} is out of range; accepted: 0 to 2^64 - 1")
+    return {
+        name: SimulatedProfile(
+            kind, quantity, "urad" if quantity == "slope" else "um", position, value
+        )
+        for name, kind, quantity, position, value in _slideway.simulate(
+            source(problem), seed, data
+        )
+    }
+
+
+def decompose(
+    signal: ArrayLike, wavelet: str = "db4", level: int = 5, boundary: str = "symmetric"
+) -> Decomposition:
+    """Splits a signal into wavelet bands of its own length.
+
+    :param signal: shape (n,), evenly spaced, any unit; n at least 2^level
+    :param wavelet: "db1" to "db19"
+    :param boundary: how the signal goes on beyond its ends: zero, constant, symmetric, periodic,
+        smooth, periodization, reflect, antisymmetric, antireflect
+    :raises UsageError: an unknown wavelet or boundary, a level outside 1 to 30
+    :raises DataError: too few samples, a sample that is not finite
+    """
+    return Decomposition(
+        *_slideway.decompose(np.asarray(signal, float), wavelet, level, boundary)
+    )

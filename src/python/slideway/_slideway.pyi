@@ -1,0 +1,24 @@
+import os
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+class UsageError(ValueError): ...
+class DataError(ValueError): ...
+
+def analyse(
+    problem: str | dict[str, Any],
+    profiles: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]],
+    data: str | os.PathLike[str] | None,
+    ranks_only: bool,
+    closes_loop: bool,
+) -> tuple[str, str]: ...
+def simulate(
+    problem: str | dict[str, Any], seed: int | None, data: str | os.PathLike[str] | None
+) -> list[tuple[str, str, str, NDArray[np.float64], NDArray[np.float64]]]: ...
+def decompose(
+    signal: NDArray[np.float64], wavelet: str, level: int, boundary: str
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...

@@ -1,0 +1,56 @@
+# The way of a user of the library: install, find_package, build, run. README shows the program and
+# what it says.
+cmake_minimum_required(VERSION 3.25)
+
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE out ERROR_VARIABLE out)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${ARGN}: exit ${status}\n${out}")
+  endif()
+  set(out "${out}" PARENT_SCOPE)
+endfunction()
+
+function(expect_in file text)
+  file(READ ${file} contents)
+  string(FIND "${contents}" "${text}" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "${file} does not have\n${text}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${OUT})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${OUT}/first)
+file(RENAME ${OUT}/first ${OUT}/prefix)  # an installed tree may move
+file(GLOB_RECURSE targets ${OUT}/prefix/slidewayTargets*.cmake)
+if(NOT targets)
+  message(FATAL_ERROR "no slidewayTargets.cmake was installed")
+endif()
+foreach(file IN LISTS targets)
+  file(READ ${file} contents)
+  if(contents MATCHES "-W[a-z]|${SOURCE}|${BUILD}|${OUT}")
+    message(FATAL_ERROR "${file} has what concerns nobody but the build: ${CMAKE_MATCH_0}")
+  endif()
+endforeach()
+
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/tests/package/consumer -B ${OUT}/build
+    -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${OUT}/prefix)
+run(${CMAKE_COMMAND} --build ${OUT}/build)
+set(problem ${OUT}/prefix/share/doc/slideway/examples/problems/three-levels/problem.toml)
+run(${OUT}/build/errors ${problem})
+
+expect_in(${SOURCE}/README.md "\n```text\n${out}```\n")
+file(READ ${SOURCE}/tests/package/consumer/errors.cpp shown)
+expect_in(${SOURCE}/README.md "\n```cpp\n${shown}```\n")
+file(READ ${SOURCE}/tests/package/consumer/CMakeLists.txt shown)
+string(REGEX REPLACE "^.*\n\n" "" shown "${shown}")
+expect_in(${SOURCE}/README.md "\n```cmake\n${shown}```\n")
+
+run(${OUT}/prefix/bin/slideway --version)
+if(NOT out STREQUAL "slideway ${VERSION}\n")
+  message(FATAL_ERROR "--version: ${out}")
+endif()
+file(STRINGS ${SOURCE}/CHANGELOG.md versions REGEX "^## \\[")
+list(GET versions 0 newest)
+if(NOT newest MATCHES "^## \\[${VERSION}\\]")
+  message(FATAL_ERROR "CHANGELOG.md begins with ${newest}, the version is ${VERSION}")
+endif()
