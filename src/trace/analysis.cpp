@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "loop.hpp"
 #include "slideway/base/error.hpp"
 
 namespace slideway {
@@ -18,8 +19,16 @@ template <typename Error>
 Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
                  const AnalysisOptions& options, const Progress& progress) {
   try {
-    Analysis analysis{identify(problem, profiles, options.scope), std::nullopt};
-    if (options.closes_loop) analysis.trace = close_loop(problem, profiles, progress);
+    Analysis analysis{identify(problem, profiles, options.scope), std::nullopt, std::nullopt};
+    std::optional<Fitted> after;
+    if (options.closes_loop)
+      analysis.trace =
+          close_loop(problem, profiles, progress, options.with_details ? &after : nullptr);
+    if (options.with_details) {
+      Fitted before{build_model(problem, profiles), {}};
+      before.fit = fit(before.model);
+      analysis.details = make_details(problem, before, after ? &*after : nullptr);
+    }
     return analysis;
   } catch (const UsageError& error) {
     rethrow(problem, error);
