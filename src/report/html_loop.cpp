@@ -5,11 +5,6 @@ namespace {
 
 using Column = HtmlTable::Column;
 
-std::string number_cell(const Json& object, const char* key, int digits = 3) {
-  const auto value = number_of(object, key);
-  return value ? html_number(*value, digits) : "–";
-}
-
 std::string arrow(const Json& round, const std::string& before, const std::string& after) {
   for (const char* unit : {"um", "urad"}) {
     const auto from = number_of(round, (before + unit).c_str());
@@ -49,8 +44,8 @@ std::string accepted(const Json& trace) {
     table.add({text_of(round, "accepted"), values(list_of(round, "parameters")),
                arrow(round, "before_rms_", "after_rms_"),
                arrow(round, "before_holdout_rms_", "after_holdout_rms_"),
-               number_cell(round, "delta_bic"), html_probability(round.at("p_value").get<double>()),
-               rivals.empty() ? "–" : rivals});
+               html_cell(round, "delta_bic", 3),
+               html_probability(round.at("p_value").get<double>()), rivals.empty() ? "–" : rivals});
   }
   return table.html();
 }
@@ -64,8 +59,8 @@ std::string tried(const Json& trace) {
                                     {"why it is not in the model", Column::text}});
   const auto add = [&](const Json& effect, const std::string& round) {
     table.add(
-        {text_of(effect, "effect"), round, number_cell(effect, "delta_bic"),
-         html_probability(effect.at("p_value").get<double>()), number_cell(effect, "rms_um"),
+        {text_of(effect, "effect"), round, html_cell(effect, "delta_bic"),
+         html_probability(effect.at("p_value").get<double>()), html_cell(effect, "rms_um"),
          has(effect, "refused") ? text_of(effect, "refused") : "a rival of the accepted one"});
   };
   std::size_t index = 0;
@@ -91,9 +86,8 @@ std::string untried(const Json& trace) {
                     {"unit", Column::text},
                     {"at", Column::text}});
   for (const Json& limit : list_of(trace, "detection_limits"))
-    limits.add({text_of(limit, "effect"), text_of(limit, "parameter"),
-                number_cell(limit, "value", 2), html_unit(limit.at("unit").get<std::string>()),
-                text_of(limit, "at")});
+    limits.add({text_of(limit, "effect"), text_of(limit, "parameter"), html_cell(limit, "value", 2),
+                html_unit(limit.at("unit").get<std::string>()), text_of(limit, "at")});
   return table.html() + limits.html();
 }
 
@@ -103,14 +97,14 @@ std::string unnamed(const Json& trace) {
   std::string out = "<p>Left without a name: " + html_size(left, "rms") + " rms, " +
                     html_size(left, "pv") + " peak to valley on <b>" + text_of(left, "profile") +
                     "</b> (lack of fit p = " + html_probability(left.at("p_value").get<double>()) +
-                    "), largest from " + number_cell(left, "from_mm", 4) + " to " +
-                    number_cell(left, "to_mm", 4) + " mm";
+                    "), largest from " + html_cell(left, "from_mm", 4) + " to " +
+                    html_cell(left, "to_mm", 4) + " mm";
   if (has(left, "clock") && !left.at("clock").get_ref<const std::string&>().empty())
     out += "; most alike on the clock " + text_of(left, "clock") + ", correlation length " +
-           number_cell(left, "correlation_length", 2) + " " +
+           html_cell(left, "correlation_length", 2) + " " +
            html_unit(left.at("correlation_unit").get<std::string>());
   if (has(left, "dominant_period_mm"))
-    out += "; dominant period " + number_cell(left, "dominant_period_mm") + " mm";
+    out += "; dominant period " + html_cell(left, "dominant_period_mm") + " mm";
   if (const auto odd = number_of(left, "odd_share"))
     out += "; " + html_number(100.0 * *odd, 2) + " % of it odd about the axis";
   return out + ". It is not counted as an improvement.</p>\n";

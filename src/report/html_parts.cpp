@@ -125,6 +125,21 @@ std::string html_size(const Json& object, const std::string& name, int digits) {
   return "–";
 }
 
+std::string numbered(std::string stem, std::size_t number) {
+  return stem.append(std::to_string(number));
+}
+
+std::string html_cell(const Json& object, const char* key, int digits) {
+  const auto value = number_of(object, key);
+  return value ? html_number(*value, digits) : "–";
+}
+
+std::string html_figure(const std::string& picture, const std::string& caption,
+                        const std::string& attributes) {
+  return "<figure" + attributes + "><div class=\"scroll\" tabindex=\"0\" role=\"group\">" +
+         picture + "</div><figcaption>" + caption + "</figcaption></figure>\n";
+}
+
 HtmlTable::HtmlTable(std::string caption, std::vector<std::pair<std::string, Column>> columns)
     : caption_(std::move(caption)), columns_(std::move(columns)) {}
 

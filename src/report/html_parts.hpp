@@ -38,6 +38,18 @@ std::string html_symbol(std::string_view symbol);
 /// A number with its unit from a pair of keys, "rms_um" and "rms_urad": "0.2 µm", or "–".
 std::string html_size(const Json& object, const std::string& name, int digits = 3);
 
+/// "p" and 2: "p2".
+std::string numbered(std::string stem, std::size_t number);
+
+inline constexpr std::size_t kStyles = 8;  // "e0" ... of the page's style
+
+/// A number or "–".
+std::string html_cell(const Json& object, const char* key, int digits = 4);
+
+/// A picture with its caption, both HTML.
+std::string html_figure(const std::string& picture, const std::string& caption,
+                        const std::string& attributes = "");
+
 /// A table that scrolls in itself where the screen is narrow.
 class HtmlTable {
  public:
@@ -62,7 +74,7 @@ std::string html_verdict(const Json& report);
 std::string html_pictures(const Json& report);
 std::string html_profile_pictures(const Json& report);
 std::string html_tables(const Json& report);
+std::string html_uncertainty(const Json& report);
 std::string html_loop_tables(const Json& report);
-std::string html_columns(const Json& document);  // slideway.columns/1
 
 }  // namespace slideway

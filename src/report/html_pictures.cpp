@@ -12,11 +12,6 @@ namespace {
 
 using Column = HtmlTable::Column;
 
-std::string figure(const std::string& picture, const std::string& caption) {
-  return "<figure><div class=\"scroll\" tabindex=\"0\" role=\"group\">" + picture +
-         "</div><figcaption>" + caption + "</figcaption></figure>\n";
-}
-
 std::string bold(const std::string& name) { return "<b>" + escaped(name) + "</b>"; }
 
 // --- straightness ---------------------------------------------------------------------------
@@ -72,12 +67,13 @@ std::string straightness(const Json& report) {
   const double step = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
   return html_section(
       "straightness", "Straightness of the slide, ISO 230-1",
-      figure(plot.svg(),
-             "Straightness error motion <i>E</i><sub>ZX</sub> of the X slide over the travel the "
-             "profiles cover, positive along +Z; band: expanded uncertainty. <b>Good:</b> the "
-             "band is narrow beside the curve (the form is known) and the error is within the "
-             "machine's tolerance. The three reference lines give three different numbers, all "
-             "of them valid: a tolerance must state its line.") +
+      html_figure(
+          plot.svg(),
+          "Straightness error motion <i>E</i><sub>ZX</sub> of the X slide over the travel the "
+          "profiles cover, positive along +Z; band: expanded uncertainty. <b>Good:</b> the "
+          "band is narrow beside the curve (the form is known) and the error is within the "
+          "machine's tolerance. The three reference lines give three different numbers, all "
+          "of them valid: a tolerance must state its line.") +
           table.html() + "<p class=\"hint\">Evaluated from the fitted polynomial at " +
           std::to_string(x.size()) + " points over x = " + html_number(x.front(), 5) + " to " +
           html_number(x.back(), 5) + " mm, a step of " + html_number(step, 3) +
@@ -85,6 +81,14 @@ std::string straightness(const Json& report) {
 }
 
 // --- correlations -----------------------------------------------------------------------------
+
+/// The low band has its coefficients at the same shares of the trace, however many they are.
+std::vector<double> shares(double whole, std::size_t count) {
+  std::vector<double> out;
+  for (std::size_t i = 1; i <= count; ++i)
+    out.push_back(whole * static_cast<double>(i) / static_cast<double>(count));
+  return out;
+}
 
 std::string running(const Json& report, const std::string& profile, const std::string& id) {
   Plot plot({id + "-running", "Profile " + profile + ": running correlation",
@@ -95,20 +99,21 @@ std::string running(const Json& report, const std::string& profile, const std::s
   for (const Json& entry : list_of(report, "ranking")) {
     if (entry.at("profile") != profile || !has(entry, "running")) continue;
     const Json& series = entry.at("running");
-    const std::string own = "e" + std::to_string(style++ % 8);
+    const std::string own = numbered("e", style++ % kStyles);
     const std::string effect = entry.at("effect").get<std::string>();
-    plot.line(effect + ", low band", own, numbers_of(series, "samples"),
-              numbers_of(series, "low_band"));
-    plot.line(effect + ", raw", own + " thin", numbers_of(series, "samples"),
-              numbers_of(series, "raw"));
+    const std::vector<double> samples = numbers_of(series, "samples");
+    const std::vector<double> low_band = numbers_of(series, "low_band");
+    if (samples.empty()) continue;
+    plot.line(effect + ", low band", own, shares(samples.back(), low_band.size()), low_band);
+    plot.line(effect + ", raw", own + " thin", samples, numbers_of(series, "raw"));
   }
   if (plot.empty()) return "";
-  return figure(plot.svg(),
-                bold(profile) +
-                    ": correlation of each effect with the first n samples, Eqs. (6), (19), (20) "
-                    "(Figs. 8 and 9 of the paper); thick: low band, thin: raw. <b>Good:</b> the "
-                    "dominant effect's low-band curve settles early, near ±1, and clear of the "
-                    "others. The low band raises every coefficient: compare effects, not bands.");
+  return html_figure(
+      plot.svg(), bold(profile) +
+                      ": correlation of each effect with the first n samples, Eqs. (6), (19), (20) "
+                      "(Figs. 8 and 9 of the paper); thick: low band, thin: raw. <b>Good:</b> the "
+                      "dominant effect's low-band curve settles early, near ±1, and clear of the "
+                      "others. The low band raises every coefficient: compare effects, not bands.");
 }
 
 /// Blue for +1, orange for -1, the number in every cell.
@@ -144,7 +149,7 @@ std::string correlations(const Json& report) {
   std::string runs, matrices;
   std::size_t index = 0;
   for (const Json& in : report.at("inputs"))
-    runs += running(report, in.at("name").get<std::string>(), "r" + std::to_string(index++));
+    runs += running(report, in.at("name").get<std::string>(), numbered("r", index++));
   if (has(report, "curves"))
     for (const Json& curves : list_of(report.at("curves"), "profiles")) matrices += matrix(curves);
   if (!matrices.empty())
@@ -192,17 +197,18 @@ std::string residual(const Json& curves, const std::string& id) {
   }
   std::string out;
   if (!lags.empty())
-    out += figure(lags.svg(),
-                  bold(profile) +
-                      ": autocorrelation of the residual. <b>Good:</b> it falls at once and stays "
-                      "between the dotted lines. A slow fall or waves mean that neighbouring "
-                      "values are not independent; the uncertainties here count that in.");
+    out += html_figure(
+        lags.svg(),
+        bold(profile) +
+            ": autocorrelation of the residual. <b>Good:</b> it falls at once and stays "
+            "between the dotted lines. A slow fall or waves mean that neighbouring "
+            "values are not independent; the uncertainties here count that in.");
   if (!spectrum.empty())
-    out +=
-        figure(spectrum.svg(),
-               bold(profile) +
-                   ": spectrum of the residual. <b>Good:</b> a level floor. A peak is something "
-                   "periodic (rail, spindle, drive), a rise to the left is form the model lacks.");
+    out += html_figure(
+        spectrum.svg(),
+        bold(profile) +
+            ": spectrum of the residual. <b>Good:</b> a level floor. A peak is something "
+            "periodic (rail, spindle, drive), a rise to the left is form the model lacks.");
   return out;
 }
 
@@ -231,8 +237,8 @@ std::string bands(const Json& curves, const std::string& id) {
   std::string panels;
   for (std::size_t i = 0; i < details.size(); ++i) {
     const std::string level = std::to_string(i + 1);
-    panels += band_panel(curves, approximations[i], id + "-a" + level, "a" + level);
-    panels += band_panel(curves, details[i], id + "-d" + level, "d" + level);
+    panels += band_panel(curves, approximations[i], id + "-a" + level, numbered("a", i + 1));
+    panels += band_panel(curves, details[i], id + "-d" + level, numbered("d", i + 1));
   }
   if (panels.empty()) return "";
   const std::string unit = curves.at("unit") == "urad" ? "µrad" : "µm";
@@ -252,7 +258,7 @@ std::string each_profile(const Json& report,
   std::string out;
   std::size_t index = 0;
   for (const Json& curves : list_of(report.at("curves"), "profiles"))
-    out += picture(curves, prefix + std::to_string(index++));
+    out += picture(curves, numbered(prefix, index++));
   return out;
 }
 

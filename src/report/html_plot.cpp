@@ -78,7 +78,8 @@ struct Plot::Axis {
       low -= margin;
       high += margin;
     }
-    const double step = nice_step(high - low, std::max(2.0, std::abs(to - from) / 65.0));
+    const double step =
+        nice_step(high - low, std::max(2.0, std::abs(to - from) / (padded ? 40.0 : 65.0)));
     for (double k = std::ceil(low / step);
          k * step <= high * (1.0 + 1e-12 * (high > 0 ? 1 : -1)) && ticks.size() < 50; ++k)
       ticks.emplace_back(k * step, tick_text(k * step, step));
@@ -156,8 +157,9 @@ Plot::Axis Plot::axis(bool horizontal) const {
   if (!horizontal)
     for (const auto& [line, y] : levels_) out.include(y);
   if (!(out.low <= out.high)) out.include(1.0);
-  const double top =
-      6.0 + kLegendRow * static_cast<double>(std::count(legend().begin(), legend().end(), '\n'));
+  const std::string entries = legend();
+  const auto rows = static_cast<double>(std::count(entries.begin(), entries.end(), '\n'));
+  const double top = 6.0 + kLegendRow * rows;
   out.from = horizontal ? kLeft : height_ - kBottom;
   out.to = horizontal ? width_ - kRight : top;
   out.settle(!horizontal);

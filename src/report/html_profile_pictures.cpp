@@ -7,12 +7,6 @@
 namespace slideway {
 namespace {
 
-std::string figure(const std::string& picture, const std::string& caption,
-                   const std::string& attributes = "") {
-  return "<figure" + attributes + "><div class=\"scroll\" tabindex=\"0\" role=\"group\">" +
-         picture + "</div><figcaption>" + caption + "</figcaption></figure>\n";
-}
-
 /// Numbers for the script; nothing in it can end the element it stands in.
 std::string data_block(const Json& data) {
   std::string text = data.dump();
@@ -46,8 +40,8 @@ std::string drawn(const Json& curves, const Drawing& drawing, const std::string&
     data["series"].push_back(each);
   }
   return plot.empty() ? ""
-                      : figure(plot.svg() + data_block(data), drawing.caption,
-                               " class=\"long\" id=\"" + drawing.text.id + "\"");
+                      : html_figure(plot.svg() + data_block(data), drawing.caption,
+                                    " class=\"long\" id=\"" + drawing.text.id + "\"");
 }
 
 std::string noise_of(const Json& report, const std::string& profile) {
@@ -87,7 +81,7 @@ std::string of_profile(const Json& report, const Json& curves, const std::string
                             "scale. "
                           : ". ") +
                    "<b>Good:</b> a level band about zero without trend, waves or steps" +
-                   noise_of(report, profile) + ".",
+                   (added ? "" : noise_of(report, profile)) + ".",
                {series(added ? "before" : "residual", "before", curves.at("residual_before")),
                 series("after", "after", curves.at("residual_after"))}};
   return drawn(curves, form, unit) + drawn(curves, rest, unit);
@@ -104,15 +98,16 @@ std::string contributions(const Json& curves, const std::string& id) {
              "Each effect of the final model on its own over the trace position.",
              "trace position, mm", "contribution, " + unit});
   for (std::size_t i = 0; i < effects.size(); ++i)
-    plot.line(effects[i].get<std::string>(), "e" + std::to_string(i % 8),
+    plot.line(effects[i].get<std::string>(), numbered("e", i % kStyles),
               numbers_of(curves, "contribution_position_mm"), values[i].get<std::vector<double>>());
   if (plot.empty()) return "";
-  return figure(plot.svg(),
-                "<b>" + escaped(profile) +
-                    "</b>: what each effect of the final model puts into the profile, its mean "
-                    "included. <b>Good:</b> each is well below the whole. Large curves that cancel "
-                    "one another mean that these data hardly tell those effects apart; where a "
-                    "parameter is not determined, the share of its effect is a convention.");
+  return html_figure(
+      plot.svg(),
+      "<b>" + escaped(profile) +
+          "</b>: what each effect of the final model puts into the profile, its mean "
+          "included. <b>Good:</b> each is well below the whole. Large curves that cancel "
+          "one another mean that these data hardly tell those effects apart; where a "
+          "parameter is not determined, the share of its effect is a convention.");
 }
 
 }  // namespace
@@ -122,7 +117,7 @@ std::string html_profile_pictures(const Json& report) {
   const Json& profiles = list_of(report.at("curves"), "profiles");
   std::string out;
   for (std::size_t i = 0; i < profiles.size(); ++i) {
-    const std::string id = "p" + std::to_string(i);
+    const std::string id = numbered("p", i);
     out += of_profile(report, profiles[i], id) + contributions(profiles[i], id);
   }
   if (out.empty()) return "";

@@ -11,13 +11,13 @@ using Column = HtmlTable::Column;
 
 /// Links to the sections of the page.
 std::string contents(const std::string& main) {
-  const std::string opening = "<section id=\"", title = "-h\">", end = "</h2>";
+  const std::string opening = "<h2 id=\"", middle = "-h\">", end = "</h2>";
   std::string out;
   for (std::size_t at = 0; (at = main.find(opening, at)) != std::string::npos;) {
-    at += opening.size();
-    const std::string id = main.substr(at, main.find('"', at) - at);
-    const std::size_t from = main.find(title, at) + title.size();
-    out += "<li><a href=\"#" + id + "\">" + main.substr(from, main.find(end, from) - from) +
+    const std::size_t id = at + opening.size(), stop = main.find(middle, id);
+    const std::size_t title = stop + middle.size();
+    at = main.find(end, title);
+    out += "<li><a href=\"#" + main.substr(id, stop - id) + "\">" + main.substr(title, at - title) +
            "</a></li>\n";
   }
   return "<nav aria-label=\"Contents\"><ol>\n" + out + "</ol></nav>\n";

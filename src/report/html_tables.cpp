@@ -1,153 +1,12 @@
-#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "html_parts.hpp"
-#include "slideway/base/error.hpp"
 
 namespace slideway {
 namespace {
 
 using Column = HtmlTable::Column;
-constexpr std::size_t kLargest = 20;  // correlations listed
-
-std::string number_cell(const Json& object, const char* key, int digits = 4) {
-  const auto value = number_of(object, key);
-  return value ? html_number(*value, digits) : "–";
-}
-
-std::string plain(const std::string& text) { return text.empty() ? "" : "<p>" + text + "</p>\n"; }
-
-std::string notes(const Json& owner, const char* key, const std::string& title) {
-  std::vector<std::string> items;
-  for (const Json& note : list_of(owner, key)) items.push_back(escaped(note.get<std::string>()));
-  return items.empty() ? "" : "<h3>" + title + "</h3>\n" + html_list(items);
-}
-
-// --- uncertainty --------------------------------------------------------------------------------
-
-std::string budget(const Json& report) {
-  HtmlTable table("Uncertainty budget: squares of the contributions add up",
-                  {{"parameter", Column::text},
-                   {"source", Column::text},
-                   {"type", Column::text},
-                   {"u", Column::number},
-                   {"unit", Column::text},
-                   {"share of u²", Column::number}});
-  for (const Json& each : list_of(report, "uncertainty_budget")) {
-    double total = 0.0;
-    for (const Json& line : each.at("lines"))
-      total += std::pow(line.at("standard_uncertainty").get<double>(), 2);
-    for (const Json& line : each.at("lines")) {
-      const double u = line.at("standard_uncertainty").get<double>();
-      table.add(
-          {text_of(each, "parameter"), text_of(line, "source"), text_of(line, "type"),
-           html_number(u, 2), html_unit(each.at("unit").get<std::string>()),
-           total > 0.0 ? html_number(std::round(1000.0 * u * u / total) / 10.0, 3) + " %" : "–"});
-    }
-  }
-  return table.html();
-}
-
-std::string noise(const Json& fit) {
-  HtmlTable table(
-      "How the uncertainties were scaled: noise of one low-band value, AR(p) "
-      "correlation of the residual",
-      {{"profile", Column::text},
-       {"standard uncertainty", Column::text},
-       {"p", Column::number},
-       {"standard deviation", Column::number},
-       {"correlation length, mm", Column::number},
-       {"effective values", Column::number},
-       {"Ljung-Box p", Column::number}});
-  for (const Json& n : list_of(fit, "noise"))
-    table.add({text_of(n, "profile"), text_of(n, "scaling"), number_cell(n, "order"),
-               html_size(n, "standard_deviation"), number_cell(n, "correlation_mm", 3),
-               number_cell(n, "effective_observations", 3),
-               html_probability(n.at("ljung_box_p").get<double>())});
-  return table.html();
-}
-
-std::string correlations(const Json& fit) {
-  std::vector<Json> pairs = list_of(fit, "correlations").get<std::vector<Json>>();
-  const auto size = [](const Json& pair) { return std::abs(pair.at(2).get<double>()); };
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [&](const Json& a, const Json& b) { return size(a) > size(b); });
-  HtmlTable table(
-      "Correlation of the estimates (declared model), the " +
-          std::to_string(std::min(kLargest, pairs.size())) + " largest of " +
-          std::to_string(pairs.size()) + " above 0.1",
-      {{"parameter", Column::text}, {"parameter", Column::text}, {"ρ", Column::number}});
-  for (std::size_t i = 0; i < std::min(kLargest, pairs.size()); ++i)
-    table.add({escaped(pairs[i].at(0).get<std::string>()),
-               escaped(pairs[i].at(1).get<std::string>()),
-               html_number(pairs[i].at(2).get<double>(), 4)});
-  return table.html();
-}
-
-std::string covered() {
-  return "<p class=\"hint\">Covered: noise of the profiles, its correlation, and the priors of the "
-         "problem file. <b>Not covered:</b> calibration of the instrument (scale, datum, tip), "
-         "temperature, clamping, change of the workpiece between cutting and measuring, and "
-         "whatever the model leaves out without a trace in the residual. Put these into the "
-         "combined uncertainty by hand (GUM 5; ISO/TR 230-9).</p>\n";
-}
-
-std::string uncertainty(const Json& report) {
-  std::string out = budget(report);
-  if (has(report, "fit")) {
-    const Json& fit = report.at("fit");
-    out += noise(fit) + correlations(fit);
-    HtmlTable levelling(
-        "Levelling of the traces, found with the parameters",
-        {{"trace", Column::text}, {"value ± U", Column::number}, {"unit", Column::text}});
-    for (const Json& p : list_of(fit, "nuisances")) {
-      const auto value = number_of(p, "value"), U = number_of(p, "expanded_uncertainty");
-      if (value && U)
-        levelling.add({text_of(p, "name"), html_pair(*value, *U),
-                       html_unit(p.at("unit").get<std::string>())});
-    }
-    out += levelling.html() + covered() + notes(fit, "notes", "Notes of the fit");
-  }
-  return html_section("uncertainty", "Uncertainty", out);
-}
-
-// --- what can not be determined -----------------------------------------------------------------
-
-std::string in_words(const Json& combination) {
-  std::string out;
-  for (const auto& [name, factor] : combination.items()) {
-    const double value = factor.get<double>();
-    out += out.empty() ? (value < 0.0 ? "−" : "") : (value < 0.0 ? " − " : " + ");
-    const std::string size = html_number(std::abs(value), 3);
-    out += (size == "1" ? "" : size + " ") + escaped(name);
-  }
-  return out;
-}
-
-std::string identifiability(const Json& report) {
-  if (!has(report, "fit")) return "";
-  const Json& what = report.at("fit").at("identifiability");
-  HtmlTable lost("Directions in which no prediction changes",
-                 {{"combination", Column::text}, {"what would determine it", Column::text}});
-  for (const Json& direction : list_of(what, "unidentifiable"))
-    lost.add({in_words(direction.at("combination")), text_of(direction, "advice")});
-  HtmlTable found(
-      "What the data determine instead",
-      {{"combination", Column::text}, {"value ± U", Column::number}, {"unit", Column::text}});
-  for (const Json& sum : list_of(what, "determined"))
-    found.add(
-        {in_words(sum.at("combination")),
-         html_pair(sum.at("value").get<double>(), sum.at("expanded_uncertainty").get<double>()),
-         html_unit(sum.at("unit").get<std::string>())});
-  return html_section(
-      "identifiability", "What can not be determined",
-      plain((lost.empty() ? "All parameters of the declared model are determined: rank "
-                          : "The declared model has rank ") +
-            text_of(what, "rank") + " of " + text_of(what, "parameters") + ", condition " +
-            html_number(what.at("condition").get<double>(), 3) + ".") +
-          lost.html() + found.html());
-}
 
 // --- what-if --------------------------------------------------------------------------------
 
@@ -215,12 +74,12 @@ std::string inputs(const Json& report) {
     files.add({name, text_of(in, "file"), in.contains("format") ? text_of(in, "format") : "–",
                "<code>" + text_of(in, "sha256") + "</code>"});
     sizes.add({name, text_of(in, "kind") + " " + text_of(in, "quantity"), text_of(in, "role"),
-               number_cell(in, "samples", 9), number_cell(in, "position_min_mm", 6),
-               number_cell(in, "position_max_mm", 6), html_size(in, "rms"), html_size(in, "pv"),
-               number_cell(in, "missing", 9), number_cell(in, "left_out", 9)});
+               html_cell(in, "samples", 9), html_cell(in, "position_min_mm", 6),
+               html_cell(in, "position_max_mm", 6), html_size(in, "rms"), html_size(in, "pv"),
+               html_cell(in, "missing", 9), html_cell(in, "left_out", 9)});
     for (const Json& each : list_of(in, "outliers"))
-      outliers.add({name, number_cell(each, "row", 9), text_of(each, "kind"),
-                    number_cell(each, "value"), number_cell(each, "expected"),
+      outliers.add({name, html_cell(each, "row", 9), text_of(each, "kind"),
+                    html_cell(each, "value"), html_cell(each, "expected"),
                     html_unit(each.at("unit").get<std::string>())});
     for (const Json& note : list_of(in, "notes"))
       remarks.push_back(name + ": " + escaped(note.get<std::string>()));
@@ -239,11 +98,11 @@ std::string setups(const Json& report) {
                                                             {"cut radius, mm", Column::number},
                                                             {"stylus, mm/s", Column::number}});
   for (const Json& s : list_of(report, "setups"))
-    table.add({text_of(s, "profile"), number_cell(s, "z_mm"), number_cell(s, "overhang_mm"),
-               number_cell(s, "center_mm"), number_cell(s, "feed_mm_per_min"),
-               number_cell(s, "spindle_rpm"),
+    table.add({text_of(s, "profile"), html_cell(s, "z_mm"), html_cell(s, "overhang_mm"),
+               html_cell(s, "center_mm"), html_cell(s, "feed_mm_per_min"),
+               html_cell(s, "spindle_rpm"),
                has(s, "cut_direction") ? text_of(s, "cut_direction") : "–",
-               number_cell(s, "cut_radius_mm"), number_cell(s, "traverse_mm_per_s")});
+               html_cell(s, "cut_radius_mm"), html_cell(s, "traverse_mm_per_s")});
   return table.html();
 }
 
@@ -297,11 +156,10 @@ std::string options(const Json& report) {
                      html_number(prior.at("standard_uncertainty").get<double>(), 3)});
     if (has(given, "runout")) {
       const Json& r = given.at("runout");
-      table.add({"run-out, Eq. (21)", "r = " + number_cell(r, "r_um") +
-                                          " µm, p = " + number_cell(r, "p_um") +
-                                          " µm over L = " + number_cell(r, "diameter_mm") +
-                                          " mm, standard uncertainty " +
-                                          number_cell(r, "standard_uncertainty_um") + " µm"});
+      table.add({"run-out, Eq. (21)",
+                 "r = " + html_cell(r, "r_um") + " µm, p = " + html_cell(r, "p_um") +
+                     " µm over L = " + html_cell(r, "diameter_mm") + " mm, standard uncertainty " +
+                     html_cell(r, "standard_uncertainty_um") + " µm"});
     }
   }
   return table.html();
@@ -338,8 +196,8 @@ std::string to_fill_in() {
 }  // namespace
 
 std::string html_tables(const Json& report) {
-  return what_if(report) + uncertainty(report) + identifiability(report) +
-         html_loop_tables(report) + html_section("data", "Data", inputs(report) + setups(report)) +
+  return what_if(report) + html_uncertainty(report) + html_loop_tables(report) +
+         html_section("data", "Data", inputs(report) + setups(report)) +
          html_section("model", "Model and options",
                       model(report) + options(report) + conventions() + to_fill_in());
 }

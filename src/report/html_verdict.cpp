@@ -10,6 +10,7 @@ namespace slideway {
 namespace {
 
 using Column = HtmlTable::Column;
+constexpr double kWorthTelling = 0.01;  // of U, a shift
 
 std::string joined_names(const Json& names, const std::string& separator) {
   std::string out;
@@ -64,7 +65,7 @@ Verdict verdict_of(const Json& report) {
   const Json& trace = report.at("trace");
   const std::string verdict = trace.at("verdict").get<std::string>();
   const std::string fall = overall_change(report);
-  const std::string falls = fall.empty() ? "" : " With it the residual goes from " + fall + " rms.";
+  const std::string falls = fall.empty() ? "" : " The residual goes from " + fall + " rms.";
   if (verdict == "nothing_missing")
     return {"Nothing missing", "good",
             "The declared effects explain the measured profiles down to noise (lack of fit p = " +
@@ -150,7 +151,7 @@ void add_squareness(const Json& report, std::vector<Fact>& facts) {
     facts.emplace_back(head, with_k(*found, 1.0, "rad") + "<br>" + with_k(*found, 1e-6, "µm/m") +
                                  "<br>" + with_k(*found, kArcsecond, "″ (arcsec)") +
                                  "<br><small>± U, k = " + html_number(found->k, 3) +
-                                 "; + tilts +X towards −Z: the face falls outwards</small>");
+                                 "; positive: the face falls from centre to rim</small>");
   }
 }
 
@@ -174,11 +175,13 @@ void add_straightness(const Json& report, std::vector<Fact>& facts) {
 std::string result_table(const Json& report, std::vector<Fact>& facts) {
   const bool bent = has(report, "before") && has(report, "trace") &&
                     !list_of(report.at("trace"), "rounds").empty();
-  std::vector<std::pair<std::string, Column>> columns{
-      {"parameter", Column::text}, {"", Column::text},    {"value ± U", Column::number},
-      {"unit", Column::text},      {"k", Column::number}, {"u", Column::number}};
+  std::vector<std::pair<std::string, Column>> columns{{"parameter", Column::text},
+                                                      {"value ± U", Column::number},
+                                                      {"unit", Column::text},
+                                                      {"k", Column::number},
+                                                      {"u", Column::number}};
   if (bent) {
-    columns.emplace_back("declared model alone", Column::number);
+    columns.emplace_back("declared model", Column::number);
     columns.emplace_back("shift / U", Column::number);
   }
   HtmlTable table("Parameters, expanded uncertainty U = k u (95.45 % coverage)" +
@@ -189,13 +192,12 @@ std::string result_table(const Json& report, std::vector<Fact>& facts) {
   for (const Json& p : final_parameters(report)) {
     const auto now = known(p);
     std::vector<std::string> cells{
-        text_of(p, "name"),
-        html_symbol(p.at("symbol").get<std::string>()),
+        html_symbol(p.at("symbol").get<std::string>()) + " <small>" + text_of(p, "name") +
+            "</small>",
         now               ? html_pair(now->value, now->U)
         : has(p, "value") ? html_number(p.at("value").get<double>(), 4) + " (no uncertainty)"
                           : "not determined",
-        html_unit(p.at("unit").get<std::string>()),
-        now ? html_number(now->k, 3) : "",
+        html_unit(p.at("unit").get<std::string>()), now ? html_number(now->k, 3) : "",
         has(p, "standard_uncertainty") ? html_number(p.at("standard_uncertainty").get<double>(), 2)
                                        : ""};
     if (bent) {
@@ -206,7 +208,7 @@ std::string result_table(const Json& report, std::vector<Fact>& facts) {
         was = html_number(value, 4);
         if (!now || !(now->U > 0.0)) continue;
         const double shifted = (value - now->value) / now->U;
-        shift = html_number(shifted, 2);
+        shift = html_number(std::round(1000.0 * shifted) / 1000.0, 2);
         if (std::abs(shifted) > std::abs(most)) most = shifted, which = text_of(p, "name");
       }
       cells.push_back(was);
@@ -214,7 +216,7 @@ std::string result_table(const Json& report, std::vector<Fact>& facts) {
     }
     table.add(cells);
   }
-  if (!which.empty())
+  if (std::abs(most) >= kWorthTelling)
     facts.emplace_back("What the missing effect had bent most",
                        "<b>" + which + "</b> by " + html_number(most, 2) + " U");
   return table.html();
