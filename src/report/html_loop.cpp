@@ -96,7 +96,7 @@ std::string unnamed(const Json& trace) {
   const Json& left = trace.at("unnamed");
   std::string out = "<p>Left without a name: " + html_size(left, "rms") + " rms, " +
                     html_size(left, "pv") + " peak to valley on <b>" + text_of(left, "profile") +
-                    "</b> (lack of fit p = " + html_probability(left.at("p_value").get<double>()) +
+                    "</b> (lack of fit " + html_p_value(left.at("p_value").get<double>()) +
                     "), largest from " + html_cell(left, "from_mm", 4) + " to " +
                     html_cell(left, "to_mm", 4) + " mm";
   if (has(left, "clock") && !left.at("clock").get_ref<const std::string&>().empty())

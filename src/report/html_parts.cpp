@@ -98,6 +98,8 @@ std::string html_probability(double p) {
   return p < 1e-4 ? "&lt; 10<sup>−4</sup>" : html_number(p, 2);
 }
 
+std::string html_p_value(double p) { return (p < 1e-4 ? "p " : "p = ") + html_probability(p); }
+
 std::string html_unit(std::string_view unit) {
   if (unit == "1") return "";
   if (unit == "um") return "µm";

@@ -28,7 +28,8 @@ bool has(const Json& object, const char* key);  // and is not null
 /// Numbers in words of HTML: a true minus, powers of ten raised. @throws DataError  not finite
 std::string html_number(double value, int digits);
 std::string html_pair(double value, double uncertainty);  // value ± uncertainty
-std::string html_probability(double p);
+std::string html_probability(double p);                   // "0.02", "< 10⁻⁴"
+std::string html_p_value(double p);                       // "p = 0.02", "p < 10⁻⁴"
 
 /// "mm^-1" with its exponent raised, "um" as µm; "" for a bare number.
 std::string html_unit(std::string_view unit);

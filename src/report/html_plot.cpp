@@ -95,8 +95,7 @@ struct Plot::Axis {
         const double value = factor * std::pow(10.0, decade);
         if (value < low * (1.0 - 1e-9) || value > high * (1.0 + 1e-9) || (!few && factor > 1.0))
           continue;
-        std::string text = significant(value, 1);
-        ticks.emplace_back(value, text);
+        ticks.emplace_back(value, tick_text(value, value));
       }
   }
 };

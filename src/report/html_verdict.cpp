@@ -68,8 +68,8 @@ Verdict verdict_of(const Json& report) {
   const std::string falls = fall.empty() ? "" : " The residual goes from " + fall + " rms.";
   if (verdict == "nothing_missing")
     return {"Nothing missing", "good",
-            "The declared effects explain the measured profiles down to noise (lack of fit p = " +
-                html_probability(trace.at("lack_of_fit_p").get<double>()) + ")."};
+            "The declared effects explain the measured profiles down to noise (lack of fit " +
+                html_p_value(trace.at("lack_of_fit_p").get<double>()) + ")."};
   if (verdict == "explained")
     return {"Explained", "good",
             "The declared model lacked " + found(trace) + ", and now has it." + falls};

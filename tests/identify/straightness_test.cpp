@@ -4,6 +4,10 @@
 
 #include <cmath>
 
+#include "identify/cases.hpp"
+#include "slideway/base/random.hpp"
+#include "slideway/identify/budget.hpp"
+
 namespace slideway {
 namespace {
 
@@ -63,6 +67,68 @@ TEST(ReferenceLines, MinimumZoneIsTheNarrowest) {
   for (double slope = -1.0; slope <= 1.0; slope += 1e-3) {
     const Eigen::VectorXd rest = z - slope * x;
     EXPECT_GE(rest.maxCoeff() - rest.minCoeff(), lines[2].error - 1e-12);
+  }
+}
+
+/// A reading along 200 mm of a slide that is a parabola of 4 µm, two runs with noise of 10 nm.
+std::vector<Profile> parabolic_slide() {
+  std::vector<Profile> runs;
+  for (const std::string name : {"first", "second"}) {
+    RandomStream noise(1, name);
+    const std::vector<double> x = cases::spaced(0.0, 200.0, 400);
+    std::vector<double> z;
+    for (const double at : x) z.push_back(4e-3 * std::pow(at / 200.0, 2) + 1e-5 * noise.normal());
+    runs.push_back(cases::profile(name, Kind::slide, x, z));
+  }
+  return runs;
+}
+
+TEST(IdentifiedStraightness, IsThatOfTheSlideWithinItsUncertainty) {
+  const std::vector<Profile> runs = parabolic_slide();
+  const Model model =
+      build_model(cases::problem(Lever::paper, 0, {cases::effect("straightness", 3)}), runs);
+  const auto found = identified_straightness(model, fit(model));
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->errors.size(), 3U) << found->reason;
+  for (const auto& error : found->errors) {
+    if (error.line == "least squares") continue;
+    EXPECT_NEAR(error.error_um, 1.0, 2.0 * error.expanded_uncertainty_um) << error.line;
+    EXPECT_LT(error.expanded_uncertainty_um, 0.02) << error.line;
+    EXPECT_GT(error.expanded_uncertainty_um, 0.0) << error.line;
+  }
+  EXPECT_NEAR(found->errors[0].lowest_at_mm, 100.0, 5.0);
+}
+
+TEST(IdentifiedStraightness, IsNotGivenWhereTheDataDoNotTellIt) {
+  // One lever and one face: b_2 x² and the cup are one column.
+  const std::vector<Profile> faces{
+      cases::face("face", 2.0, cases::spaced(0.0, 10.0, 400), parabolic_slide().front().values)};
+  const Model model = build_model(
+      cases::problem(Lever::paper, 0, {cases::effect("straightness", 2), cases::effect("cup")}),
+      faces);
+  const auto found = identified_straightness(model, fit(model));
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->errors.empty());
+  EXPECT_NE(found->reason, "");
+}
+
+TEST(UncertaintyBudget, AddsUpToTheUncertaintyOfEachParameter) {
+  const std::vector<Profile> runs = parabolic_slide();
+  DeclaredEffect straightness = cases::effect("straightness", 3);
+  straightness.priors = {{"b2", 1e-7, 1e-9}};
+  const Model model = build_model(cases::problem(Lever::paper, 0, {straightness}), runs);
+  const Fit fitted = fit(model);
+  const FitResult numbers = summarise(model, fitted);
+  const std::vector<Budget> budgets = uncertainty_budget(model, fitted);
+  ASSERT_FALSE(budgets.empty());
+  for (const Budget& budget : budgets) {
+    ASSERT_EQ(budget.lines.size(), 4U);  // two runs, the prior, the weights
+    double variance = 0.0;
+    for (const BudgetLine& line : budget.lines)
+      variance += line.standard_uncertainty * line.standard_uncertainty;
+    EXPECT_NEAR(std::sqrt(variance) / *numbers.find(budget.parameter)->standard_uncertainty, 1.0,
+                1e-9)
+        << budget.parameter;
   }
 }
 
