@@ -35,7 +35,7 @@ TEST(Plot, KeepsTheExtremesOfALongLine) {
   // The margin is 4 % of the range at both ends: the spike stands 1/27 below the top.
   const double top = 6.0 + 16.0, bottom = 260.0;
   const double spike = bottom - (bottom - top) * 1.04 / 1.08;
-  EXPECT_THAT(svg, HasSubstr("," + std::to_string(static_cast<int>(spike)) + "."));
+  EXPECT_THAT(svg, HasSubstr(std::string(",").append(std::to_string(static_cast<int>(spike)))));
 }
 
 TEST(Plot, IsDrawnForAConstantAndForASinglePoint) {
