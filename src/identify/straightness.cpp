@@ -10,7 +10,6 @@ namespace slideway {
 namespace {
 
 constexpr Eigen::Index kPoints = 201;
-constexpr double kUndetermined = 1e-6;  // of what a free direction moves, beside rounding
 
 /// Deviation of each point from the least-squares line: deviations = matrix * heights.
 Eigen::MatrixXd least_squares_deviations(const Eigen::VectorXd& x) {
@@ -104,13 +103,13 @@ Eigen::MatrixXd locus(const Model& model, const ModelTerm& term, const Eigen::Ve
   return columns;
 }
 
-bool is_determined(const Eigen::MatrixXd& locus, const Eigen::MatrixXd& deviations,
-                   const Eigen::MatrixXd& null_space) {
-  for (Eigen::Index d = 0; d < null_space.cols(); ++d) {
-    const Eigen::VectorXd moved = locus * null_space.col(d);
-    const double size = std::max(moved.norm(), 1e-9 * locus.norm() * null_space.col(d).norm());
-    if ((deviations * moved).norm() > kUndetermined * size) return false;
-  }
+/// All but offset and slope, which the reference line takes.
+bool is_determined(const ModelTerm& term, const Fit& fit) {
+  const std::vector<Parameter>& parameters = term.effect->parameters();
+  for (std::size_t p = 0; p < parameters.size(); ++p)
+    if (!fit.null.identifiable[term.first_parameter + static_cast<Eigen::Index>(p)] &&
+        !fixed_by_convention(term.name + "." + parameters[p].name))
+      return false;
   return true;
 }
 
@@ -133,7 +132,7 @@ std::optional<IdentifiedStraightness> identified_straightness(const Model& model
   const Eigen::Index first = term->first_amplitude, count = columns.cols();
   const Eigen::MatrixXd deviations = least_squares_deviations(x);
   IdentifiedStraightness out;
-  if (!is_determined(columns, deviations, fit.rank.null_space.middleRows(first, count))) {
+  if (!is_determined(*term, fit)) {
     out.reason = "these data do not tell the straightness from another effect";
     return out;
   }

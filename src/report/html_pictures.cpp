@@ -176,12 +176,13 @@ std::string residual(const Json& curves, const std::string& id) {
   const double step = curves.at("lag_mm").get<double>(),
                limit = curves.at("white_limit").get<double>();
   const std::string first = after.empty() ? "residual" : "before";
+  const std::string style = after.empty() ? "after" : "before";
   Plot lags({id + "-autocorrelation", "Profile " + profile + ": autocorrelation of the residual",
              "Autocorrelation coefficient of the residual over the lag, with the 95 % limits of "
              "white noise.",
              "lag, mm", "autocorrelation"});
   lags.size(720, 220)
-      .line(first, "before", multiples(step, before.size()), before)
+      .line(first, style, multiples(step, before.size()), before)
       .line("after", "after", multiples(step, after.size()), after)
       .level("95 % of white noise", "limit", limit)
       .level("", "limit", -limit);
@@ -190,11 +191,13 @@ std::string residual(const Json& curves, const std::string& id) {
                  "Amplitude of the residual at each spatial frequency, both axes logarithmic.",
                  "frequency, cycles/mm", "amplitude, " + unit});
   spectrum.size(720, 240).log_x().log_y();
-  for (const char* when : {"before", "after"}) {
-    const Json& own = curves.at(std::string("spectrum_") + when);
-    spectrum.line(std::string(when) == "before" ? first : "after", when,
-                  numbers_of(own, "cycles_per_mm"), numbers_of(own, "amplitude"));
-  }
+  const auto add = [&](const std::string& name, const std::string& own, const char* key) {
+    const Json& numbers = curves.at(key);
+    spectrum.line(name, own, numbers_of(numbers, "cycles_per_mm"),
+                  numbers_of(numbers, "amplitude"));
+  };
+  add(first, style, "spectrum_before");
+  add("after", "after", "spectrum_after");
   std::string out;
   if (!lags.empty())
     out += html_figure(

@@ -59,6 +59,7 @@ std::string of_profile(const Json& report, const Json& curves, const std::string
   const std::string unit = raw_unit == "urad" ? "µrad" : "µm";
   const std::string y = raw_unit == "urad" ? "slope, µrad" : "height, µm";
   const bool added = !curves.at("residual_after").empty();
+  const std::string first = added ? "before" : "after";  // a style
   const std::string before = added ? "model, declared effects" : "model";
   const std::string name = "<b>" + escaped(profile) + "</b>";
   Drawing form{
@@ -70,7 +71,7 @@ std::string of_profile(const Json& report, const Json& curves, const std::string
           "levelling of the trace. <b>Good:</b> the model lies on the low band over the "
           "whole trace, the raw profile scatters evenly about both.",
       {series("raw", "raw", curves.at("raw")), series("low band", "low", curves.at("low_band")),
-       series(before, "before", curves.at("model_before")),
+       series(before, first, curves.at("model_before")),
        series("model with what was missing", "after", curves.at("model_after"))}};
   Drawing rest{{id + "-residual", "Profile " + profile + ": residual",
                 "Low band minus model over the trace position, before and after the missing "
@@ -82,7 +83,7 @@ std::string of_profile(const Json& report, const Json& curves, const std::string
                           : ". ") +
                    "<b>Good:</b> a level band about zero without trend, waves or steps" +
                    (added ? "" : noise_of(report, profile)) + ".",
-               {series(added ? "before" : "residual", "before", curves.at("residual_before")),
+               {series(added ? "before" : "residual", first, curves.at("residual_before")),
                 series("after", "after", curves.at("residual_after"))}};
   return drawn(curves, form, unit) + drawn(curves, rest, unit);
 }

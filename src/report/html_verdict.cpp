@@ -29,8 +29,13 @@ std::string change(const Json& round, const char* stem) {
   return "";
 }
 
+/// True if the loop has added effects to the declared model.
+bool was_extended(const Json& report) {
+  return has(report, "trace") && !list_of(report.at("trace"), "rounds").empty();
+}
+
 std::string overall_change(const Json& report) {
-  if (!has(report, "before") || !has(report, "after")) return "";
+  if (!was_extended(report) || !has(report, "before") || !has(report, "after")) return "";
   Json both = Json::object();
   for (const char* unit : {"rms_um", "rms_urad"})
     for (const char* when : {"before", "after"})
@@ -105,6 +110,7 @@ std::string cross_check(const Json& report, std::vector<std::string>& warnings) 
 
 std::string dominant(const Json& report) {
   const Json& dominant = report.at("dominant");
+  if (has(dominant, "doubt") && dominant.at("doubt") != "") return text_of(dominant, "doubt");
   const auto name = [&](const char* key) {
     return has(dominant, key) ? "<b>" + text_of(dominant, key) + "</b>" : std::string();
   };
@@ -114,7 +120,7 @@ std::string dominant(const Json& report) {
     return fit + " (correlation and fit agree)";
   return (correlation.empty() ? "" : "by correlation " + correlation) +
          (correlation.empty() || fit.empty() ? "" : ", by fit ") +
-         (correlation.empty() ? "by fit " : "") + fit + ": no clear lead, or the two disagree";
+         (correlation.empty() ? "by fit " : "") + fit;
 }
 
 const Json& final_parameters(const Json& report) {
@@ -173,8 +179,7 @@ void add_straightness(const Json& report, std::vector<Fact>& facts) {
 
 /// Declared parameters before and after the loop; the largest shift goes into the facts.
 std::string result_table(const Json& report, std::vector<Fact>& facts) {
-  const bool bent = has(report, "before") && has(report, "trace") &&
-                    !list_of(report.at("trace"), "rounds").empty();
+  const bool bent = has(report, "before") && was_extended(report);
   std::vector<std::pair<std::string, Column>> columns{{"parameter", Column::text},
                                                       {"value ± U", Column::number},
                                                       {"unit", Column::text},
@@ -280,8 +285,7 @@ std::string html_verdict(const Json& report) {
   if (const std::string name = dominant(report); !name.empty())
     facts.emplace_back("Dominates", name);
   if (!agreement.empty()) facts.emplace_back("Fit against run-out, Eq. (21)", agreement);
-  if (has(report, "trace") && !list_of(report.at("trace"), "rounds").empty())
-    facts.emplace_back("Was missing", found(report.at("trace")));
+  if (was_extended(report)) facts.emplace_back("Was missing", found(report.at("trace")));
   if (const std::string fall = overall_change(report); !fall.empty())
     facts.emplace_back("Residual rms, before → after", fall);
   else if (has(report, "fit"))

@@ -51,7 +51,7 @@
       axisLabelFontSize: 12,
       axes: {
         x: {valueFormatter: (x) => x.toPrecision(6) + ' mm'},
-        y: {valueFormatter: (y) => y.toPrecision(4) + ' ' + data.unit, axisLabelWidth: 60},
+        y: {valueFormatter: (y) => y.toPrecision(4) + ' ' + data.unit, axisLabelFormatter: (y) => String(+y.toPrecision(4)), axisLabelWidth: 60},
       },
       zoomCallback: () => follow(own),
     });
