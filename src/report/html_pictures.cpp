@@ -77,7 +77,11 @@ std::string straightness(const Json& report) {
           table.html() + "<p class=\"hint\">Evaluated from the fitted polynomial at " +
           std::to_string(x.size()) + " points over x = " + html_number(x.front(), 5) + " to " +
           html_number(x.back(), 5) + " mm, a step of " + html_number(step, 3) +
-          " mm: a limited representation of the slide.</p>\n");
+          " mm: a limited representation of the slide." +
+          (has(report, "trace") && has(report.at("trace"), "unnamed")
+               ? " U is here without what the structure without a name adds to it."
+               : "") +
+          "</p>\n");
 }
 
 // --- correlations -----------------------------------------------------------------------------

@@ -82,11 +82,12 @@ Verdict verdict_of(const Json& report) {
     return {"Ambiguous", "warn",
             "The declared model lacks an effect: " + found(trace) +
                 ". These data can not tell which." + falls};
+  const std::string beside = found(trace);
   if (verdict == "not_identifiable")
     return {"Not identifiable", "bad",
-            "The form is there, but these data can not tell what makes it."};
+            (beside.empty() ? "" : "The declared model lacked " + beside + "." + falls + " ") +
+                "A form is there of which these data can not tell what makes it."};
   if (verdict != "unnamed") throw DataError("'verdict' is none of this program");
-  const std::string beside = found(trace);
   const std::string size =
       has(trace, "unnamed") ? html_size(trace.at("unnamed"), "rms") + " rms" : "";
   return {"Unnamed", "bad",

@@ -1,5 +1,7 @@
 #include "slideway/trace/analysis.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "loop.hpp"
@@ -12,6 +14,18 @@ template <typename Error>
 [[noreturn]] void rethrow(const Problem& problem, const Error& error) {
   if (problem.path.empty()) throw error;
   throw Error(problem.path.string() + ": " + error.what());
+}
+
+/// What the structure without a name adds to the uncertainty of the parameters (widening.hpp).
+void add_widening(const TraceResult& trace, std::vector<Budget>& budgets) {
+  for (Budget& budget : budgets) {
+    double rest = 0.0;
+    for (const FittedParameter& parameter : trace.after)
+      if (parameter.name == budget.parameter && parameter.standard_uncertainty)
+        rest = std::pow(*parameter.standard_uncertainty, 2);
+    for (const BudgetLine& line : budget.lines) rest -= std::pow(line.standard_uncertainty, 2);
+    budget.lines.push_back({"structure without a name", 'A', std::sqrt(std::max(rest, 0.0))});
+  }
 }
 
 }  // namespace
@@ -28,6 +42,8 @@ Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
       Fitted before{build_model(problem, profiles), {}};
       before.fit = fit(before.model);
       analysis.details = make_details(problem, before, after ? &*after : nullptr);
+      if (analysis.trace && analysis.trace->unnamed)
+        add_widening(*analysis.trace, analysis.details->budget);
     }
     return analysis;
   } catch (const UsageError& error) {
