@@ -78,7 +78,7 @@ class InfoCommand : public ReportCommand {
   }
 
   int run() override {
-    keep_input(input_, json_file());
+    keep(input_);
     TraceFile file = read_trace(input_, request_);
     arguments_.add_units(file);
     const Summary summary = summarise(file.trace);

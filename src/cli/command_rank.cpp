@@ -43,7 +43,7 @@ class RankCommand : public ProblemCommand {
   }
 
   int run_columns() const {
-    keep_input(input(), json_file());
+    keep(input());
     const std::vector<ColumnRanking> ranking =
         rank_columns(input(), signal_, candidates_, options_);
     report([&] { return text(ranking); }, [&] { return json(ranking); });

@@ -15,15 +15,32 @@ ReportCommand::ReportCommand(std::string name, std::string arguments, std::strin
   add_options()("quiet,q", po::bool_switch(&quiet_), "no text on stdout");
 }
 
+void ReportCommand::add_html() {
+  add_options()("html", po::value(&html_)->value_name("FILE"),
+                "write the result as one self-contained page; - for stdout");
+}
+
+void ReportCommand::keep(const std::filesystem::path& input) const {
+  if (!json_.empty() && json_ == html_)
+    fail("--json and --html name one file, " + json_ + "; accepted: two");
+  keep_input(input, json_);
+  keep_input(input, html_);
+}
+
 void ReportCommand::report(const std::function<std::string()>& text,
                            const std::function<std::string()>& json) const {
-  if (!json_.empty()) write_output(json_, json());
-  if (!quiet_ && json_ != "-") print(text());
+  if (wants_json()) {
+    const std::string document = json();
+    if (!json_.empty()) write_output(json_, document);
+    if (!html_.empty()) write_output(html_, html_report(document));
+  }
+  if (!quiet_ && json_ != "-" && html_ != "-") print(text());
 }
 
 ProblemCommand::ProblemCommand(std::string name, std::string arguments, std::string summary)
     : ReportCommand(std::move(name), std::move(arguments), std::move(summary)) {
   add_input("PROBLEM", &input_);
+  add_html();
   add_options()("data", po::value(&data_)->value_name("DIR"),
                 "what ${SLIDEWAY_DATA} in the problem file stands for");
   add_options()("ignore-checksum", po::bool_switch(&ignore_checksum_),
@@ -35,19 +52,19 @@ void ProblemCommand::add_strict() {
 }
 
 int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
-  keep_input(input_, json_file());
+  keep(input_);
   Problem problem = read_problem(input_, data_directory(data_));
   for (ProfileEntry& entry : problem.profiles) {
-    keep_input(entry.source.path, json_file());
+    keep(entry.source.path);
     entry.source.request.ignore_checksum = ignore_checksum_;
   }
   const Analysis analysis = [&] {
     const ProgressLine line(closes_loop && !is_quiet());
-    return analyse(problem, read_profiles(problem), {scope, closes_loop},
+    return analyse(problem, read_profiles(problem), {scope, closes_loop, wants_json()},
                    [&](const std::string& stage) { line.show("closing the loop: " + stage); });
   }();
   report([&] { return text_report(analysis.result, analysis.trace); },
-         [&] { return json_report(analysis.result, analysis.trace); });
+         [&] { return json_report(analysis.result, analysis.trace, analysis.details); });
   return strict_ && is_negative(analysis) ? kNegativeVerdict : kDone;
 }
 

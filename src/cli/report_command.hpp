@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,7 +10,8 @@
 
 namespace slideway {
 
-/// A command whose result is a text for people and, with --json, a JSON document.
+/// A command whose result is a text for people and, with --json, a JSON document; with --html the
+/// page made of that.
 class ReportCommand : public Command {
  protected:
   ReportCommand(std::string name, std::string arguments, std::string summary);
@@ -18,11 +20,17 @@ class ReportCommand : public Command {
   void report(const std::function<std::string()>& text,
               const std::function<std::string()>& json) const;
 
-  [[nodiscard]] const std::string& json_file() const { return json_; }
+  /// Adds --html: the report() of this command is a document html_report() knows.
+  void add_html();
+
+  /// @throws UsageError  an output would replace the input
+  void keep(const std::filesystem::path& input) const;
+
+  [[nodiscard]] bool wants_json() const { return !json_.empty() || !html_.empty(); }
   [[nodiscard]] bool is_quiet() const { return quiet_; }
 
  private:
-  std::string json_;
+  std::string json_, html_;
   bool quiet_ = false;
 };
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "slideway/identify/result.hpp"
+#include "slideway/trace/details.hpp"
 #include "slideway/trace/trace.hpp"
 
 namespace slideway {
@@ -26,5 +27,11 @@ Json parameter_json(const FittedParameter& parameter);
 
 /// The `trace` part of the report.
 Json trace_json(const TraceResult& trace);
+
+/// All of the details but the curves, put into the report under keys of their own.
+void add_details(const Details& details, Json& report);
+
+/// The `curves` part; numbers with as many digits as a picture needs.
+Json curves_json(const Details& details);
 
 }  // namespace slideway

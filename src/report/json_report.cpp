@@ -185,9 +185,14 @@ void require_finite(const Json& json, const std::string& path) {
       require_finite(json[i], path + "[" + std::to_string(i) + "]");
 }
 
+std::string one_line(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace
 
-std::string json_report(const Result& result, const std::optional<TraceResult>& trace) {
+std::string json_report(const Result& result, const std::optional<TraceResult>& trace,
+                        const std::optional<Details>& details) {
   const RankingResult ranking = result.ranking.value_or(RankingResult{});
   Json report = {{"schema", "slideway.report/1"},
                  {"version", result.version},
@@ -202,7 +207,8 @@ std::string json_report(const Result& result, const std::optional<TraceResult>& 
   report["ranking_notes"] = ranking.notes;
   report["dominant"] = {{"by_correlation", or_null(result.dominant.by_correlation)},
                         {"by_fit", or_null(result.dominant.by_fit)},
-                        {"agree", or_null(result.dominant.agree)}};
+                        {"agree", or_null(result.dominant.agree)},
+                        {"doubt", result.dominant.doubt}};
   report["fit"] = result.fit ? fit_json(*result.fit, result) : Json(nullptr);
   report["crosscheck"] = crosscheck(result);
   report["trace"] = trace ? trace_json(*trace) : Json(nullptr);
@@ -214,9 +220,24 @@ std::string json_report(const Result& result, const std::optional<TraceResult>& 
                        {"rms_urad", or_null(trace->after_rms_urad)},
                        {"parameters", array_of(trace->after, parameter_json)}};
   }
+  if (details) add_details(*details, report);
   require_finite(report, "");
   // A file name need not be UTF-8.
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
+  if (details) {  // a line for each profile, not for each number
+    const Json curves = curves_json(*details);
+    require_finite(curves, "curves");
+    text.erase(text.rfind("\n}"));
+    text += ",\n  \"curves\": {\n    \"straightness\": " + one_line(curves["straightness"]) +
+            ",\n    \"profiles\": [";
+    std::string_view separator = "\n      ";
+    for (const Json& profile : curves["profiles"]) {
+      text.append(separator).append(one_line(profile));
+      separator = ",\n      ";
+    }
+    text += "\n    ]\n  }\n}";
+  }
+  return text + "\n";
 }
 
 }  // namespace slideway

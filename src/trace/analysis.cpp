@@ -1,7 +1,10 @@
 #include "slideway/trace/analysis.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
+#include "loop.hpp"
 #include "slideway/base/error.hpp"
 
 namespace slideway {
@@ -13,13 +16,35 @@ template <typename Error>
   throw Error(problem.path.string() + ": " + error.what());
 }
 
+/// What the structure without a name adds to the uncertainty of the parameters (widening.hpp).
+void add_widening(const TraceResult& trace, std::vector<Budget>& budgets) {
+  for (Budget& budget : budgets) {
+    double rest = 0.0;
+    for (const FittedParameter& parameter : trace.after)
+      if (parameter.name == budget.parameter && parameter.standard_uncertainty)
+        rest = std::pow(*parameter.standard_uncertainty, 2);
+    for (const BudgetLine& line : budget.lines) rest -= std::pow(line.standard_uncertainty, 2);
+    budget.lines.push_back({"structure without a name", 'A', std::sqrt(std::max(rest, 0.0))});
+  }
+}
+
 }  // namespace
 
 Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
                  const AnalysisOptions& options, const Progress& progress) {
   try {
-    Analysis analysis{identify(problem, profiles, options.scope), std::nullopt};
-    if (options.closes_loop) analysis.trace = close_loop(problem, profiles, progress);
+    Analysis analysis{identify(problem, profiles, options.scope), std::nullopt, std::nullopt};
+    std::optional<Fitted> after;
+    if (options.closes_loop)
+      analysis.trace =
+          close_loop(problem, profiles, progress, options.with_details ? &after : nullptr);
+    if (options.with_details) {
+      Fitted before{build_model(problem, profiles), {}};
+      before.fit = fit(before.model);
+      analysis.details = make_details(problem, before, after ? &*after : nullptr);
+      if (analysis.trace && analysis.trace->unnamed)
+        add_widening(*analysis.trace, analysis.details->budget);
+    }
     return analysis;
   } catch (const UsageError& error) {
     rethrow(problem, error);

@@ -61,9 +61,15 @@ const FitResult& Extender::summary(const Extended& extended) const {
 
 FitResult Extender::summarised(const Extended& extended) const {
   if (!declared_) return summarise(extended.model, extended.fit);
-  Model model = with(*declared_, extended.added);
-  leave_out_centre(model, extended.lost_centre_mm);
-  return summarise(model, fit(model, shapes_of(extended.added)));
+  const Fitted fitted = declared(extended);
+  return summarise(fitted.model, fitted.fit);
+}
+
+Fitted Extender::declared(const Extended& extended) const {
+  Fitted out{with(declared_ ? *declared_ : base_, extended.added), {}};
+  leave_out_centre(out.model, extended.lost_centre_mm);
+  out.fit = fit(out.model, shapes_of(extended.added));
+  return out;
 }
 
 Eigen::VectorXd Extender::shapes_of(const std::vector<Added>& added) const {

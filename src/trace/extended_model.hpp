@@ -2,6 +2,7 @@
 
 #include "dictionary.hpp"
 #include "slideway/identify/fit.hpp"
+#include "slideway/trace/details.hpp"
 #include "slideway/trace/trace.hpp"
 
 namespace slideway {
@@ -48,6 +49,9 @@ class Extender {
 
   /// The report's numbers, in the declared low band. They live as long as `extended`.
   [[nodiscard]] const FitResult& summary(const Extended& extended) const;
+
+  /// The same model, fitted in the declared low band.
+  [[nodiscard]] Fitted declared(const Extended& extended) const;
 
  private:
   [[nodiscard]] FitResult summarised(const Extended& extended) const;

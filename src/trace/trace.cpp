@@ -8,6 +8,7 @@
 #include "detection.hpp"
 #include "fit_numbers.hpp"
 #include "gates.hpp"
+#include "loop.hpp"
 #include "outcome.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
@@ -30,7 +31,8 @@ class Loop {
         make_dictionary(extender_.base(), problem, extender_.base_fit().linear.prior_rows.rows());
   }
 
-  TraceResult run() {
+  /// @param last_model  set to the model with the effects that were added, if it asks and any was
+  TraceResult run(std::optional<Fitted>* last_model) {
     Extended state = extender_.extend({});
     before_ = extender_.summary(state);
     std::optional<Look> last;
@@ -53,6 +55,7 @@ class Loop {
     const bool retracted = retract(state, last->data);
     if (retracted) last = look_at(state);
     tell("describing what is left");
+    if (last_model && !state.added.empty()) last_model->emplace(extender_.declared(state));
     return report(state, *last, retracted);
   }
 
@@ -310,7 +313,12 @@ class Loop {
 
 TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles,
                        const Progress& progress) {
-  return Loop(problem, profiles, progress).run();
+  return close_loop(problem, profiles, progress, nullptr);
+}
+
+TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles,
+                       const Progress& progress, std::optional<Fitted>* last_model) {
+  return Loop(problem, profiles, progress).run(last_model);
 }
 
 bool is_negative(const TraceResult& trace) {

@@ -78,8 +78,10 @@ TEST_F(Identify, HasTheKeysOfWhatCanNotBeDetermined) {
 TEST_F(Identify, FindsTheSquarenessOfTheFullTravel) {
   const ProgramRun done = run({"identify", kFullTravel, "--no-trace", "--json", "-"});
   const json report = json::parse(done.out);
-  EXPECT_EQ(report["dominant"],
-            (json{{"by_correlation", "squareness"}, {"by_fit", "squareness"}, {"agree", true}}));
+  EXPECT_EQ(report["dominant"], (json{{"by_correlation", "squareness"},
+                                      {"by_fit", "squareness"},
+                                      {"agree", true},
+                                      {"doubt", ""}}));
   const json check = report["crosscheck"]["squareness"];
   // 2.8e-6 rad went into the data; U is 95 %, twice that fails with a normal error by 6e-5.
   EXPECT_NEAR(check["fit_rad"].get<double>(), 2.8e-6, 2.0 * check["fit_U_rad"].get<double>());

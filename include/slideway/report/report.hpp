@@ -2,8 +2,10 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "slideway/identify/result.hpp"
+#include "slideway/trace/details.hpp"
 #include "slideway/trace/trace.hpp"
 
 namespace slideway {
@@ -11,7 +13,13 @@ namespace slideway {
 /// The report as JSON, schema "slideway.report/1", two blanks of indent and a final newline.
 /// Deterministic: keys in a fixed order, numbers in their shortest round-trip form.
 /// @throws std::logic_error if a number is not finite.
-std::string json_report(const Result& result, const std::optional<TraceResult>& trace = {});
+std::string json_report(const Result& result, const std::optional<TraceResult>& trace = {},
+                        const std::optional<Details>& details = {});
+
+/// A JSON report as one self-contained page; the same JSON always makes the same page. A report
+/// without curves makes a page without pictures of them.
+/// @throws DataError  it is no JSON, of another schema, or something in it is of the wrong kind
+std::string html_report(std::string_view json);
 
 /// The report for people: aligned plain text in at most 80 columns, values with units, at most two
 /// digits of uncertainty.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "slideway/identify/identify.hpp"
+#include "slideway/trace/details.hpp"
 #include "slideway/trace/trace.hpp"
 
 namespace slideway {
@@ -11,12 +12,14 @@ namespace slideway {
 struct AnalysisOptions {
   Scope scope = Scope::identify;
   bool closes_loop = true;
+  bool with_details = false;
 };
 
 /// All that is found in one problem.
 struct Analysis {
   Result result;
   std::optional<TraceResult> trace;  // none where the loop was not asked for
+  std::optional<Details> details;    // the same
 };
 
 /// Identifies the declared model and closes the loop: the whole way from profiles to verdict.

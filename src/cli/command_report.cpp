@@ -1,0 +1,45 @@
+#include <memory>
+
+#include "command.hpp"
+#include "output.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/file.hpp"
+#include "slideway/report/report.hpp"
+
+namespace slideway {
+namespace {
+namespace po = boost::program_options;
+
+class ReportAgainCommand : public Command {
+ public:
+  ReportAgainCommand()
+      : Command("report", "RESULT.json --html FILE",
+                "Makes the page of a result written by --json") {
+    add_input("RESULT.json", &input_);
+    add_options()("html", po::value(&html_)->value_name("FILE"), "the page; - for stdout");
+  }
+
+  int run() override {
+    if (html_.empty()) fail("--html FILE is missing");
+    keep_input(input_, html_);
+    const FileBytes json(input_);
+    const std::string page = [&] {
+      try {
+        return html_report(json.text());
+      } catch (const DataError& error) {
+        throw DataError(input_ + ": " + error.what());
+      }
+    }();
+    write_output(html_, page);
+    return kDone;
+  }
+
+ private:
+  std::string input_, html_;
+};
+
+}  // namespace
+
+std::unique_ptr<Command> make_report() { return std::make_unique<ReportAgainCommand>(); }
+
+}  // namespace slideway

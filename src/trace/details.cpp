@@ -1,0 +1,227 @@
+#include "slideway/trace/details.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/signal/correlation.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::size_t kPoints = 3000;  // of the curves of a profile
+constexpr std::size_t kContributions = 900;
+constexpr std::size_t kStretches = 250;  // of a wavelet band
+constexpr std::size_t kMostLags = 200;
+constexpr int kPerDecade = 100;  // frequencies
+constexpr double kTwoSided95 = 1.96;
+
+std::span<const double> view(const Eigen::VectorXd& values) {
+  return {values.data(), static_cast<std::size_t>(values.size())};
+}
+
+std::vector<double> taken(const Eigen::VectorXd& values, const std::vector<std::size_t>& indices,
+                          double unit) {
+  std::vector<double> out;
+  out.reserve(indices.size());
+  for (const std::size_t i : indices) out.push_back(values[static_cast<Eigen::Index>(i)] / unit);
+  return out;
+}
+
+Eigen::VectorXd positions_of(const Profile& profile) {
+  return Eigen::Map<const Eigen::VectorXd>(profile.positions.data(), std::ssize(profile.positions));
+}
+
+/// One profile in one fitted model.
+class View {
+ public:
+  View(const Fitted& fitted, std::size_t which)
+      : fitted_(fitted), observation_(fitted.model.observations[which]) {}
+
+  [[nodiscard]] const Observation& observation() const { return observation_; }
+  [[nodiscard]] const Profile& profile() const { return *observation_.profile; }
+
+  /// In the low band, with the levelling.
+  [[nodiscard]] Eigen::VectorXd residual() const {
+    return levelled(observation_.values -
+                    model_values(fitted_.model, observation_, fitted_.fit.estimate));
+  }
+
+  [[nodiscard]] Eigen::VectorXd levelled(Eigen::VectorXd values) const {
+    if (observation_.nuisances.cols() > 0)
+      values -= observation_.nuisances * fitted_nuisances(observation_, values);
+    return values;
+  }
+
+  /// At the samples of the profile.
+  [[nodiscard]] Eigen::VectorXd full_length(const Eigen::VectorXd& low_band) const {
+    const std::vector<double> grid = observation_.low_band.reconstruct(view(low_band));
+    const Profile& own = profile();
+    Eigen::VectorXd out(std::ssize(own.positions));
+    if (!observation_.low_band.resampled())
+      return Eigen::Map<const Eigen::VectorXd>(grid.data(), out.size());
+    const auto last = static_cast<double>(grid.size() - 1);
+    const double scale = last / (own.positions.back() - own.positions.front());
+    for (Eigen::Index i = 0; i < out.size(); ++i) {
+      const double place =
+          std::clamp((own.positions[i] - own.positions.front()) * scale, 0.0, last);
+      const auto left = std::min(static_cast<std::size_t>(place), grid.size() - 2);
+      const double share = place - static_cast<double>(left);
+      out[i] = (1.0 - share) * grid[left] + share * grid[left + 1];
+    }
+    return out;
+  }
+
+  [[nodiscard]] Eigen::VectorXd contribution(const ModelTerm& term) const {
+    return effect_signal(fitted_.model, term, profile(), amplitudes(term), shapes(term));
+  }
+
+  [[nodiscard]] Eigen::VectorXd low_band_contribution(const ModelTerm& term) const {
+    return low_band_columns(fitted_.model, term, observation_, shapes(term)) * amplitudes(term);
+  }
+
+ private:
+  [[nodiscard]] Eigen::VectorXd amplitudes(const ModelTerm& term) const {
+    return fitted_.fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
+  }
+  [[nodiscard]] std::span<const double> shapes(const ModelTerm& term) const {
+    return {fitted_.fit.estimate.shapes.data() + term.first_shape, term.effect->shapes().size()};
+  }
+
+  const Fitted& fitted_;
+  const Observation& observation_;
+};
+
+void add_series(const View& before, const std::optional<View>& after, double unit,
+                ProfileCurves& out) {
+  const Profile& profile = before.profile();
+  const Eigen::VectorXd& values = before.observation().values;
+  const Eigen::Map<const Eigen::VectorXd> raw(profile.values.data(), std::ssize(profile.values));
+  const Eigen::VectorXd low = before.full_length(values);
+  const Eigen::VectorXd rest_before = before.full_length(before.residual());
+  Eigen::VectorXd rest_after;
+  std::vector<std::span<const double>> series{profile.values, view(low), view(rest_before)};
+  if (after) {
+    rest_after = after->full_length(after->residual());
+    series.push_back(view(rest_after));
+  }
+  const std::vector<std::size_t> indices = thinned(series, kPoints);
+  out.position_mm = taken(positions_of(profile), indices, 1.0);
+  out.raw = taken(raw, indices, unit);
+  out.low_band = taken(low, indices, unit);
+  out.model_before = taken(low - rest_before, indices, unit);
+  out.residual_before = taken(rest_before, indices, unit);
+  if (!after) return;
+  out.model_after = taken(low - rest_after, indices, unit);
+  out.residual_after = taken(rest_after, indices, unit);
+}
+
+void add_effects(const Fitted& fitted, const View& last, double unit, ProfileCurves& out) {
+  std::vector<Eigen::VectorXd> signals, low;
+  for (const ModelTerm& term : fitted.model.terms) {
+    out.effects.push_back(term.name);
+    signals.push_back(last.contribution(term));
+    low.push_back(last.low_band_contribution(term));
+  }
+  if (signals.empty()) return;
+  std::vector<std::span<const double>> series;
+  for (const Eigen::VectorXd& each : signals) series.push_back(view(each));
+  const std::vector<std::size_t> indices =
+      thinned(series, std::max(kContributions, 20 * series.size() + 2));
+  out.contribution_position_mm = taken(positions_of(last.profile()), indices, 1.0);
+  for (const Eigen::VectorXd& each : signals)
+    out.contributions.push_back(taken(each, indices, unit));
+  for (const Eigen::VectorXd& a : low) {
+    std::vector<double>& row = out.correlation.emplace_back();
+    for (const Eigen::VectorXd& b : low) row.push_back(pearson(view(a), view(b)));
+  }
+
+  const Observation& observation = last.observation();
+  const auto n = static_cast<double>(observation.values.size());
+  const double per_sample = std::sqrt(static_cast<double>(observation.low_band.samples()));
+  const auto predict = [&](const std::string& corrected, const Eigen::VectorXd& values) {
+    const Eigen::VectorXd left = last.levelled(values) / per_sample;
+    out.flatness.push_back({corrected, (left.maxCoeff() - left.minCoeff()) * std::sqrt(n) / unit,
+                            (left.array() - left.mean()).matrix().norm() / unit});
+  };
+  predict("", observation.values);
+  Eigen::VectorXd all = observation.values;
+  for (std::size_t i = 0; i < low.size(); ++i) {
+    predict(out.effects[i], observation.values - low[i]);
+    all -= low[i];
+  }
+  predict("all", all);
+}
+
+Spectrum spectrum_of(const Eigen::VectorXd& residual, double step_mm, double unit) {
+  Spectrum out = amplitude_spectrum(view(residual), kPerDecade);
+  for (double& each : out.cycles_per_sample) each /= step_mm;
+  for (double& each : out.amplitude) each /= unit;
+  return out;
+}
+
+void add_residuals(const View& before, const std::optional<View>& after, double unit,
+                   ProfileCurves& out) {
+  const Observation& observation = before.observation();
+  const auto n = static_cast<std::size_t>(observation.values.size());
+  const double per_value =
+      std::sqrt(static_cast<double>(observation.low_band.samples()) / static_cast<double>(n));
+  out.lag_mm = (before.profile().setup.last_mm - before.profile().setup.first_mm) /
+               static_cast<double>(std::max<std::size_t>(n - 1, 1));
+  out.white_limit = kTwoSided95 / std::sqrt(static_cast<double>(n));
+  const int lags = static_cast<int>(std::min(kMostLags, n / 4));
+  const Eigen::VectorXd left = before.residual();
+  out.autocorrelation_before = autocorrelation(view(left), lags);
+  out.spectrum_before = spectrum_of(left / per_value, out.lag_mm, unit);
+  if (!after) return;
+  const Eigen::VectorXd left_after = after->residual();
+  out.autocorrelation_after = autocorrelation(view(left_after), lags);
+  out.spectrum_after = spectrum_of(left_after / per_value, out.lag_mm, unit);
+}
+
+void add_bands(const Observation& observation, double unit, ProfileCurves& out) {
+  const LowBandOptions& options = observation.low_band.options();
+  if (options.level == 0) return;
+  Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(
+      observation.profile->values.data(), std::ssize(observation.profile->values));
+  values /= unit;
+  const Bands bands =
+      reconstruct_bands(daubechies(options.wavelet), options.boundary, options.level, view(values));
+  for (const std::vector<double>& band : bands.approximations)
+    out.approximations.push_back(envelope(band, kStretches));
+  for (const std::vector<double>& band : bands.details)
+    out.details.push_back(envelope(band, kStretches));
+}
+
+}  // namespace
+
+Details make_details(const Problem& problem, const Fitted& before, const Fitted* after) {
+  const Fitted& last = after ? *after : before;
+  Details out;
+  out.problem = problem;
+  for (std::size_t i = 0; i < before.model.observations.size(); ++i) {
+    const View declared(before, i);
+    const std::optional<View> extended = after ? std::optional(View(*after, i)) : std::nullopt;
+    const Profile& profile = declared.profile();
+    const bool slope = profile.setup.quantity == Quantity::slope;
+    const double unit = slope ? kMicroradian : kMicrometre;
+    ProfileCurves& curves = out.profiles.emplace_back();
+    curves.profile = profile.name;
+    curves.role = profile.role == Role::fit ? "fit" : "holdout";
+    curves.unit = slope ? "urad" : "um";
+    curves.setup = profile.setup;
+    add_series(declared, extended, unit, curves);
+    add_effects(last, extended ? *extended : declared, unit, curves);
+    add_residuals(declared, extended, unit, curves);
+    add_bands(declared.observation(), unit, curves);
+  }
+  for (const ModelTerm& term : last.model.terms)
+    out.effects.push_back(
+        {term.effect->description(),
+         std::none_of(before.model.terms.begin(), before.model.terms.end(),
+                      [&](const ModelTerm& each) { return each.name == term.name; })});
+  out.straightness = identified_straightness(last.model, last.fit);
+  out.budget = uncertainty_budget(last.model, last.fit);
+  return out;
+}
+
+}  // namespace slideway

@@ -1,0 +1,136 @@
+#include "slideway/identify/straightness.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "identify/cases.hpp"
+#include "slideway/base/random.hpp"
+#include "slideway/identify/budget.hpp"
+
+namespace slideway {
+namespace {
+
+// y = x² on [0, 1]: the end-point and the minimum-zone line have slope 1 and a strip of 1/4
+// (deviation x² - x, least at 1/2); the least-squares line is x - 1/6.
+class Parabola : public testing::Test {
+ protected:
+  Parabola()
+      : x_(Eigen::VectorXd::LinSpaced(1001, 0.0, 1.0)),
+        lines_(reference_lines(x_, x_.array().square())) {}
+  Eigen::VectorXd x_;
+  std::vector<ReferenceLine> lines_;
+};
+
+TEST_F(Parabola, HasTheErrorsOfItsThreeLines) {
+  ASSERT_EQ(lines_.size(), 3U);
+  EXPECT_EQ(lines_[0].name, "end-point");
+  EXPECT_NEAR(lines_[0].error, 0.25, 1e-12);
+  EXPECT_NEAR(lines_[0].highest, 0.0, 1e-12);
+  EXPECT_NEAR(lines_[0].lowest, -0.25, 1e-12);
+  EXPECT_EQ(lines_[0].lowest_at, 500U);
+  EXPECT_EQ(lines_[1].name, "least squares");
+  EXPECT_NEAR(lines_[1].slope, 1.0, 1e-9);
+  EXPECT_NEAR(lines_[1].at_zero, -1.0 / 6.0, 1e-3);  // of 1001 points, not of the integral
+  EXPECT_EQ(lines_[2].name, "minimum zone");
+  EXPECT_NEAR(lines_[2].error, 0.25, 1e-12);
+  EXPECT_NEAR(lines_[2].highest, 0.125, 1e-12);
+  EXPECT_NEAR(lines_[2].lowest, -0.125, 1e-12);
+}
+
+TEST_F(Parabola, SensitivityIsTheDerivativeOfTheError) {
+  const Eigen::VectorXd z = x_.array().square();
+  Eigen::VectorXd bent = z;
+  for (Eigen::Index i = 0; i < bent.size(); ++i) bent[i] += 1e-7 * std::sin(7.0 * x_[i]);
+  const std::vector<ReferenceLine> moved = reference_lines(x_, bent);
+  for (std::size_t l = 0; l < lines_.size(); ++l)
+    EXPECT_NEAR(lines_[l].sensitivity.dot(bent - z), moved[l].error - lines_[l].error, 1e-12)
+        << lines_[l].name;
+}
+
+TEST(ReferenceLines, OfAStraightLineLeaveNothing) {
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(11, -5.0, 5.0);
+  for (const ReferenceLine& line : reference_lines(x, 2.0 * x.array() + 1.0)) {
+    EXPECT_NEAR(line.error, 0.0, 1e-12) << line.name;
+    EXPECT_NEAR(line.slope, 2.0, 1e-12) << line.name;
+  }
+}
+
+// No line has a narrower strip than the minimum zone's; ISO 230-1:2012, 3.4.
+TEST(ReferenceLines, MinimumZoneIsTheNarrowest) {
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(101, 0.0, 10.0);
+  const Eigen::VectorXd z =
+      x.unaryExpr([](double v) { return std::sin(v) + 0.3 * std::cos(3.1 * v); });
+  const std::vector<ReferenceLine> lines = reference_lines(x, z);
+  EXPECT_LE(lines[2].error, lines[0].error);
+  EXPECT_LE(lines[2].error, lines[1].error);
+  for (double slope = -1.0; slope <= 1.0; slope += 1e-3) {
+    const Eigen::VectorXd rest = z - slope * x;
+    EXPECT_GE(rest.maxCoeff() - rest.minCoeff(), lines[2].error - 1e-12);
+  }
+}
+
+/// A reading along 200 mm of a slide that is a parabola of 4 µm, two runs with noise of 10 nm.
+std::vector<Profile> parabolic_slide() {
+  std::vector<Profile> runs;
+  for (const std::string name : {"first", "second"}) {
+    RandomStream noise(1, name);
+    const std::vector<double> x = cases::spaced(0.0, 200.0, 400);
+    std::vector<double> z;
+    for (const double at : x) z.push_back(4e-3 * std::pow(at / 200.0, 2) + 1e-5 * noise.normal());
+    runs.push_back(cases::profile(name, Kind::slide, x, z));
+  }
+  return runs;
+}
+
+TEST(IdentifiedStraightness, IsThatOfTheSlideWithinItsUncertainty) {
+  const std::vector<Profile> runs = parabolic_slide();
+  const Model model =
+      build_model(cases::problem(Lever::paper, 0, {cases::effect("straightness", 3)}), runs);
+  const auto found = identified_straightness(model, fit(model));
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->errors.size(), 3U) << found->reason;
+  for (const auto& error : found->errors) {
+    if (error.line == "least squares") continue;
+    EXPECT_NEAR(error.error_um, 1.0, 2.0 * error.expanded_uncertainty_um) << error.line;
+    EXPECT_LT(error.expanded_uncertainty_um, 0.02) << error.line;
+    EXPECT_GT(error.expanded_uncertainty_um, 0.0) << error.line;
+  }
+  EXPECT_NEAR(found->errors[0].lowest_at_mm, 100.0, 5.0);
+}
+
+TEST(IdentifiedStraightness, IsNotGivenWhereTheDataDoNotTellIt) {
+  // One lever and one face: b_2 x² and the cup are one column.
+  const std::vector<Profile> faces{
+      cases::face("face", 2.0, cases::spaced(0.0, 10.0, 400), parabolic_slide().front().values)};
+  const Model model = build_model(
+      cases::problem(Lever::paper, 0, {cases::effect("straightness", 2), cases::effect("cup")}),
+      faces);
+  const auto found = identified_straightness(model, fit(model));
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->errors.empty());
+  EXPECT_NE(found->reason, "");
+}
+
+TEST(UncertaintyBudget, AddsUpToTheUncertaintyOfEachParameter) {
+  const std::vector<Profile> runs = parabolic_slide();
+  DeclaredEffect straightness = cases::effect("straightness", 3);
+  straightness.priors = {{"b2", 1e-7, 1e-9}};
+  const Model model = build_model(cases::problem(Lever::paper, 0, {straightness}), runs);
+  const Fit fitted = fit(model);
+  const FitResult numbers = summarise(model, fitted);
+  const std::vector<Budget> budgets = uncertainty_budget(model, fitted);
+  ASSERT_FALSE(budgets.empty());
+  for (const Budget& budget : budgets) {
+    ASSERT_EQ(budget.lines.size(), 4U);  // two runs, the prior, the weights
+    double variance = 0.0;
+    for (const BudgetLine& line : budget.lines)
+      variance += line.standard_uncertainty * line.standard_uncertainty;
+    EXPECT_NEAR(std::sqrt(variance) / *numbers.find(budget.parameter)->standard_uncertainty, 1.0,
+                1e-9)
+        << budget.parameter;
+  }
+}
+
+}  // namespace
+}  // namespace slideway

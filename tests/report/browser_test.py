@@ -1,0 +1,285 @@
+"""The HTML report in a real browser: Debian's chromium, driven through chromedriver.
+
+usage: browser_test.py SLIDEWAY SOURCE_DIR; exit code 77 where there is no chromium.
+"""
+
+import base64
+import csv
+import json
+import math
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import urllib.request
+
+SKIPPED = 77
+PROGRAM, SOURCE = sys.argv[1:3]
+CHROMIUM = shutil.which("chromium")
+DRIVER = shutil.which("chromedriver")
+
+
+class Browser:
+    """One page of a headless chromium, spoken to in WebDriver over HTTP."""
+
+    def __init__(self, folder):
+        self.driver = subprocess.Popen([DRIVER, "--port=0"], stdout=subprocess.PIPE, text=True)
+        for line in self.driver.stdout:
+            port = re.search(r"started successfully on port (\d+)", line)
+            if port:
+                break
+        self.address = f"http://127.0.0.1:{port[1]}/session"
+        arguments = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
+                     "--no-first-run", "--disable-background-networking",
+                     "--disable-component-update", "--disable-sync",
+                     "--disable-dev-shm-usage", f"--user-data-dir={folder}"]
+        options = {"goog:chromeOptions": {"binary": CHROMIUM, "args": arguments},
+                   "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
+        session = self.send("", {"capabilities": {"alwaysMatch": options}})
+        self.address += "/" + session["sessionId"]
+        self.resize(1280, 900)
+
+    def send(self, path, body):
+        request = urllib.request.Request(self.address + path, json.dumps(body).encode(),
+                                         {"Content-Type": "application/json"})
+        with urllib.request.urlopen(request, timeout=300) as answer:
+            return json.load(answer)["value"]
+
+    def run(self, script, *arguments):
+        return self.send("/execute/sync", {"script": script, "args": list(arguments)})
+
+    def tool(self, command, **parameters):
+        return self.send("/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def resize(self, width, height):
+        self.tool("Emulation.setDeviceMetricsOverride", width=width, height=height,
+                  deviceScaleFactor=1, mobile=False)
+
+    def log(self, kind):
+        return self.send("/se/log", {"type": kind})
+
+    def open(self, page):
+        self.log("browser"), self.log("performance")
+        self.send("/url", {"url": page.as_uri()})
+
+    def close(self):
+        try:
+            urllib.request.urlopen(urllib.request.Request(self.address, method="DELETE"), timeout=60)
+        finally:
+            self.driver.terminate()
+            self.driver.wait()
+            self.driver.stdout.close()
+
+
+def faces(folder):
+    """Three cuts of 20 000 samples: a cone, a bow and noise that every machine makes alike."""
+    problem = ['title = "Three cuts & <b>one</b> carriage"', '[machine]', 'lever = "paper"']
+    state = 1
+    for feed in (2, 4, 8):
+        with open(folder / f"feed{feed}.csv", "w", encoding="ascii") as file:
+            file.write("x_mm,z_um\n")
+            for i in range(20000):
+                x = 100.0 * i / 19999
+                state = (1103515245 * state + 12345) % 2**31
+                noise = 0.1 * (state / 2**31 - 0.5)
+                spike = 3.0 if i == 7777 else 0.0
+                file.write(f"{x:.6f},{-0.02 * x + 2e-4 * x * x + noise + spike:.6f}\n")
+        problem += ["[[profile]]", f'name = "feed{feed}"', f'file = "feed{feed}.csv"',
+                    'kind = "face"', 'quantity = "height"', 'position_column = "x_mm"',
+                    'value_column = "z_um"', 'position_unit = "mm"', 'value_unit = "um"',
+                    f"feed_mm_per_min = {feed}.0", "spindle_rpm = 110.0",
+                    'cut_direction = "inward"', "cut_radius_mm = 100.0", 'free = ["offset"]']
+    problem += ["[[effect]]", 'name = "squareness"', "[[effect]]", 'name = "straightness"',
+                'body = "x_carriage"', "degree = 3"]
+    path = folder / "problem.toml"
+    path.write_text("\n".join(problem) + "\n", encoding="utf-8")
+    return path
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        cls.page = cls.folder / "report.html"
+        subprocess.run([PROGRAM, "identify", faces(cls.folder), "--no-trace", "--quiet",
+                        "--json", cls.folder / "report.json", "--html", cls.page], check=True)
+        cls.report = json.loads((cls.folder / "report.json").read_text(encoding="utf-8"))
+        cls.browser = Browser(cls.folder / "profile")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.temporary.cleanup()
+
+    def setUp(self):
+        self.browser.resize(1280, 900)
+        self.browser.tool("Emulation.setEmulatedMedia",
+                          features=[{"name": "prefers-color-scheme", "value": "light"}])
+        self.browser.open(self.page)
+
+    def range_of(self, chart):
+        return self.browser.run(
+            "return slideway.charts.find(c => c.id === arguments[0]).chart.xAxisRange()", chart)
+
+    def test_the_same_page_is_made_of_the_json_later(self):
+        again = self.folder / "again.html"
+        subprocess.run([PROGRAM, "report", self.folder / "report.json", "--html", again],
+                       check=True)
+        self.assertEqual(again.read_bytes(), self.page.read_bytes())
+
+    def test_three_profiles_of_20000_stay_below_two_megabytes(self):
+        self.assertLess(self.page.stat().st_size, 2_000_000)
+
+    def test_nothing_is_asked_of_the_network_and_nothing_fails(self):
+        self.assertEqual([], [line for line in self.browser.log("browser")
+                              if line["level"] in ("SEVERE", "WARNING")])
+        events = [json.loads(line["message"])["message"]
+                  for line in self.browser.log("performance")]
+        asked = {event["params"]["request"]["url"] for event in events
+                 if event["method"] == "Network.requestWillBeSent"}
+        self.assertEqual({self.page.as_uri()}, asked)
+
+    def test_charts_hold_the_curves_of_the_json(self):
+        charts = self.browser.run(
+            "return slideway.charts.map(c => ({id: c.id, labels: c.chart.getLabels(), rows: "
+            "Array.from({length: c.chart.numRows()}, (_, i) => "
+            "c.chart.getLabels().map((_, j) => c.chart.getValue(i, j)))}))")
+        profiles = self.report["curves"]["profiles"]
+        self.assertEqual(2 * len(profiles), len(charts))
+        for i, profile in enumerate(profiles):
+            form, residual = charts[2 * i], charts[2 * i + 1]
+            self.assertEqual(["position", "raw", "low band", "model"], form["labels"])
+            expected = zip(profile["position_mm"], profile["raw"], profile["low_band"],
+                           profile["model_before"])
+            self.assertEqual([list(row) for row in expected], form["rows"])
+            expected = zip(profile["position_mm"], profile["residual_before"])
+            self.assertEqual([list(row) for row in expected], residual["rows"])
+
+    def test_extremes_of_the_file_survive_in_the_chart(self):
+        drawn = self.browser.run(
+            "return slideway.charts.filter(c => c.id.endsWith('form')).map(c => "
+            "Array.from({length: c.chart.numRows()}, (_, i) => c.chart.getValue(i, 1)))")
+        for profile, values in zip(self.report["curves"]["profiles"], drawn):
+            with open(self.folder / f"{profile['profile']}.csv", encoding="ascii") as file:
+                measured = [float(row["z_um"]) for row in csv.DictReader(file)]
+            self.assertAlmostEqual(max(measured), max(values), delta=1e-4 * max(measured))
+            self.assertAlmostEqual(min(measured), min(values), delta=1e-4 * abs(min(measured)))
+
+    def test_a_drag_zooms_all_charts_of_a_profile_and_the_button_undoes_it(self):
+        whole = self.range_of("p0-form")
+        box = self.browser.run(
+            "const plot = document.querySelector('#p0-form .plot'); plot.scrollIntoView("
+            "{block: 'center'}); const b = plot.getBoundingClientRect();"
+            "return [b.left, b.top, b.width, b.height]")
+        at = lambda share: {"x": round(box[0] + share * box[2]), "y": round(box[1] + box[3] / 2)}
+        move = lambda share: {"type": "pointerMove", "duration": 50, **at(share)}
+        self.browser.send("/actions", {"actions": [{
+            "type": "pointer", "id": "mouse", "parameters": {"pointerType": "mouse"},
+            "actions": [move(0.4), {"type": "pointerDown", "button": 0}, move(0.5), move(0.6),
+                        {"type": "pointerUp", "button": 0}]}]})
+        zoomed = self.range_of("p0-form")
+        self.assertLess(zoomed[1] - zoomed[0], 0.3 * (whole[1] - whole[0]))
+        self.assertEqual(zoomed, self.range_of("p0-residual"))
+        self.assertEqual(whole, self.range_of("p1-form"))
+        self.browser.run("document.querySelector('#p0-residual button').click()")
+        for chart in ("p0-form", "p0-residual"):
+            for now, before in zip(self.range_of(chart), whole):
+                self.assertAlmostEqual(now, before, places=6)
+
+    def test_nothing_is_wider_than_the_screen(self):
+        for width in (1280, 400):
+            self.browser.resize(width, 800)
+            self.browser.open(self.page)
+            self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"),
+                                 width)
+
+    def test_dark_mode_is_dark_and_readable(self):
+        luminance = ("const of = c => c.match(/[\\d.]+/g).slice(0, 3).map(v => { v /= 255; return v"
+                     " <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; });"
+                     "const l = c => { const [r, g, b] = of(c); return 0.2126 * r + 0.7152 * g + "
+                     "0.0722 * b; }; const s = getComputedStyle(document.body);"
+                     "return [l(s.color), l(s.backgroundColor)]")
+        for scheme, brighter in (("light", 1), ("dark", 0)):
+            self.browser.tool("Emulation.setEmulatedMedia", features=[
+                {"name": "prefers-color-scheme", "value": scheme}])
+            both = self.browser.run(luminance)
+            self.assertGreater(both[brighter], both[1 - brighter])
+            self.assertGreater((max(both) + 0.05) / (min(both) + 0.05), 7.0)  # WCAG AAA
+
+    def test_print_fits_on_a4(self):
+        pdf = base64.b64decode(self.browser.tool("Page.printToPDF", preferCSSPageSize=True,
+                                                 printBackground=True)["data"])
+        pages = len(re.findall(rb"/Type\s*/Page\b", pdf))
+        self.assertTrue(4 <= pages <= 30, pages)
+        for box in re.findall(rb"/MediaBox\s*\[([^]]*)\]", pdf):
+            width, height = [float(number) for number in box.split()[2:]]
+            self.assertAlmostEqual(width, 210 / 25.4 * 72, delta=1.0)
+            self.assertAlmostEqual(height, 297 / 25.4 * 72, delta=1.0)
+        # Of each long picture the SVG is printed, and nothing sticks out of the paper.
+        self.browser.resize(718, 1000)  # 190 mm between the margins
+        self.browser.tool("Emulation.setEmulatedMedia", media="print")
+        shown = self.browser.run(
+            "return [...document.querySelectorAll('figure.long')].map(f => ["
+            "f.querySelector('svg').getBoundingClientRect().width > 0,"
+            "f.querySelector('.chart').getBoundingClientRect().width > 0])")
+        self.assertEqual([[True, False]] * 6, shown)
+        wide = self.browser.run(
+            "return [...document.querySelectorAll('body *')].filter(e => "
+            "e.getBoundingClientRect().right > innerWidth + 1).map(e => e.outerHTML.slice(0, 80))")
+        self.browser.tool("Emulation.setEmulatedMedia", media="")
+        self.assertEqual([], wide)
+
+    def test_it_can_be_read_without_scripts(self):
+        self.browser.tool("Emulation.setScriptExecutionDisabled", value=True)
+        try:
+            self.browser.open(self.page)
+            root = self.browser.tool("DOM.getDocument")["root"]["nodeId"]
+            pictures = self.browser.tool("DOM.querySelectorAll", nodeId=root,
+                                         selector="figure.long svg")["nodeIds"]
+            self.assertEqual(6, len(pictures))
+            for picture in pictures:
+                model = self.browser.tool("DOM.getBoxModel", nodeId=picture)["model"]
+                self.assertGreater(model["width"], 500)
+        finally:
+            self.browser.tool("Emulation.setScriptExecutionDisabled", value=False)
+
+    def test_a_screen_reader_finds_its_way(self):
+        found = self.browser.run("""
+          const all = s => [...document.querySelectorAll(s)];
+          const text = id => document.getElementById(id)?.textContent ?? '';
+          const ids = all('[id]').map(e => e.id);
+          return {
+            lang: document.documentElement.lang, title: document.title,
+            landmarks: all('main, header, nav').length,
+            unnamed: all('svg').filter(s => s.getAttribute('role') !== 'img' ||
+              !s.getAttribute('aria-labelledby').split(' ').every(text)).length,
+            tables: all('table').filter(t => !t.caption?.textContent ||
+              t.querySelectorAll('th[scope]').length === 0).length,
+            headings: all('h2').filter(h => !h.textContent.trim()).length,
+            twice: ids.filter((id, i) => ids.indexOf(id) !== i),
+            dead: all('a[href^="#"]').filter(a => !text(a.hash.slice(1))).length};""")
+        self.assertEqual({"lang": "en", "title": "Three cuts & <b>one</b> carriage",
+                          "landmarks": 3, "unnamed": 0, "tables": 0, "headings": 0, "twice": [],
+                          "dead": 0}, found)
+
+    def test_squareness_stands_there_in_three_units(self):
+        facts = self.browser.run("return document.querySelector('.facts').textContent")
+        for parameter in self.report["fit"]["parameters"]:
+            if parameter["name"] == "squareness.dbeta_xz":
+                rad = parameter["value"]
+        for value, unit in ((rad * 1e6, "µm/m"), (rad * 648000 / math.pi, "″")):
+            written = re.search(r"(−?[\d.]+) ± [\d.]+ " + unit, facts)
+            self.assertIsNotNone(written, facts)
+            number = float(written[1].replace("−", "-"))
+            self.assertAlmostEqual(number, value, delta=0.01 * abs(value))
+
+
+if __name__ == "__main__":
+    if not CHROMIUM or not DRIVER:
+        print("SKIPPED: chromium or chromedriver is not installed")
+        sys.exit(SKIPPED)
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,0 +1,143 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "sample_result.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/report/report.hpp"
+
+namespace slideway {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using Json = nlohmann::ordered_json;
+
+Details sample_details() {
+  Details details;
+  ProfileCurves& curves = details.profiles.emplace_back();
+  curves.profile = "feed2";
+  curves.role = "fit";
+  curves.unit = "um";
+  curves.position_mm = curves.contribution_position_mm = {0.0, 5.0, 10.0};
+  curves.raw = {1.0, 2.5, 1.0};
+  curves.low_band = curves.model_before = {1.0, 2.0, 1.0};
+  curves.residual_before = {0.0, 0.1, -0.1};
+  curves.effects = {"squareness"};
+  curves.contributions = {{0.0, 1.0, 2.0}};
+  curves.correlation = {{1.0}};
+  curves.lag_mm = 5.0;
+  curves.autocorrelation_before = {1.0, 0.2};
+  curves.spectrum_before = {{0.1, 0.2}, {0.5, 0.25}};
+  curves.approximations = curves.details = {{{0.0, 0.5}, {1.0, 1.5}}};
+  curves.flatness = {{"", 2.0, 0.5}, {"squareness", 0.5, 0.1}, {"all", 0.25, 0.1}};
+  details.effects = {{{.name = "squareness", .formula = "-Δβxz p_x"}, false}};
+  details.straightness =
+      IdentifiedStraightness{{0.0, 5.0, 10.0},
+                             {-0.1, 0.2, -0.1},
+                             {0.01, 0.02, 0.01},
+                             {{"end-point", 0.3, 0.3, 5.0, 0.0, 0.0, 0.01, 0.02, 2.0}},
+                             ""};
+  details.budget = {{"squareness.dbeta_xz", "rad", {{"noise of feed2", 'A', 1.1e-9}}}};
+  return details;
+}
+
+TraceResult sample_trace() {
+  TraceResult trace;
+  trace.verdict = "explained";
+  TraceRound round;
+  round.accepted = "thermal_drift";
+  round.before_rms_um = 0.2;
+  round.after_rms_um = 0.05;
+  trace.rounds = {round};
+  trace.before_rms_um = 0.2;
+  trace.after_rms_um = 0.05;
+  trace.before = {fitted("squareness.dbeta_xz", "Δβxz", "rad", 3.0e-6, 1e-8)};
+  trace.after = {fitted("squareness.dbeta_xz", "Δβxz", "rad", 2.8e-6, 1e-8)};
+  trace.advice = {"measure a second feed"};
+  trace.refused = {{"tool_wear", -20.0, 0.04, 0.15, {}, "the joint fit does not bear it out"}};
+  return trace;
+}
+
+std::string sample_json() { return json_report(sample_result(), sample_trace(), sample_details()); }
+
+std::string refusal(const std::string& json) {
+  try {
+    html_report(json);
+  } catch (const DataError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(HtmlReport, SaysWhatWasMissingAndWhatItHadBent) {
+  const std::string page = html_report(sample_json());
+  EXPECT_THAT(page, HasSubstr("lacked <b>thermal_drift</b>"));
+  EXPECT_THAT(page, HasSubstr("from 0.2 → 0.05 µm rms"));
+  EXPECT_THAT(page, HasSubstr("<b>squareness.dbeta_xz</b> by 10 U"));  // (3.0 - 2.8)e-6 / 2e-8
+  EXPECT_THAT(page, HasSubstr("the joint fit does not bear it out"));
+  EXPECT_THAT(page, HasSubstr("measure a second feed"));
+}
+
+TEST(HtmlReport, GivesTheSquarenessInThreeUnitsWithTwoDigitsOfUncertainty) {
+  const std::string page = html_report(sample_json());
+  EXPECT_THAT(page, HasSubstr("(2.800 ± 0.020) × 10<sup>−6</sup> rad"));
+  EXPECT_THAT(page, HasSubstr("2.800 ± 0.020 µm/m"));
+  EXPECT_THAT(page, HasSubstr("0.5775 ± 0.0041 ″"));  // 2.8 µm/m * 0.206265
+}
+
+TEST(HtmlReport, AsksForNothingFromOutside) {
+  const std::string page = html_report(sample_json());
+  for (const char* asks : {"<link", " src=\"", "url(", "@import", "sourceMappingURL"})
+    EXPECT_EQ(page.find(asks), std::string::npos) << asks;
+}
+
+TEST(HtmlReport, EscapesWhatComesFromOutside) {
+  Result result = sample_result();
+  const std::string evil = "</script><script>alert('x')</script>\"&\x01";
+  result.title = result.inputs[0].name = result.inputs[0].file = evil;
+  result.fit->parameters[0].symbol = result.fit->notes[0] = evil;
+  Details details = sample_details();
+  details.profiles[0].profile = details.profiles[0].effects[0] = evil;
+  const std::string page = html_report(json_report(result, sample_trace(), details));
+  EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
+  EXPECT_THAT(page, Not(HasSubstr("\x01")));
+  EXPECT_THAT(page, HasSubstr("&lt;/script&gt;&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt;"));
+}
+
+TEST(HtmlReport, IsMadeWithoutCurvesAndWithoutAFitToo) {
+  EXPECT_THAT(html_report(json_report(sample_result())), HasSubstr("Squareness"));
+  Result ranked = sample_result();
+  ranked.fit = std::nullopt;
+  ranked.squareness = std::nullopt;
+  EXPECT_THAT(html_report(json_report(ranked)), HasSubstr("Ranking only"));
+}
+
+TEST(HtmlReport, RefusesWhatIsNoReportInOneLine) {
+  EXPECT_THAT(refusal("{"), HasSubstr("is no JSON: wrong at byte"));
+  EXPECT_THAT(refusal("[]"), HasSubstr("it has no 'schema'"));
+  EXPECT_THAT(refusal(R"({"schema": "other/2"})"),
+              HasSubstr("schema 'other/2' is not known; accepted: slideway.report/1"));
+  EXPECT_THAT(refusal(R"({"schema": "slideway.report/1"})"), HasSubstr("key 'title' not found"));
+}
+
+/// Every value of a document replaced by one of another kind: a page or a DataError, nothing else.
+TEST(HtmlReport, AnyWrongValueIsAPageOrARefusal) {
+  const Json whole = Json::parse(sample_json());
+  const Json flat = whole.flatten();
+  int refused = 0;
+  for (const auto& [path, value] : flat.items())
+    for (const Json& wrong : {Json(nullptr), Json("text"), Json(-1e308), Json::array({1, 2}),
+                              Json::object({{"a", 1}}), Json(true)}) {
+      Json bent = whole;
+      bent[Json::json_pointer(path)] = wrong;
+      const std::string message = refusal(bent.dump());
+      if (message.empty()) continue;
+      ++refused;
+      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    }
+  EXPECT_GT(refused, 100);
+}
+
+}  // namespace
+}  // namespace slideway

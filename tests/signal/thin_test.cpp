@@ -1,0 +1,60 @@
+#include "slideway/signal/thin.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/base/units.hpp"
+
+namespace slideway {
+namespace {
+
+using testing::Contains;
+
+TEST(Thinned, KeepsEverythingOfAShortSeries) {
+  const std::vector<double> series{3, 1, 2};
+  EXPECT_EQ(thinned({series}, 4), (std::vector<std::size_t>{0, 1, 2}));
+}
+
+TEST(Thinned, KeepsTheExtremesOfEverySeriesAndBothEnds) {
+  std::vector<double> a(10000), b(10000);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    a[i] = std::sin(0.01 * static_cast<double>(i));
+    b[i] = std::cos(0.37 * static_cast<double>(i));
+  }
+  a[1234] = 9.0;
+  b[4321] = -9.0;
+  const std::vector<std::size_t> kept = thinned({a, b}, 500);
+  EXPECT_LE(kept.size(), 500U);
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+  EXPECT_EQ(kept.front(), 0U);
+  EXPECT_EQ(kept.back(), 9999U);
+  EXPECT_THAT(kept, Contains(1234U));
+  EXPECT_THAT(kept, Contains(4321U));
+}
+
+TEST(Envelope, HoldsTheSeries) {
+  const std::vector<double> series{1, 5, 2, -3, 4, 4, 0};
+  const Envelope found = envelope(series, 2);
+  EXPECT_EQ(found.low, (std::vector<double>{1, -3}));
+  EXPECT_EQ(found.high, (std::vector<double>{5, 4}));
+}
+
+TEST(AmplitudeSpectrum, FindsASineOfItsAmplitudeAtItsFrequency) {
+  constexpr double kFrequency = 64.0 / 1024.0, kAmplitude = 0.7;
+  std::vector<double> series(1024);
+  for (std::size_t i = 0; i < series.size(); ++i)
+    series[i] = 5.0 + kAmplitude * std::sin(2.0 * kPi * kFrequency * static_cast<double>(i));
+  const Spectrum found = amplitude_spectrum(series, 100);
+  const auto most = std::max_element(found.amplitude.begin(), found.amplitude.end());
+  EXPECT_NEAR(*most, kAmplitude, 1e-9);  // a whole number of periods: no leakage
+  EXPECT_NEAR(found.cycles_per_sample[most - found.amplitude.begin()], kFrequency, 1e-12);
+}
+
+TEST(AmplitudeSpectrum, OfNothingIsEmpty) {
+  EXPECT_TRUE(amplitude_spectrum(std::vector<double>{1, 2}, 10).amplitude.empty());
+}
+
+}  // namespace
+}  // namespace slideway
