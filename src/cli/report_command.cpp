@@ -12,13 +12,12 @@ ReportCommand::ReportCommand(std::string name, std::string arguments, std::strin
     : Command(std::move(name), std::move(arguments), std::move(summary)) {
   add_options()("json", po::value(&json_)->value_name("FILE"),
                 "write the result as JSON; - for stdout, which then holds nothing else");
-  add_options()("quiet,q", po::bool_switch(&quiet_), "no text on stdout");
 }
 
 void ReportCommand::report(const std::function<std::string()>& text,
                            const std::function<std::string()>& json) const {
   if (!json_.empty()) write_output(json_, json());
-  if (!quiet_ && json_ != "-") print(text());
+  if (!is_quiet() && json_ != "-") print(text());
 }
 
 ProblemCommand::ProblemCommand(std::string name, std::string arguments, std::string summary)

@@ -19,11 +19,9 @@ class ReportCommand : public Command {
               const std::function<std::string()>& json) const;
 
   [[nodiscard]] const std::string& json_file() const { return json_; }
-  [[nodiscard]] bool is_quiet() const { return quiet_; }
 
  private:
   std::string json_;
-  bool quiet_ = false;
 };
 
 /// A command that reports on a problem file.
