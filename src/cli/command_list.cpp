@@ -2,7 +2,6 @@
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/report/layout.hpp"
 
 namespace slideway {
 
@@ -29,8 +28,8 @@ std::string program_help() {
       "Commands:\n";
   for (const auto& [name, make] : commands())
     text += "  " + name + std::string(12 - name.size(), ' ') + make()->summary() + "\n";
-  return text + "\nConcepts: slideway help effects, slideway help problem-file\n\n" +
-         paragraph("Exit codes: ", kExitCodes);
+  return text + "\nConcepts: slideway help effects, slideway help problem-file\n\nExit codes: " +
+         kExitCodes + "\n";
 }
 
 std::unique_ptr<Command> make_command(const std::string& wanted) {

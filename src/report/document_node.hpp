@@ -52,9 +52,10 @@ class Node {
     if (!json_->is_boolean()) fail("true or false");
     return json_->get<bool>();
   }
+  /// Without what a terminal would obey.
   [[nodiscard]] std::string text() const {
     if (!json_->is_string()) fail("a text");
-    return json_->get<std::string>();
+    return printable(json_->get_ref<const std::string&>(), std::string::npos);
   }
   [[nodiscard]] std::optional<std::string> text_or_null() const {
     if (is_null()) return std::nullopt;
@@ -82,7 +83,8 @@ class Node {
     if (!json_->is_object()) fail("an object of numbers");
     std::vector<std::pair<std::string, double>> out;
     for (const auto& [key, value] : json_->items())
-      out.emplace_back(key, Node(value, file_, place_ + "." + key).number());
+      out.emplace_back(printable(key, std::string::npos),
+                       Node(value, file_, place_ + "." + key).number());
     return out;
   }
 

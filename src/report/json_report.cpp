@@ -212,8 +212,8 @@ std::string json_report(const Result& result, const std::optional<TraceResult>& 
   report["ranking_notes"] = ranking.notes;
   report["dominant"] = {{"by_correlation", or_null(result.dominant.by_correlation)},
                         {"by_fit", or_null(result.dominant.by_fit)},
-                        {"agree", or_null(result.dominant.agree)},
-                        {"doubt", result.dominant.doubt}};
+                        {"agree", or_null(result.dominant.agree)}};
+  if (!result.dominant.doubt.empty()) report["dominant"]["doubt"] = result.dominant.doubt;
   report["fit"] = result.fit ? fit_json(*result.fit, result) : Json(nullptr);
   report["crosscheck"] = crosscheck(result);
   report["trace"] = trace ? trace_json(*trace) : Json(nullptr);

