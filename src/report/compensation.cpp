@@ -85,7 +85,7 @@ std::vector<double> evenly(const TravelSummary& travel, double step_mm) {
   return positions;
 }
 
-double rms_about_mean(std::vector<double> values) {
+double rms_about_mean(const std::vector<double>& values) {
   double mean = 0.0, squares = 0.0;
   for (const double value : values) mean += value / static_cast<double>(values.size());
   for (const double value : values) squares += (value - mean) * (value - mean);
@@ -191,7 +191,9 @@ void add_squareness(const Analysis& analysis, const TipLocus& locus, double slop
       (found->expanded_uncertainty ? with_uncertainty(*found->value, *found->expanded_uncertainty) +
                                          " (U, k = " + fixed_point(found->coverage_factor, 2) + ")"
                                    : significant(*found->value, 6)) +
-      " minus " + significant(slope, 6) + ", the slope of EZX's reference line");
+      (out.straightness_mm.empty()
+           ? ""
+           : " minus " + significant(slope, 6) + ", the slope of EZX's reference line"));
 }
 
 }  // namespace
