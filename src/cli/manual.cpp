@@ -35,7 +35,7 @@ std::string upper(std::string text) {
 
 std::string header(const std::string& name, const std::string& version,
                    const std::string& summary) {
-  return ".TH " + upper(name) + " 1 \"\" \"slideway " + version + "\" \"slideway\"\n.SH NAME\n" +
+  return ".TH " + upper(name) + R"( 1 "" "slideway )" + version + "\" \"slideway\"\n.SH NAME\n" +
          plain(name) + " \\- " + plain(summary) + "\n";
 }
 
@@ -46,7 +46,7 @@ std::string options_of(const Command& command) {
         boost::program_options::command_line_style::allow_dash_for_short);
     text += ".TP\n";
     if (letter.starts_with('-') && letter.size() == 2) text += "\\fB" + plain(letter) + "\\fR, ";
-    text += "\\fB\\-\\-" + plain(option->long_name()) + "\\fR";
+    text += R"(\fB\-\-)" + plain(option->long_name()) + "\\fR";
     if (const std::string value = option->format_parameter(); !value.empty())
       text += " \\fI" + plain(value) + "\\fR";
     text += '\n';
