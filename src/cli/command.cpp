@@ -13,6 +13,7 @@ namespace po = boost::program_options;
 Command::Command(std::string name, std::string arguments, std::string summary)
     : name_(std::move(name)), arguments_(std::move(arguments)), summary_(std::move(summary)) {
   add_options()("help,h", "this text");
+  add_options()("quiet,q", po::bool_switch(&quiet_), "only what is asked for, and errors");
 }
 
 void Command::add_input(const char* name, std::string* value, bool required) {
@@ -24,9 +25,7 @@ void Command::add_input(const char* name, std::string* value, bool required) {
 bool Command::setup(const std::vector<std::string>& arguments) {
   const po::variables_map given = parse(arguments);
   if (given.count("help") != 0) {
-    std::ostringstream text;
-    text << usage() << "\n\n" << summary_ << ".\n\n" << options_;
-    print(text.str());
+    print(help());
     return false;
   }
   check(given);
@@ -34,6 +33,12 @@ bool Command::setup(const std::vector<std::string>& arguments) {
     if (given.count(input) == 0 || given[input].as<std::string>().empty())
       fail(input + " is missing; usage: " + usage());
   return true;
+}
+
+std::string Command::help() const {
+  std::ostringstream text;
+  text << usage() << "\n\n" << summary_ << ".\n\n" << options_;
+  return text.str();
 }
 
 void Command::check(const po::variables_map& /*given*/) {}

@@ -23,7 +23,14 @@ class Command {
   Command(const Command&) = delete;
   Command& operator=(const Command&) = delete;
 
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& arguments() const { return arguments_; }
   [[nodiscard]] const std::string& summary() const { return summary_; }
+  [[nodiscard]] const boost::program_options::options_description& options() const {
+    return options_;
+  }
+  /// What --help prints.
+  [[nodiscard]] std::string help() const;
 
   /// Parses and validates the arguments; opens no file. False if nothing remains to be done
   /// because --help was asked for.
@@ -42,6 +49,8 @@ class Command {
   /// An argument that needs no "--", called `name` in messages; in the order of the calls.
   void add_input(const char* name, std::string* value, bool required = true);
 
+  [[nodiscard]] bool is_quiet() const { return quiet_; }
+
   /// Checks what the options' own types can not. @throws UsageError
   virtual void check(const boost::program_options::variables_map& given);
 
@@ -58,6 +67,7 @@ class Command {
   boost::program_options::options_description inputs_;
   boost::program_options::positional_options_description positional_;
   std::vector<std::string> required_;
+  bool quiet_ = false;
 };
 
 }  // namespace slideway

@@ -73,7 +73,7 @@ class DecomposeCommand : public Command {
     if (signal.size() < needed)
       throw DataError(input_ + ": " + std::to_string(signal.size()) + " rows; --level " +
                       std::to_string(options_.level) + " needs " + std::to_string(needed));
-    if (!is_uniform(positions))
+    if (!is_quiet() && !is_uniform(positions))
       say(input_ + ": positions are not evenly spaced; the samples are taken as if they were");
     const Bands bands =
         reconstruct_bands(daubechies(options_.wavelet), options_.boundary, options_.level, signal);

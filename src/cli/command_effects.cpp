@@ -3,28 +3,14 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "effect_sample.hpp"
 #include "report_command.hpp"
-#include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/report/layout.hpp"
 
 namespace slideway {
 namespace {
-
-/// An effect to look at: on the paper's lathe, with what it can not do without.
-std::unique_ptr<Effect> sample(const std::string& name) {
-  const Machine machine(Machine::paper_lathe(), Lever::paper);
-  const std::vector<EffectOptions> attempts{
-      {}, {std::nullopt, 3, std::nullopt}, {std::nullopt, std::nullopt, 1000.0}};
-  for (std::size_t i = 0; i + 1 < attempts.size(); ++i) {
-    try {
-      return make_effect(name, attempts[i], machine, TravelRange{});
-    } catch (const UsageError&) {  // it needs an option: the next attempt has another
-    }
-  }
-  return make_effect(name, attempts.back(), machine, TravelRange{});
-}
 
 std::string with_unit(const Parameter& parameter) {
   return parameter.unit.empty() ? parameter.name : parameter.name + " (" + parameter.unit + ")";
@@ -37,7 +23,7 @@ std::string parameter_list(const Effect& effect) {
 }
 
 std::string line_of(const std::string& name) {
-  const auto effect = sample(name);
+  const auto effect = sample_effect(name);
   const Description& about = effect->description();
   return name + "\n" +
          paragraph("  clock " + std::string(symbol(about.clock)) + "   ", about.formula) +
@@ -45,7 +31,7 @@ std::string line_of(const std::string& name) {
 }
 
 std::string entry_of(const std::string& name) {
-  const auto effect = sample(name);
+  const auto effect = sample_effect(name);
   const Description& about = effect->description();
   const std::vector<std::pair<std::string, std::string>> lines{
       {"standard name", about.standard_name},
@@ -71,7 +57,7 @@ nlohmann::ordered_json bound(double value) {
 }
 
 nlohmann::ordered_json json_of(const std::string& name) {
-  const auto effect = sample(name);
+  const auto effect = sample_effect(name);
   const Description& about = effect->description();
   nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
   for (const Parameter& parameter : effect->parameters())

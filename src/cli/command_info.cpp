@@ -147,7 +147,7 @@ class InfoCommand : public ReportCommand {
                           {"value", each.value},
                           {"expected", each.expected},
                           {"unit", or_null(!trace.value_unit.empty(), trace.value_unit)},
-                          {"kind", name(each.kind)}});
+                          {"kind", slideway::name(each.kind)}});
     const Json document = {
         {"schema", "slideway.info/1"},
         {"file", printable(input_, input_.size())},

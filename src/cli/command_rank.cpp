@@ -71,7 +71,7 @@ class RankCommand : public ProblemCommand {
     return "Correlation with column '" + signal_ + "' of " + input() + "\nLow band: " +
            (options_.level == 0 ? "none"
                                 : options_.wavelet + ", level " + std::to_string(options_.level) +
-                                      ", " + std::string(name(options_.boundary))) +
+                                      ", " + std::string(slideway::name(options_.boundary))) +
            "\n\n" + table.text();
   }
 
@@ -91,7 +91,7 @@ class RankCommand : public ProblemCommand {
                                              {"low_band",
                                               {{"wavelet", options_.wavelet},
                                                {"level", options_.level},
-                                               {"boundary", name(options_.boundary)}}},
+                                               {"boundary", slideway::name(options_.boundary)}}},
                                              {"ranking", rows}};
     return document.dump(2) + "\n";
   }

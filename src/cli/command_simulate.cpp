@@ -27,7 +27,7 @@ class SimulateCommand : public Command {
     Problem problem = read_problem(input_, data_directory(data_));
     if (seed_ && problem.truth) problem.truth->seed = *seed_;
     write_simulation(problem, out_);
-    print((std::filesystem::path(out_) / "problem.toml").string() + "\n");
+    if (!is_quiet()) print((std::filesystem::path(out_) / "problem.toml").string() + "\n");
     return kDone;
   }
 

@@ -12,7 +12,6 @@ ReportCommand::ReportCommand(std::string name, std::string arguments, std::strin
     : Command(std::move(name), std::move(arguments), std::move(summary)) {
   add_options()("json", po::value(&json_)->value_name("FILE"),
                 "write the result as JSON; - for stdout, which then holds nothing else");
-  add_options()("quiet,q", po::bool_switch(&quiet_), "no text on stdout");
 }
 
 void ReportCommand::add_html() {
@@ -34,7 +33,7 @@ void ReportCommand::report(const std::function<std::string()>& text,
     if (!json_.empty()) write_output(json_, document);
     if (!html_.empty()) write_output(html_, html_report(document));
   }
-  if (!quiet_ && json_ != "-" && html_ != "-") print(text());
+  if (!is_quiet() && json_ != "-" && html_ != "-") print(text());
 }
 
 ProblemCommand::ProblemCommand(std::string name, std::string arguments, std::string summary)

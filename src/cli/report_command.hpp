@@ -27,11 +27,9 @@ class ReportCommand : public Command {
   void keep(const std::filesystem::path& input) const;
 
   [[nodiscard]] bool wants_json() const { return !json_.empty() || !html_.empty(); }
-  [[nodiscard]] bool is_quiet() const { return quiet_; }
 
  private:
   std::string json_, html_;
-  bool quiet_ = false;
 };
 
 /// A command that reports on a problem file.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/fit.hpp"
@@ -60,6 +61,29 @@ InputSummary summarise_input(const Profile& profile) {
   return out;
 }
 
+TravelSummary summarise_travel(Lever lever, const std::vector<const Observation*>& fitted,
+                               const Machine& machine) {
+  TravelSummary out;
+  out.lever = lever == Lever::paper ? "paper" : "split";
+  out.slide_min_mm = std::numeric_limits<double>::infinity();
+  out.slide_max_mm = -out.slide_min_mm;
+  bool one_overhang = true;
+  for (const Observation* observation : fitted) {
+    const Setup& setup = observation->profile->setup;
+    const Stations stations(observation->profile->positions, setup, machine);
+    for (Eigen::Index i = 0; i < stations.size(); ++i) {
+      out.slide_min_mm = std::min(out.slide_min_mm, stations.slide(i));
+      out.slide_max_mm = std::max(out.slide_max_mm, stations.slide(i));
+    }
+    if (setup.kind != Kind::face) continue;
+    one_overhang = one_overhang && out.overhang_mm.value_or(setup.overhang_mm) == setup.overhang_mm;
+    out.overhang_mm = setup.overhang_mm;
+    out.spindle_position_mm = setup.spindle_position_mm;
+  }
+  if (!one_overhang) out.overhang_mm.reset();
+  return out;
+}
+
 }  // namespace
 
 Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope) {
@@ -74,6 +98,7 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles, Sc
   const Model model = build_model(problem, profiles);
   const Fit fitted = fit(model);
   FitResult summary = summarise(model, fitted);
+  result.travel = summarise_travel(problem.lever, fitted_observations(model), model.machine);
   for (const Observation* observation : fitted_observations(model))
     result.low_band_values += static_cast<std::size_t>(observation->values.size());
   if (scope != Scope::fit) {

@@ -63,6 +63,14 @@ Json input(const InputSummary& in) {
   return json;
 }
 
+Json travel(const TravelSummary& t) {
+  return {{"lever", t.lever},
+          {"slide_min_mm", t.slide_min_mm},
+          {"slide_max_mm", t.slide_max_mm},
+          {"spindle_position_mm", or_null(t.spindle_position_mm)},
+          {"overhang_mm", or_null(t.overhang_mm)}};
+}
+
 Json ranking_entry(const Ranking& entry) {
   const Json running = {{"samples", entry.running.samples},
                         {"raw", entry.running.raw},
@@ -149,6 +157,7 @@ Json fit_json(const FitResult& fit, const Result& result) {
           {"contributions", array_of(fit.contributions, share)},
           {"residuals", array_of(fit.residuals, residual)},
           {"neglected_um", or_null(fit.neglected_um)},
+          {"implausible", fit.implausible},
           {"notes", fit.notes}};
 }
 
@@ -198,6 +207,7 @@ std::string json_report(const Result& result, const std::optional<TraceResult>& 
                  {"version", result.version},
                  {"title", result.title},
                  {"inputs", array_of(result.inputs, input)}};
+  report["travel"] = result.travel ? travel(*result.travel) : Json(nullptr);
   report["low_band"] = {{"wavelet", result.wavelet},
                         {"level", result.level},
                         {"boundary", result.boundary},

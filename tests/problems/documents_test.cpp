@@ -1,4 +1,5 @@
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "problems/program.hpp"
 #include "problems/reproduction.hpp"
@@ -6,21 +7,65 @@
 namespace slideway {
 namespace {
 
-/// Every block ```text behind a line <!-- output: ARGUMENTS --> replaced by what the program says.
+/// The block of that fence behind the marker that starts at `at`, replaced.
+void replace_block(std::string& text, std::size_t marker_end, const std::string& fence,
+                   const std::string& contents) {
+  const std::size_t block = marker_end + fence.size();
+  if (text.compare(marker_end, fence.size(), fence) != 0)
+    throw std::logic_error("no " + fence + " behind " + text.substr(marker_end - 40, 40));
+  text.replace(block, text.find("```\n", block) - block, contents);
+}
+
+/// Every block ```text behind a line <!-- output: ARGUMENTS --> replaced by what the program says,
+/// every ```toml behind <!-- file: PATH --> by that file.
 std::string with_current_output(std::string text) {
-  const std::string marker = "<!-- output: ", fence = "```text\n";
-  for (std::size_t at = text.find(marker); at != std::string::npos;
-       at = text.find(marker, at + 1)) {
-    const std::size_t arguments = at + marker.size();
-    const std::size_t arguments_end = text.find(" -->\n", arguments);
-    const std::size_t block = arguments_end + 5 + fence.size();
-    if (text.compare(block - fence.size(), fence.size(), fence) != 0)
-      throw std::logic_error("no ```text behind " + marker);
-    const std::size_t block_end = text.find("```\n", block);
-    text.replace(block, block_end - block,
-                 output_of(text.substr(arguments, arguments_end - arguments)));
+  const std::string output = "<!-- output: ", file = "<!-- file: ", end = " -->\n";
+  for (std::size_t at = text.find("\n<!-- "); at != std::string::npos;
+       at = text.find("\n<!-- ", at + 1)) {
+    const std::size_t marker_end = text.find(end, at) + end.size();
+    const std::string marker = text.substr(at + 1, marker_end - at - 1 - end.size());
+    if (marker.starts_with(output))
+      replace_block(text, marker_end, "```text\n", output_of(marker.substr(output.size())));
+    else if (marker.starts_with(file))
+      replace_block(text, marker_end, "```toml\n",
+                    std::string(FileBytes(source_folder() / marker.substr(file.size())).text()));
   }
   return text;
+}
+
+/// The catalogue as a document.
+std::string effects_document() {
+  using Json = nlohmann::ordered_json;
+  std::string text =
+      "# The effects\n\n"
+      "The catalogue, made by `slideway effects --json -` (`ctest -R Documents`). The clock is "
+      "what "
+      "an effect is\nlocked to: r radius, x slide coordinate, t machining time, k turns of the "
+      "spindle, s cutting distance,\nX trace position, m measuring time.\n\n"
+      "<!-- output: help effects -->\n```text\n```\n";
+  const Json document = Json::parse(output_of("effects --json -"));
+  for (const Json& effect : document["effects"]) {
+    const auto row = [&](const char* label, const char* key) {
+      std::string value = effect[key];
+      for (std::size_t bar = value.find('|'); bar != std::string::npos;
+           bar = value.find('|', bar + 2))
+        value.insert(bar, 1, '\\');
+      return value.empty() ? "" : std::string("| ") + label + " | " + value + " |\n";
+    };
+    text += "\n## `" + effect["name"].get<std::string>() + "`\n\n| | |\n|---|---|\n" +
+            row("standard name", "standard_name") + row("formula", "formula") +
+            row("source", "source") + row("clock", "clock") + row("cause", "cause") +
+            row("typical", "typical");
+    std::string parameters;
+    for (const Json& p : effect["parameters"]) {
+      const std::string unit = p["unit"];
+      parameters += (parameters.empty() ? "`" : ", `") + p["name"].get<std::string>() + "`" +
+                    (unit.empty() ? "" : " (" + unit + ")");
+    }
+    text += "| parameters | " + parameters + " |\n" + row("confounded with", "confounded_with") +
+            row("separated by", "separated_by");
+  }
+  return with_current_output(text);
 }
 
 /// Every @name@ replaced by its number; each must be used, and none may be missing.
@@ -46,6 +91,17 @@ TEST(Documents, ReadmeShowsWhatTheProgramSays) {
   const std::string text(FileBytes(readme).text());
   ASSERT_NE(text.find("<!-- output: "), std::string::npos);
   expect_current(readme, with_current_output(text));
+}
+
+TEST(Documents, GuidesShowWhatTheProgramSays) {
+  for (const char* name : {"docs/getting-started.md", "docs/problem-file.md"}) {
+    const std::filesystem::path guide = source_folder() / name;
+    expect_current(guide, with_current_output(std::string(FileBytes(guide).text())));
+  }
+}
+
+TEST(Documents, EffectsAreTheCatalogue) {
+  expect_current(source_folder() / "docs/effects.md", effects_document());
 }
 
 }  // namespace

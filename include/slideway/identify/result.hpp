@@ -157,6 +157,14 @@ struct SquarenessCheck {
   std::optional<double> fit_amplitude_um, indirect_amplitude_um;  // squareness times travel
 };
 
+/// Where the slide went while the fitted profiles were made, and what its errors acted on.
+struct TravelSummary {
+  std::string lever;  // "paper" | "split"
+  double slide_min_mm = 0.0, slide_max_mm = 0.0;
+  std::optional<double> spindle_position_mm;  // none without a face
+  std::optional<double> overhang_mm;          // none without a face, or where faces differ
+};
+
 struct Result {
   std::string title;
   std::string version;
@@ -168,6 +176,7 @@ struct Result {
   Dominant dominant;
   std::optional<FitResult> fit;  // `rank` prints none
   std::optional<SquarenessCheck> squareness;
+  std::optional<TravelSummary> travel;  // none in a report of an older program
 };
 
 /// True if the verdict is negative for `--strict`: inconsistent, not converged, or a parameter

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "slideway/trace/analysis.hpp"
+
+namespace slideway {
+
+/// Reads a report back that json_report() wrote; json_report() of it makes the same bytes. Keys it
+/// does not know are passed over.
+/// @throws DataError  the file can not be read or is no JSON; a schema other than
+///                    slideway.report/1; a key that is missing or of the wrong type, named by its
+///                    place: "result.json: fit.parameters[0].unit: ..."
+Analysis read_report(const std::filesystem::path& path);
+
+}  // namespace slideway

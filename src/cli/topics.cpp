@@ -1,0 +1,176 @@
+#include "topics.hpp"
+
+#include "effect_sample.hpp"
+#include "slideway/effects/catalogue.hpp"
+#include "slideway/report/layout.hpp"
+
+namespace slideway {
+namespace {
+
+struct Key {
+  const char *name, *text;
+};
+struct Section {
+  const char *name, *text;
+  std::vector<Key> keys;
+};
+
+// The words of the problem file; a test holds them against what the reader accepts.
+const std::vector<Section>& sections() {
+  static const std::vector<Section> kSections{
+      {"",
+       "A problem file (TOML) says where the profiles are, how each was cut and measured, and "
+       "which effects to look for. An unknown key, a missing unit or a wrong type is refused with "
+       "file, line, key and what is accepted. Paths are relative to the problem file; "
+       "${SLIDEWAY_DATA} in a path is --data DIR or the environment variable.",
+       {{"title", "a line for the report"}}},
+      {"[machine]",
+       "The lathe.",
+       {{"lever",
+         "needed as soon as a face is fitted. \"paper\": one p_x = r for every term, Eq. (16); "
+         "\"split\": pitch terms act on the constant overhang_mm, squareness on r"},
+        {"overhang_mm", "lever \"split\": from the carriage's reference point to the tool tip"},
+        {"spindle_position_mm",
+         "slide coordinate x at which the tool meets the spindle axis: x = spindle_position_mm + "
+         "r; default 0"},
+        {"span_mm", "between the supports of the cross-beam, for gantry_sag"},
+        {"body", "[[machine.body]], below; default is the paper's lathe"}}},
+      {"[[machine.body]]",
+       "The lower-body array of Eq. (1), one table per body from the bed to the tool.",
+       {{"name", "a name of its own"},
+        {"lower", "number of the body it rides on; 0 is the bed"},
+        {"axis", "x, y or z"}}},
+      {"[low_band]",
+       "What of each profile is fitted.",
+       {{"wavelet", "db1 to db19; default db1"},
+        {"level", "levels of the decomposition; 0: the raw profile"},
+        {"boundary", "how a profile goes on beyond its ends; default symmetric"}}},
+      {"[[profile]]",
+       "One measured trace.",
+       {{"name", "a name of its own"},
+        {"file", "CSV or other delimited text, X3P, SDF, SMD, PRF, NIST XML; the content decides"},
+        {"kind", R"("face": a face-turned surface; "slide": a reading along the slide itself)"},
+        {"quantity", R"("height" or "slope")"},
+        {"position_column", "text: header name or number"},
+        {"value_column", "text: header name or number"},
+        {"position_unit", "m mm um nm inch, or s with feed_mm_per_min; not where the file says it"},
+        {"value_unit", "m mm um nm inch; slope: rad mrad urad arcsec um_per_m mm_per_m"},
+        {"delimiter", "text, where it can not be told: , ; tab blank"},
+        {"decimal", "text, where it can not be told: . or ,"},
+        {"encoding", "text, where it can not be told: utf-8 utf-16 latin-1"},
+        {"header_lines", "text, where it can not be told: lines before the first numbers"},
+        {"line", R"(areal file: "row:12", "column:3", "diameter:30")"},
+        {"base_mm", "slope: foot spacing of the mirror or level; none: the local slope"},
+        {"window", "[from, to] in position_unit: keep only this part"},
+        {"leave_out", "\"spikes\", or data rows, the first one 1: [120, 121]"},
+        {"center_mm", "face: where the spindle axis lies in the trace; r = |s - center_mm|"},
+        {"z_mm", "Z coordinate of this face"},
+        {"overhang_mm", "instead of that of [machine]: another tool, another holder"},
+        {"feed_mm_per_min", "feed of the cut"},
+        {"spindle_rpm", "turns per minute of the cut"},
+        {"cut_direction",
+         "\"inward\": t = (cut_radius_mm - r) / feed; \"outward\": t = r / feed; slide: t grows "
+         "with s (\"outward\") or against it"},
+        {"cut_radius_mm", "where the cut began; default the largest r of the trace"},
+        {"start_s", "clock time at which this cut began; default 0, one state for every cut"},
+        {"traverse_mm_per_s", "speed of the stylus"},
+        {"free", R"(what levelling left undetermined: ["offset", "tilt"])"},
+        {"standard_uncertainty", "the instrument's, in value_unit; none: estimated"},
+        {"role", R"("fit", or "holdout": never fitted, only predicted)"}}},
+      {"[[effect]]",
+       "One effect of the declared model: slideway effects lists them all.",
+       {{"name", "of the catalogue"},
+        {"body", "a carriage's name, where more than one moves along the axis"},
+        {"degree", "of a polynomial"},
+        {"span_mm", "instead of that of [machine]"},
+        {"priors", "what is known of its parameters, below"}}},
+      {"priors = [{ ... }]",
+       "A normal prior on one parameter of an [[effect]].",
+       {{"parameter", "its name in the effect: \"b2\""},
+        {"value", "in the parameter's unit"},
+        {"standard_uncertainty", "above 0, in the same unit"}}},
+      {"[runout]",
+       "The run-out measurement of Eq. (21), never fitted: the squareness is held against it.",
+       {{"r_um", "r of Eq. (21)"},
+        {"p_um", "p of Eq. (21)"},
+        {"diameter_mm", "L of Eq. (21)"},
+        {"standard_uncertainty_um", "of r + p"}}},
+      {"[trace]",
+       "The closed loop.",
+       {{"candidates", "[\"all\"], or names of effects"},
+        {"max_effects", "how many may enter; default 3"},
+        {"significance", "chance of finding one in noise; default 0.01"}}},
+      {"[truth]",
+       "What `simulate` makes the profiles from.",
+       {{"seed", "of the noise; default 1"},
+        {"noise_um", "standard deviation of a sample; slope: urad"},
+        {"noise_correlation_mm", "0: white, else exp(-|distance| / it)"},
+        {"samples", "of a profile whose file is not there yet; default 20000"},
+        {"parameters", "of the declared effects: { \"squareness.dbeta_xz\" = 2.8e-6 }"},
+        {"effect",
+         "[[truth.effect]]: effects that the model does not declare, by name and "
+         "parameters"}}}};
+  return kSections;
+}
+
+std::string problem_file_text() {
+  std::string text;
+  for (const Section& section : sections()) {
+    if (!text.empty()) text += std::string("\n") + section.name + "\n";
+    text += paragraph(text.empty() ? "" : "  ", section.text);
+    for (const Key& key : section.keys) {
+      const std::string name = std::string("    ") + key.name;
+      text +=
+          paragraph(name + std::string(27 - std::min<std::size_t>(26, name.size()), ' '), key.text);
+    }
+  }
+  return text;
+}
+
+struct ClockText {
+  Clock clock;
+  const char* text;
+};
+constexpr ClockText kClocks[] = {
+    {Clock::radius, "radius on the face: |position - center_mm|"},
+    {Clock::slide, "slide coordinate: spindle_position_mm + r"},
+    {Clock::time, "machining time: needs feed_mm_per_min, cut_direction"},
+    {Clock::revolution, "turns of the spindle: needs spindle_rpm besides"},
+    {Clock::distance, "cutting distance along the spiral: needs spindle_rpm besides"},
+    {Clock::trace, "position in the trace from the spindle axis, with its sign"},
+    {Clock::measuring_time, "time on the instrument: needs traverse_mm_per_s"}};
+
+std::string effects_text() {
+  std::string text = paragraph(
+      "",
+      "Every error is an effect: a form locked to a clock. What moves with the slide is the "
+      "carriage's; what moves with time, turns or cutting distance only looks like it. Two cuts "
+      "that run a clock differently (another feed, another direction, another Z) tell the two "
+      "apart. An effect whose clock the problem file gives no metadata for is listed as not "
+      "testable, never guessed. slideway effects NAME has one in full.");
+  for (const ClockText& clock : kClocks) {
+    text += '\n';
+    text += paragraph(std::string(symbol(clock.clock)) + "  ", clock.text);
+    for (const std::string& name : effect_names()) {
+      const auto effect = sample_effect(name);
+      if (effect->description().clock != clock.clock) continue;
+      text +=
+          paragraph("   " + name + std::string(23 - std::min<std::size_t>(22, name.size()), ' '),
+                    effect->description().formula);
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+const std::vector<std::string>& topics() {
+  static const std::vector<std::string> kTopics{"effects", "problem-file"};
+  return kTopics;
+}
+
+std::string topic_text(const std::string& topic) {
+  return topic == "effects" ? effects_text() : problem_file_text();
+}
+
+}  // namespace slideway

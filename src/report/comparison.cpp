@@ -1,0 +1,187 @@
+#include "slideway/report/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "json_parts.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/report/layout.hpp"
+#include "slideway/report/number.hpp"
+#include "text_parts.hpp"
+
+namespace slideway {
+namespace {
+
+using Parameters = std::vector<FittedParameter>;
+using Facts = std::vector<std::pair<std::string, std::string>>;
+using Column = TextTable::Column;
+
+/// One parameter in both; absent where a report has none or does not determine it.
+struct Pair {
+  std::string name, symbol, unit;
+  std::optional<double> a, b, difference, U, En;
+};
+
+struct Change {
+  std::string what, a, b;  // "" where a report does not have it
+};
+
+Parameters parameters_of(const Analysis& analysis) {
+  if (analysis.trace) return analysis.trace->after;
+  return analysis.result.fit ? analysis.result.fit->parameters : Parameters{};
+}
+
+const FittedParameter* find(const Parameters& all, const std::string& name) {
+  const auto found = std::ranges::find(all, name, &FittedParameter::name);
+  return found == all.end() ? nullptr : &*found;
+}
+
+std::optional<double> value_of(const FittedParameter* p) {
+  return p != nullptr && p->identifiable ? p->value : std::nullopt;
+}
+
+Pair pair_of(const FittedParameter* a, const FittedParameter* b) {
+  const FittedParameter& any = a != nullptr ? *a : *b;
+  Pair out{any.name,    any.symbol,   any.unit,     value_of(a),
+           value_of(b), std::nullopt, std::nullopt, std::nullopt};
+  if (!out.a || !out.b) return out;
+  out.difference = *out.b - *out.a;
+  if (!a->expanded_uncertainty || !b->expanded_uncertainty) return out;
+  out.U = std::hypot(*a->expanded_uncertainty, *b->expanded_uncertainty);
+  if (*out.U > 0.0 && std::isfinite(*out.difference / *out.U))
+    out.En = std::abs(*out.difference) / *out.U;
+  return out;
+}
+
+std::vector<Pair> pairs_of(const NamedReport& a, const NamedReport& b) {
+  const Parameters in_a = parameters_of(a.analysis), in_b = parameters_of(b.analysis);
+  std::vector<Pair> out;
+  for (const FittedParameter& p : in_a) {
+    const FittedParameter* other = find(in_b, p.name);
+    if (other != nullptr && other->unit != p.unit)
+      throw DataError(b.name + ": " + p.name + " is in '" + other->unit + "', in " + a.name +
+                      " in '" + p.unit + "'; accepted: two reports in the same units");
+    out.push_back(pair_of(&p, other));
+  }
+  for (const FittedParameter& p : in_b)
+    if (find(in_a, p.name) == nullptr) out.push_back(pair_of(nullptr, &p));
+  return out;
+}
+
+std::string in_short(const std::optional<double>& value) {
+  return value ? significant(*value, 4) : "";
+}
+
+Facts facts_of(const Analysis& analysis) {
+  const Result& result = analysis.result;
+  Facts facts{{"title", result.title}, {"version", result.version}};
+  for (const InputSummary& in : result.inputs) {
+    const std::string input = "input " + in.name;
+    facts.emplace_back(input + ", sha256", in.sha256.substr(0, 16));
+    facts.emplace_back(input + ", kind", in.kind + " " + in.quantity + ", " + in.role);
+    facts.emplace_back(input + ", samples", std::to_string(in.samples));
+    facts.emplace_back(input + ", left out", std::to_string(in.left_out));
+  }
+  facts.emplace_back("low band", result.level == 0
+                                     ? "none"
+                                     : result.wavelet + ", level " + std::to_string(result.level) +
+                                           ", ends " + result.boundary);
+  if (result.travel) facts.emplace_back("lever", result.travel->lever);
+  facts.emplace_back("dominant by correlation", result.dominant.by_correlation.value_or("none"));
+  facts.emplace_back("dominant by fit", result.dominant.by_fit.value_or("none"));
+  if (result.fit) {
+    facts.emplace_back("fit", result.fit->converged ? "converged" : "not converged");
+    facts.emplace_back("residual rms of the declared model, um", in_short(result.fit->rms_um));
+  }
+  if (result.squareness)
+    facts.emplace_back("cross-check of squareness", result.squareness->verdict);
+  if (!analysis.trace) return facts;
+  facts.emplace_back("closed loop", analysis.trace->verdict);
+  std::vector<std::string> accepted;
+  for (const TraceRound& round : analysis.trace->rounds) accepted.push_back(round.accepted);
+  facts.emplace_back("effects found", accepted.empty() ? "none" : joined(accepted));
+  facts.emplace_back("residual rms after the loop, um", in_short(analysis.trace->after_rms_um));
+  return facts;
+}
+
+std::vector<Change> changes_of(const NamedReport& a, const NamedReport& b) {
+  const Facts in_a = facts_of(a.analysis), in_b = facts_of(b.analysis);
+  std::vector<Change> out;
+  for (const auto& [what, value] : in_a) {
+    const auto other = std::ranges::find(in_b, what, &Facts::value_type::first);
+    const std::string there = other == in_b.end() ? "" : other->second;
+    if (there != value) out.push_back({what, value, there});
+  }
+  for (const auto& [what, value] : in_b)
+    if (!value.empty() && std::ranges::find(in_a, what, &Facts::value_type::first) == in_a.end())
+      out.push_back({what, "", value});
+  return out;
+}
+
+std::string parameter_text(const std::vector<Pair>& pairs) {
+  if (pairs.empty()) return heading("Parameters: none in either report");
+  TextTable table({"parameter", "A", "B", "B - A", "U", "E_n", "unit"},
+                  {Column::name, Column::number, Column::number, Column::number, Column::number,
+                   Column::number, Column::text});
+  std::vector<std::string> changed;
+  const auto digits = [](const std::optional<double>& value, int count) {
+    return value ? number(*value, count) : "-";
+  };
+  for (const Pair& p : pairs) {
+    table.add({p.name, digits(p.a, 4), digits(p.b, 4), digits(p.difference, 2), digits(p.U, 2),
+               digits(p.En, 2), p.unit == "um" ? "µm" : p.unit});
+    if (p.En && *p.En > 1.0) changed.push_back(p.name);
+  }
+  return heading("Parameters; U: expanded uncertainty of B - A, E_n = |B - A| / U") + table.text() +
+         item(changed.empty() ? "None has changed by more than U."
+                              : "Changed by more than U: " + joined(changed) + ".");
+}
+
+Json json_of(const Pair& p) {
+  return {{"name", p.name},
+          {"symbol", p.symbol},
+          {"unit", p.unit},
+          {"a", or_null(p.a)},
+          {"b", or_null(p.b)},
+          {"difference", or_null(p.difference)},
+          {"expanded_uncertainty", or_null(p.U)},
+          {"En", or_null(p.En)}};
+}
+
+Json json_of(const Change& change) {
+  return {{"what", change.what}, {"a", change.a}, {"b", change.b}};
+}
+
+Json json_of(const NamedReport& report) {
+  return {{"file", report.name},
+          {"title", report.analysis.result.title},
+          {"version", report.analysis.result.version}};
+}
+
+}  // namespace
+
+std::string comparison_text(const NamedReport& a, const NamedReport& b) {
+  std::string text = paragraph("A: ", a.name + ": " + a.analysis.result.title) +
+                     paragraph("B: ", b.name + ": " + b.analysis.result.title) +
+                     parameter_text(pairs_of(a, b));
+  const std::vector<Change> changes = changes_of(a, b);
+  if (changes.empty()) return text + heading("Inputs, options and verdicts are the same.");
+  text += heading("What else is not the same");
+  for (const Change& change : changes)
+    text += note(change.what + ": " + (change.a.empty() ? "-" : change.a) + " -> " +
+                 (change.b.empty() ? "-" : change.b));
+  return text;
+}
+
+std::string comparison_json(const NamedReport& a, const NamedReport& b) {
+  const auto to_json = [](const auto& each) { return json_of(each); };
+  const Json document = {{"schema", "slideway.diff/1"},
+                         {"a", json_of(a)},
+                         {"b", json_of(b)},
+                         {"parameters", array_of(pairs_of(a, b), to_json)},
+                         {"changes", array_of(changes_of(a, b), to_json)}};
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace slideway

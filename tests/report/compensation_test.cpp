@@ -1,0 +1,247 @@
+// What stands in a table is read back and held against the model's own height of a face,
+// Eqs. (10), (12), (15), (16): z(x) = Σ b_k (x^k - p_x k x^(k-1)) - Δβxz r.
+
+#include "slideway/report/compensation.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "report/sample_result.hpp"
+#include "slideway/base/error.hpp"
+
+namespace slideway {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+// Eq. (17), as docs/reproduction.md has it; mm^(1-k).
+const std::vector<double> kB{2.41e-4, -5.19e-7, 2.2905e-8, -1.558e-10, 3.3908e-13, -2.343e-16};
+constexpr double kSquareness = 2.8e-6;
+constexpr double kSpindle = 20.0;
+constexpr double kWritten = 1e-12;  // mm: half a digit of each of two numbers
+
+Analysis analysis(const std::string& lever, double overhang = 0.0) {
+  Analysis out;
+  FitResult fit;
+  fit.converged = true;
+  for (std::size_t k = 0; k < kB.size(); ++k)
+    fit.parameters.push_back(fitted("straightness.b" + std::to_string(k), "b_" + std::to_string(k),
+                                    "mm", kB[k], std::abs(kB[k]) / 100.0));
+  fit.parameters.push_back(fitted("squareness.dbeta_xz", "Δβxz", "rad", kSquareness, 1e-8));
+  out.result.fit = fit;
+  out.result.travel = {lever, kSpindle, 600.0 + kSpindle, kSpindle, overhang};
+  return out;
+}
+
+FittedParameter& parameter(Analysis& analysis, const std::string& name) {
+  return *std::ranges::find(analysis.result.fit->parameters, name, &FittedParameter::name);
+}
+
+double height(double x, double lever) {
+  double z = -kSquareness * (x - kSpindle);
+  for (std::size_t k = 0; k < kB.size(); ++k)
+    z += kB[k] * std::pow(x, k) -
+         (k == 0 ? 0.0 : lever * static_cast<double>(k) * kB[k] * std::pow(x, k - 1));
+  return z;
+}
+
+struct Read {
+  std::map<double, double> points;
+  std::map<std::string, double> values;
+};
+
+/// The lines of a table without its comments.
+std::vector<std::string> lines_of(const std::string& text, const std::string& mark) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);)
+    if (!line.starts_with(mark)) lines.push_back(line);
+  return lines;
+}
+
+Read read_isg(const std::string& text) {
+  Read out;
+  std::string header;
+  for (const std::string& line : lines_of(text, "//")) {
+    std::istringstream fields(line);
+    double x = 0.0, value = 0.0;
+    if (line == "#" || line == "B0X" || line == "X\tEZX")
+      header = line;
+    else if (header == "B0X" && fields >> value)
+      out.values["B0X"] = value;
+    else if (header == "X\tEZX" && fields >> x >> value)
+      out.points[x] = value;
+    else
+      ADD_FAILURE() << line;
+  }
+  return out;
+}
+
+Read read_etalon(const std::string& text) {
+  Read out;
+  std::string block;
+  for (const std::string& line : lines_of(text, "//")) {
+    std::istringstream fields(line);
+    double x = 0.0, value = 0.0;
+    if (line.starts_with("["))
+      block = line.substr(1, 3);
+    else if (line.starts_with("VALUE = "))
+      out.values[block] = std::stod(line.substr(8));
+    else if (fields >> x >> value)
+      out.points[x] = value;
+    else
+      EXPECT_THAT(line, testing::AnyOf("Gridpoints = {", "}"));
+  }
+  return out;
+}
+
+Read read_cec(const std::string& text) {
+  Read out;
+  std::vector<double> values;
+  for (const std::string& line : lines_of(text, ";")) {
+    const std::size_t equals = line.find('=');
+    if (line.starts_with("$AN_CEC[0,")) {
+      EXPECT_EQ(line.substr(10, line.find(']') - 10), std::to_string(values.size()));
+      values.push_back(std::stod(line.substr(equals + 1)));
+    } else if (line.starts_with("$AN_CEC_") && line[equals + 1] != '(') {
+      out.values[line.substr(8, equals - 11)] = std::stod(line.substr(equals + 1));
+    }
+  }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    out.points[out.values["MIN"] + static_cast<double>(i) * out.values["STEP"]] = values[i];
+  EXPECT_NEAR(out.points.rbegin()->first, out.values["MAX"], 1e-6);
+  return out;
+}
+
+/// The table is the model's height of the tool tip up to a constant; lever is p_x at a slide x.
+template <typename LeverAt>
+void expect_model(const std::map<double, double>& points, double squareness, double sign,
+                  LeverAt&& lever) {
+  ASSERT_EQ(points.size(), 51U);
+  const auto error = [&](const auto& point) {
+    return sign * point.second - squareness * point.first - height(point.first, lever(point.first));
+  };
+  const double constant = error(*points.begin());
+  for (const auto& point : points)
+    EXPECT_NEAR(error(point), constant, kWritten * (1.0 + std::abs(point.first))) << point.first;
+}
+
+TEST(Compensation, TablesAddUpToTheModelsHeightOfTheToolTip) {
+  for (const auto& [lever, overhang] :
+       {std::pair{"split", 0.0}, std::pair{"split", 150.0}, std::pair{"paper", 0.0}}) {
+    SCOPED_TRACE(lever);
+    const bool paper = std::string(lever) == "paper";
+    const auto at = [&, overhang = overhang](double x) { return paper ? x - kSpindle : overhang; };
+    const Compensation table = compensation(analysis(lever, overhang));
+    const Read isg = read_isg(compensation_table(table, "isg", "test"));
+    expect_model(isg.points, isg.values.at("B0X"), 1.0, at);
+    const Read etalon = read_etalon(compensation_table(table, "etalon", "test"));
+    expect_model(etalon.points, etalon.values.at("B0X"), 1.0, at);
+    // A correction is minus the error, squareness included.
+    expect_model(read_cec(compensation_table(table, "cec", "test")).points, 0.0, -1.0, at);
+  }
+}
+
+TEST(Compensation, StraightnessIsZeroAtBothEndsOfTheReferenceLine) {
+  const Compensation table = compensation(analysis("split"), 7.0);
+  EXPECT_EQ(table.positions_mm.front(), 20.0);
+  EXPECT_EQ(table.positions_mm.back(), 620.0);
+  EXPECT_EQ(table.positions_mm.size(), 87U);  // ceil(600 / 7) pieces
+  EXPECT_EQ(table.straightness_mm.front(), 0.0);
+  EXPECT_EQ(table.straightness_mm.back(), 0.0);
+}
+
+TEST(Compensation, StraightnessNeedsNoConvention) {
+  // b_0 and b_1 are gauge: what they are, or that they are unknown, changes no deviation.
+  Analysis shifted = analysis("paper");
+  const Compensation whole = compensation(shifted);
+  parameter(shifted, "straightness.b0").identifiable = false;
+  parameter(shifted, "straightness.b1").identifiable = false;
+  const Compensation rest = compensation(shifted);
+  for (std::size_t i = 0; i < whole.straightness_mm.size(); ++i)
+    EXPECT_NEAR(whole.straightness_mm[i], rest.straightness_mm[i], 1e-15);
+  EXPECT_NEAR(*whole.squareness_rad, *rest.squareness_rad, 1e-18);
+}
+
+TEST(Compensation, LeavesOutWhatIsNotDetermined) {
+  Analysis given = analysis("split");
+  parameter(given, "straightness.b1").identifiable = false;
+  const Compensation no_squareness = compensation(given);
+  EXPECT_FALSE(no_squareness.squareness_rad);
+  EXPECT_THAT(no_squareness.left_out,
+              Contains(HasSubstr("B0X is left out: the data do not determine b_1")));
+  EXPECT_THAT(compensation_table(no_squareness, "cec", "test"), HasSubstr("; B0X is left out"));
+
+  parameter(given, "straightness.b3").value = std::nullopt;
+  const Compensation no_straightness = compensation(given);
+  EXPECT_TRUE(no_straightness.straightness_mm.empty());
+  EXPECT_EQ(*no_straightness.squareness_rad, kSquareness);
+  const Read cone = read_cec(compensation_table(no_straightness, "cec", "test"));
+  EXPECT_NEAR(cone.points.rbegin()->second, kSquareness * 600.0, kWritten);
+
+  parameter(given, "squareness.dbeta_xz").identifiable = false;
+  EXPECT_THROW(compensation(given), DataError);
+}
+
+TEST(Compensation, TablesAreAscii) {
+  for (const std::string& format : compensation_formats()) {
+    const std::string text =
+        compensation_table(compensation(analysis("split")), format, "Fläche\n");
+    EXPECT_TRUE(std::ranges::all_of(text, [](char c) {
+      return c == '\n' || c == '\t' || (c >= ' ' && c <= '~');
+    })) << text;
+  }
+}
+
+TEST(Compensation, LeavesOutASquarenessTheRunOutContradicts) {
+  Analysis given = analysis("split");
+  given.result.squareness.emplace();
+  given.result.squareness->verdict = "inconsistent";
+  EXPECT_FALSE(compensation(given).squareness_rad);
+}
+
+TEST(Compensation, LeavesOutStraightnessAcrossOverhangs) {
+  Analysis given = analysis("split");
+  given.result.travel->overhang_mm.reset();
+  EXPECT_TRUE(compensation(given).straightness_mm.empty());
+}
+
+TEST(Compensation, RefusesWhatTheLoopDoubts) {
+  Analysis given = analysis("split");
+  given.trace.emplace();
+  given.trace->after = given.result.fit->parameters;
+  given.trace->verdict = "not_identifiable";
+  EXPECT_THROW(compensation(given), DataError);
+
+  given.trace->verdict = "unnamed";
+  Unnamed left;
+  left.unit = "um";
+  left.rms = 0.01;
+  given.trace->unnamed = left;
+  EXPECT_EQ(compensation(given).straightness_mm.size(), 51U);
+  given.trace->unnamed->rms = 100.0;
+  EXPECT_THROW(compensation(given), DataError);
+
+  given.trace->unnamed.reset();
+  given.trace->verdict = "ambiguous";
+  EXPECT_THAT(compensation(given).left_out, Contains(HasSubstr("ambiguous")));
+}
+
+TEST(Compensation, RefusesWhatItCanNotTable) {
+  EXPECT_THROW(compensation(Analysis{}), DataError);
+  EXPECT_THROW(compensation(analysis("split"), -1.0), UsageError);
+  EXPECT_THROW(compensation(analysis("split"), 1e-9), UsageError);
+  EXPECT_THROW(compensation(analysis("split"), std::nan("")), UsageError);
+  Analysis point = analysis("split");
+  point.result.travel->slide_max_mm = point.result.travel->slide_min_mm;
+  EXPECT_THROW(compensation(point), DataError);
+  EXPECT_THROW(check_compensation_format("heidenhain"), UsageError);
+  EXPECT_THROW(check_compensation_format("isgg"), UsageError);
+}
+
+}  // namespace
+}  // namespace slideway

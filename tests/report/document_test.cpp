@@ -1,0 +1,126 @@
+#include "slideway/report/document.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/temporary_folder.hpp"
+#include "report/sample_result.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/file.hpp"
+#include "slideway/report/report.hpp"
+
+namespace slideway {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+
+TraceResult sample_trace() {
+  TriedEffect tried{"cup", -20.0, 0.04, 0.15, {fitted("cup.sag_um", "A", "um", 0.2, 0.1)}, "why"};
+  TraceRound round;
+  round.accepted = "thermal_drift";
+  round.ambiguous_with = {"tool_wear"};
+  round.before_rms_um = 0.2;
+  round.after_holdout_rms_um = 0.05;
+  round.candidates = {tried};
+  TraceResult trace;
+  trace.verdict = "unnamed";
+  trace.rounds = {round};
+  Unnamed left;
+  left.rms = 0.25;
+  left.unit = "urad";
+  left.log_evidence = {{"t", 0.0}, {"r", -12.5}};
+  trace.unnamed = left;
+  trace.advice = {"cut again"};
+  trace.not_testable = {{"traverse_periodic", "traverse_mm_per_s"}};
+  trace.not_separable = {{"cup", "tool_wear"}};
+  trace.refused = {tried};
+  trace.detection_limits = {{"cup", "sag_um", "um", 0.1, ""}};
+  trace.before = trace.after = sample_fit().parameters;
+  trace.after_rms_um = 0.05;
+  return trace;
+}
+
+class Document : public testing::Test {
+ protected:
+  [[nodiscard]] std::filesystem::path file(const std::string& text) const {
+    const std::filesystem::path path = folder_.path() / "result.json";
+    write_file(path, text);
+    return path;
+  }
+
+  /// What a reader says of the sample with one value replaced, at a JSON pointer.
+  [[nodiscard]] std::string refusal(const char* place, const Json& value) const {
+    Json report = Json::parse(json_report(sample_result(), sample_trace()));
+    report[Json::json_pointer(place)] = value;
+    return refusal(report.dump());
+  }
+  [[nodiscard]] std::string refusal(const std::string& text) const {
+    try {
+      read_report(file(text));
+    } catch (const DataError& error) {
+      return error.what();
+    }
+    return "read";
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Document, ReadBackMakesTheSameBytes) {
+  Result result = sample_result();
+  result.travel = {"split", 0.0, 600.0, 0.0, std::nullopt};
+  result.dominant.doubt = "two lead";
+  result.fit->implausible = "2 mm over 10 mm";
+  for (const std::string& text :
+       {json_report(result), json_report(result, sample_trace()), json_report(Result{})}) {
+    const Analysis read = read_report(file(text));
+    EXPECT_EQ(json_report(read.result, read.trace), text);
+  }
+}
+
+TEST_F(Document, PassesOverKeysItDoesNotKnow) {
+  EXPECT_EQ(refusal("/inputs/0/colour", "blue"), "read");
+}
+
+TEST_F(Document, TakesOutWhatATerminalWouldObey) {
+  Result result;
+  result.title = "µm\x1b[31m\n";
+  EXPECT_EQ(read_report(file(json_report(result))).result.title, "µm?[31m?");
+}
+
+TEST_F(Document, NamesPlaceAndWhatIsAccepted) {
+  EXPECT_THAT(refusal("/fit/parameters/1/unit", 3),
+              HasSubstr("result.json: fit.parameters[1].unit: is number; accepted: a text"));
+  EXPECT_THAT(refusal("/fit/parameters/1/value", "NaN"),
+              HasSubstr("fit.parameters[1].value: is string; accepted: a number"));
+  EXPECT_THAT(refusal("/inputs/0/samples", -4), HasSubstr("accepted: a whole number"));
+  EXPECT_THAT(refusal("/low_band/level", 1e300), HasSubstr("low_band.level"));
+  EXPECT_THAT(refusal("/trace/rounds/0/accepted", nullptr),
+              HasSubstr("trace.rounds[0].accepted: is missing"));
+  EXPECT_THAT(refusal("/fit/correlations/0", Json::array({"a"})), HasSubstr("fit.correlations[0]"));
+}
+
+TEST_F(Document, RefusesWhatIsNoReport) {
+  EXPECT_THAT(refusal("/schema", "slideway.diff/1"), HasSubstr("\"slideway.report/1\""));
+  for (const char* text : {"", "[]", "3", "{}", "{\"schema\": 1}", "\xff\xfe", "null"})
+    EXPECT_THAT(refusal(std::string(text)), HasSubstr("accepted: ")) << text;
+  EXPECT_THAT(refusal("{\"schema\": \"slideway.report/1\", \"title\": 1e999}"),
+              HasSubstr("is no JSON"));
+  EXPECT_THAT(refusal(std::string(1'000'000, '[')), HasSubstr("deep"));
+  EXPECT_THROW(read_report(folder_.path() / "none.json"), DataError);
+  EXPECT_THROW(read_report(folder_.path()), DataError);
+}
+
+TEST_F(Document, RefusesEveryTruncationInOneLine) {
+  const std::string text = json_report(sample_result(), sample_trace());
+  for (std::size_t size = 0; size + 2 < text.size(); size += 53) {
+    const std::string why = refusal(text.substr(0, size));
+    EXPECT_NE(why, "read") << size;
+    EXPECT_EQ(why.find('\n'), std::string::npos) << why;
+  }
+}
+
+}  // namespace
+}  // namespace slideway
