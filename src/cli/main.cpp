@@ -43,7 +43,8 @@ std::string help() {
     text += "  " + name + std::string(12 - name.size(), ' ') + make()->summary() + "\n";
   return text +
          "\nExit codes: 0 done, 1 failed while working, 2 bad usage or bad problem file,\n"
-         "3 unreadable or invalid data, 4 negative verdict (--strict only)\n";
+         "3 unreadable or invalid data, 4 negative verdict (--strict only),\n"
+         "5 batch finished with failed items\n";
 }
 
 std::unique_ptr<Command> make_command(const std::string& wanted) {

@@ -62,7 +62,8 @@ InputSummary summarise_input(const Profile& profile) {
 
 }  // namespace
 
-Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope) {
+Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope,
+                Evidence* evidence) {
   Result result;
   result.title = problem.title;
   result.version = SLIDEWAY_VERSION;
@@ -74,6 +75,7 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles, Sc
   const Model model = build_model(problem, profiles);
   const Fit fitted = fit(model);
   FitResult summary = summarise(model, fitted);
+  if (evidence != nullptr) *evidence = slideway::evidence(model, fitted);
   for (const Observation* observation : fitted_observations(model))
     result.low_band_values += static_cast<std::size_t>(observation->values.size());
   if (scope != Scope::fit) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "problem_override.hpp"
 #include "problem_profile.hpp"
 #include "problem_section.hpp"
 #include "problem_toml.hpp"
@@ -258,8 +259,15 @@ std::optional<Truth> read_truth(const Section& root, const Problem& problem) {
 
 Problem read_problem(const std::filesystem::path& path,
                      const std::optional<std::filesystem::path>& data_dir) {
-  const TomlValue tree = read_toml(path);
+  return read_problem(path, data_dir, {});
+}
+
+Problem read_problem(const std::filesystem::path& path,
+                     const std::optional<std::filesystem::path>& data_dir,
+                     std::span<const Override> overrides) {
+  TomlValue tree = read_toml(path);
   const std::string file = path.string();
+  for (const Override& override : overrides) put(override, file, tree);
   const Section root(file, "", tree);
   root.accept("title machine low_band profile effect runout trace truth");
   Problem problem;

@@ -185,9 +185,7 @@ void require_finite(const Json& json, const std::string& path) {
       require_finite(json[i], path + "[" + std::to_string(i) + "]");
 }
 
-}  // namespace
-
-std::string json_report(const Result& result, const std::optional<TraceResult>& trace) {
+Json report_json(const Result& result, const std::optional<TraceResult>& trace) {
   const RankingResult ranking = result.ranking.value_or(RankingResult{});
   Json report = {{"schema", "slideway.report/1"},
                  {"version", result.version},
@@ -215,8 +213,22 @@ std::string json_report(const Result& result, const std::optional<TraceResult>& 
                        {"parameters", array_of(trace->after, parameter_json)}};
   }
   require_finite(report, "");
-  // A file name need not be UTF-8.
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return report;
+}
+
+/// A file name need not be UTF-8.
+std::string text_of(const Json& report, int indent) {
+  return report.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string json_report(const Result& result, const std::optional<TraceResult>& trace) {
+  return text_of(report_json(result, trace), 2) + "\n";
+}
+
+std::string json_line(const Result& result, const std::optional<TraceResult>& trace) {
+  return text_of(report_json(result, trace), -1);
 }
 
 }  // namespace slideway

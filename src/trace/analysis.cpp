@@ -18,7 +18,7 @@ template <typename Error>
 Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
                  const AnalysisOptions& options, const Progress& progress) {
   try {
-    Analysis analysis{identify(problem, profiles, options.scope), std::nullopt};
+    Analysis analysis{identify(problem, profiles, options.scope, options.evidence), std::nullopt};
     if (options.closes_loop) analysis.trace = close_loop(problem, profiles, progress);
     return analysis;
   } catch (const UsageError& error) {

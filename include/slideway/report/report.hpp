@@ -13,6 +13,9 @@ namespace slideway {
 /// @throws std::logic_error if a number is not finite.
 std::string json_report(const Result& result, const std::optional<TraceResult>& trace = {});
 
+/// The same on one line, without the final newline: part of a longer JSON text.
+std::string json_line(const Result& result, const std::optional<TraceResult>& trace = {});
+
 /// The report for people: aligned plain text in at most 80 columns, values with units, at most two
 /// digits of uncertainty.
 std::string text_report(const Result& result, const std::optional<TraceResult>& trace = {});

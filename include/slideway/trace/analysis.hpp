@@ -11,6 +11,7 @@ namespace slideway {
 struct AnalysisOptions {
   Scope scope = Scope::identify;
   bool closes_loop = true;
+  Evidence* evidence = nullptr;  // where identify() is to put it
 };
 
 /// All that is found in one problem.
