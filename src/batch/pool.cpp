@@ -74,7 +74,9 @@ struct Solution {
 };
 
 VectorXd scale_of(const MatrixXd& rows) {
-  return rows.leftCols(rows.cols() - 1).colwise().norm().transpose();
+  return rows.leftCols(rows.cols() - 1).colwise().norm().transpose().unaryExpr([](double norm) {
+    return norm > 0.0 ? norm : 1.0;
+  });
 }
 
 MatrixXd stacked(const std::vector<MatrixXd>& parts, const std::vector<bool>& taken,
@@ -114,7 +116,7 @@ Misfit misfit(const MatrixXd& item, const MatrixXd& rest) {
   MatrixXd seen = MatrixXd::Identity(item.rows(), item.rows());
   if (solution.rank.null_space.cols() > 0) {
     MatrixXd open = a * solution.rank.null_space;
-    const double size = (a * scale_of(item).cwiseMax(1e-300).cwiseInverse().asDiagonal()).norm();
+    const double size = (a * scale_of(item).cwiseInverse().asDiagonal()).norm();
     Eigen::ColPivHouseholderQR<MatrixXd> qr(open);
     const double longest = qr.maxPivot();
     qr.setThreshold(longest > 0.0 ? std::min(1.0, 1e-6 * size / longest) : 1.0);

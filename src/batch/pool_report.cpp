@@ -49,10 +49,7 @@ std::string parameters_text(const PooledMachine& machine) {
                   {Column::name, Column::text, Column::text, Column::number});
   for (const FittedParameter& p : machine.parameters) {
     std::string shown = "not determined";
-    if (p.identifiable) {
-      const RoundedPair pair = rounded(*p.value, *p.expanded_uncertainty);
-      shown = pair.value + " ± " + pair.uncertainty;
-    }
+    if (p.identifiable) shown = with_uncertainty(*p.value, *p.expanded_uncertainty);
     table.add({p.name, shown, p.unit, p.identifiable ? fixed_point(p.coverage_factor, 2) : "-"});
   }
   return table.text();
@@ -64,9 +61,8 @@ std::string trends_text(const PooledMachine& machine, bool are_dates) {
   TextTable table({"trend", "rate ± U", "unit", "p"},
                   {Column::name, Column::text, Column::text, Column::number});
   for (const Trend& trend : machine.trends) {
-    const RoundedPair pair = rounded(trend.rate, trend.expanded_uncertainty);
-    table.add({trend.parameter, pair.value + " ± " + pair.uncertainty, rate_unit(trend, are_dates),
-               significant(trend.p_value, 2)});
+    table.add({trend.parameter, with_uncertainty(trend.rate, trend.expanded_uncertainty),
+               rate_unit(trend, are_dates), significant(trend.p_value, 2)});
   }
   return table.text();
 }

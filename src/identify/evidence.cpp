@@ -13,6 +13,14 @@ Eigen::MatrixXd inverse(const Eigen::MatrixXd& jacobian) {
   return even.completeOrthogonalDecomposition().pseudoInverse() * size.cwiseInverse().asDiagonal();
 }
 
+/// Rows that are 0 along the null directions to the last digit: a parameter that nothing is known
+/// of has a 0 then, not what rounding left, which others would take for knowledge.
+void clear_along(const NullDirections& null, Eigen::Ref<Eigen::MatrixXd> rows) {
+  for (const Eigen::Index own : null.own) rows.col(own).setZero();
+  const Eigen::MatrixXd owed = rows * null.parameters;
+  for (std::size_t d = 0; d < null.own.size(); ++d) rows.col(null.own[d]) = -owed.col(d);
+}
+
 }  // namespace
 
 Evidence evidence(const Model& model, const Fit& fit) {
@@ -21,6 +29,7 @@ Evidence evidence(const Model& model, const Fit& fit) {
   data.prior_residuals.resize(0);
   const bool has_priors = fit.linear.prior_rows.rows() > 0;
   const Triangle triangle = compress(data, fit.weights);
+  const Eigen::MatrixXd to_amplitudes = inverse(fit.parameters.jacobian);
   const Rank rank = has_priors ? analyse_rank(triangle.matrix, triangle.scale) : fit.rank;
   const Uncertainty uncertainty =
       has_priors ? assess(data, fit.weights, fit.noise, rank.basis) : fit.uncertainty;
@@ -37,7 +46,17 @@ Evidence evidence(const Model& model, const Fit& fit) {
   if (image.rows() == 0 || root.info() != Eigen::Success) return out;
   Eigen::MatrixXd system(image.rows(), model.parameters() + 1);
   auto rows = system.leftCols(model.parameters());
-  rows = root.matrixL().solve(image * triangle.matrix * inverse(fit.parameters.jacobian));
+  rows = root.matrixL().solve(image * triangle.matrix * to_amplitudes);
+  if (has_priors)
+    clear_along(null_directions(model, rank.null_space, fit.parameters.jacobian,
+                                (triangle.scale.asDiagonal() * to_amplitudes)
+                                    .colwise()
+                                    .norm()
+                                    .transpose()
+                                    .unaryExpr([](double s) { return s > 0.0 ? s : 1.0; })),
+                rows);
+  else
+    clear_along(fit.null, rows);
   system.rightCols(1) = rows * fit.parameters.values;
   if (has_priors) system.rightCols(1) += root.matrixL().solve(image * triangle.right_side);
 

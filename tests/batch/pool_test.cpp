@@ -34,8 +34,10 @@ const FittedParameter& parameter(const PooledMachine& machine, const std::string
 TEST(Pool, OfReadingsIsTheirWeightedMean) {
   const PooledMachine pooled = pool(
       "M", {reading("a", 10.0, 1.0), reading("b", 11.0, 2.0), reading("c", 9.0, 2.0)}, no_times(3));
-  EXPECT_NEAR(*parameter(pooled, kSquareness).value, (10.0 + 11.0 / 4 + 9.0 / 4) / 1.5, 1e-12);
-  EXPECT_NEAR(*parameter(pooled, kSquareness).standard_uncertainty, std::sqrt(1.0 / 1.5), 1e-12);
+  EXPECT_NEAR(parameter(pooled, kSquareness).value.value(), (10.0 + 11.0 / 4 + 9.0 / 4) / 1.5,
+              1e-12);
+  EXPECT_NEAR(parameter(pooled, kSquareness).standard_uncertainty.value(), std::sqrt(1.0 / 1.5),
+              1e-12);
 }
 
 // ISO 13528: E_n = |x - rest| / sqrt(U² + U_rest²), U = 2 u.
@@ -59,8 +61,8 @@ TEST(Pool, DeterminesTogetherWhatNoItemDoesAlone) {
   EXPECT_FALSE(parameter(pool("M", {sum}, no_times(1)), kSquareness).identifiable);
   const PooledMachine pooled = pool("M", {sum, difference}, no_times(2));
   // 1.0 is the item's own of both: a + b = 7.5, a - b = 2.
-  EXPECT_NEAR(*parameter(pooled, kSquareness).value, 4.75, 1e-12);
-  EXPECT_NEAR(*parameter(pooled, names[1]).value, 2.75, 1e-12);
+  EXPECT_NEAR(parameter(pooled, kSquareness).value.value(), 4.75, 1e-12);
+  EXPECT_NEAR(parameter(pooled, names[1]).value.value(), 2.75, 1e-12);
   EXPECT_EQ(pooled.parameters.size(), 2U);
   EXPECT_FALSE(pooled.items[0].En) << "the other says nothing of what this one says";
 }
@@ -79,7 +81,7 @@ TEST(Pool, OneAmongThreeIsFlaggedAndLeftOut) {
   EXPECT_TRUE(pooled.items[0].fits);
   EXPECT_FALSE(pooled.items[1].fits);
   EXPECT_TRUE(pooled.items[2].fits);
-  EXPECT_NEAR(*parameter(pooled, kSquareness).value, 10.25, 1e-12);
+  EXPECT_NEAR(parameter(pooled, kSquareness).value.value(), 10.25, 1e-12);
   EXPECT_LT(*pooled.items[0].En, 1.0) << "held against what is left";
 }
 
@@ -92,7 +94,7 @@ TEST(Pool, MoreScatterThanUncertaintyWidensEveryUncertainty) {
   // The standard error of a scatter from the median of 60 is 15 %: three of them.
   EXPECT_NEAR(pooled.scatter, 5.0, 2.3);
   for (const PooledItem& item : pooled.items) EXPECT_TRUE(item.fits) << item.id;
-  EXPECT_NEAR(*parameter(pooled, kSquareness).standard_uncertainty,
+  EXPECT_NEAR(parameter(pooled, kSquareness).standard_uncertainty.value(),
               pooled.scatter / std::sqrt(60.0), 1e-9);
 }
 
@@ -121,10 +123,11 @@ TEST(PooledFaces, GiveTheMachineItsTruth) {
   const PooledMachine pooled = pool("M", items, no_times(items.size()));
   const PooledMachine alone = pool("M", {items[0]}, no_times(1));
   const FittedParameter& squareness = parameter(pooled, kSquareness);
-  const double u = *squareness.standard_uncertainty;
+  const double u = squareness.standard_uncertainty.value();
   // Of the truth three standard uncertainties; of eight like readings 1/sqrt(8), by half again.
-  EXPECT_NEAR(*squareness.value, turning::kFaceSquareness, 3.0 * u);
-  EXPECT_NEAR(u / *parameter(alone, kSquareness).standard_uncertainty, std::sqrt(1.0 / 8.0), 0.18);
+  EXPECT_NEAR(squareness.value.value(), turning::kFaceSquareness, 3.0 * u);
+  EXPECT_NEAR(u / parameter(alone, kSquareness).standard_uncertainty.value(), std::sqrt(1.0 / 8.0),
+              0.18);
   for (const PooledItem& item : pooled.items) EXPECT_TRUE(item.fits) << item.id;
 }
 
@@ -186,8 +189,8 @@ TEST(PooledFaces, TakeNoPriorIn) {
   const PooledMachine a = pool("M", {without}, no_times(1)), b = pool("M", {with}, no_times(1));
   // The prior is wrong by 500 times the face's own uncertainty, and is in the residual that the
   // noise is estimated from; the value is not moved.
-  const double u = *parameter(b, kSquareness).standard_uncertainty;
-  EXPECT_NEAR(*parameter(a, kSquareness).value, *parameter(b, kSquareness).value, u);
+  const double u = parameter(b, kSquareness).standard_uncertainty.value();
+  EXPECT_NEAR(parameter(a, kSquareness).value.value(), parameter(b, kSquareness).value.value(), u);
 }
 
 // Ordinary least squares in closed form: equal uncertainties, residuals beyond them.

@@ -269,7 +269,7 @@ TEST_P(BatchRanks, AProcessThatDiesLosesNoFinishedResult) {
   add("endless,problem.toml,endless.csv\n");
   mpirun("out.jsonl",
          "& mpi=$!; for i in $(seq 200); do sleep 0.1; "
-         "[ \"$(wc -l <out.jsonl 2>/dev/null)\" = 12 ] && break; done; "
+         "[ \"$(cat out.jsonl 2>/dev/null | wc -l)\" = 12 ] && break; done; "
          "for rank in $(cat /proc/$mpi/task/$mpi/children); do :; done; kill -9 $rank; wait $mpi");
   EXPECT_EQ(lines("out.jsonl"), lines("alone.jsonl")) << contents(path("mpi.log"));
   folder_.file("list.csv", good);
