@@ -43,6 +43,10 @@ void have_done(Hands& hands, char what, const std::vector<std::size_t>& items,
   }
 }
 
+bool is_current(const ResultHead& head) {
+  return head.status == status::kOk && head.version == results_version();
+}
+
 bool is_there(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::is_regular_file(path, ignored) &&
@@ -77,14 +81,15 @@ class Batch {
     std::unordered_map<std::string, std::size_t> by_id;
     for (const std::size_t item : items_) by_id.emplace(manifest_->items[item].id, item);
     std::unordered_map<std::size_t, std::string> prints;
-    read_results(options_->out, [&](const ResultHead& head, std::string_view) {
+    std::size_t lines = 0;
+    lines += read_results(options_->out, [&](const ResultHead& head, std::string_view) {
+      ++lines;
       const auto item = by_id.find(head.id);
       if (item == by_id.end())
         throw UsageError(options_->out.string() + ": holds the id '" + printable(head.id, 60) +
                          "', which is not among the items; accepted: the manifest and the --shard "
                          "it was begun with, or another name");
-      if (head.status == status::kOk && head.version == results_version())
-        prints.emplace(item->second, joined(head.print));
+      if (is_current(head)) prints.emplace(item->second, joined(head.print));
     });
     std::vector<std::size_t> candidates;
     for (const std::size_t item : items_)
@@ -93,9 +98,11 @@ class Batch {
     have_done(*hands_, kFingerprint, candidates, [&](std::size_t item, const Answer& answer) {
       if (answer.reply == prints.at(item)) kept.insert(manifest_->items[item].id);
     });
-    results.keep([&](const ResultHead& head) {
-      return head.status == status::kOk && kept.contains(head.id);
-    });
+    if (lines > kept.size())
+      results.keep([&](const ResultHead& head) {
+        return kept.contains(head.id) && is_current(head) &&
+               prints.at(by_id.at(head.id)) == joined(head.print);
+      });
     std::erase_if(items_,
                   [&](std::size_t item) { return kept.contains(manifest_->items[item].id); });
     summary_.present = kept.size();
