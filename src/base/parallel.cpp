@@ -3,10 +3,18 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <limits>
 #include <thread>
 #include <vector>
 
 namespace slideway {
+namespace {
+
+std::atomic<unsigned> most_threads{std::numeric_limits<unsigned>::max()};
+
+}  // namespace
+
+void limit_threads(unsigned most) { most_threads = std::max(1U, most); }
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
@@ -20,8 +28,8 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& wor
       }
     }
   };
-  const std::size_t threads =
-      std::min<std::size_t>(count, std::max(1U, std::thread::hardware_concurrency()));
+  const std::size_t threads = std::min<std::size_t>(
+      count, std::clamp(std::thread::hardware_concurrency(), 1U, most_threads.load()));
   {
     std::vector<std::jthread> others;
     for (std::size_t t = 1; t < threads; ++t) others.emplace_back(run);

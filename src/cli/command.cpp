@@ -22,6 +22,11 @@ void Command::add_input(const char* name, std::string* value, bool required) {
   if (required) required_.emplace_back(name);
 }
 
+void Command::add_inputs(const char* name, std::vector<std::string>* values) {
+  inputs_.add_options()(name, po::value(values));
+  positional_.add(name, -1);
+}
+
 bool Command::setup(const std::vector<std::string>& arguments) {
   const po::variables_map given = parse(arguments);
   if (given.count("help") != 0) {

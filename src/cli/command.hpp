@@ -13,6 +13,7 @@ inline constexpr int kFailed = 1;
 inline constexpr int kBadUsage = 2;
 inline constexpr int kBadData = 3;
 inline constexpr int kNegativeVerdict = 4;  // with --strict only
+inline constexpr int kFailedItems = 5;      // batch
 
 /// One command of the program. A command adds its options in the constructor, bound to its members.
 class Command {
@@ -50,6 +51,8 @@ class Command {
   void add_input(const char* name, std::string* value, bool required = true);
 
   [[nodiscard]] bool is_quiet() const { return quiet_; }
+  /// All further arguments that need no "--".
+  void add_inputs(const char* name, std::vector<std::string>* values);
 
   /// Checks what the options' own types can not. @throws UsageError
   virtual void check(const boost::program_options::variables_map& given);

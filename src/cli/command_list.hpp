@@ -22,6 +22,7 @@ std::unique_ptr<Command> make_command(const std::string& wanted);
 
 inline constexpr const char* kExitCodes =
     "0 done, 1 failed while working, 2 bad usage or bad problem file,\n"
-    "3 unreadable or invalid data, 4 negative verdict (--strict only)";
+    "3 unreadable or invalid data, 4 negative verdict (--strict only),\n"
+    "5 batch finished with failed items";
 
 }  // namespace slideway

@@ -86,7 +86,8 @@ TravelSummary summarise_travel(Lever lever, const std::vector<const Observation*
 
 }  // namespace
 
-Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope) {
+Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope,
+                Evidence* evidence) {
   Result result;
   result.title = problem.title;
   result.version = SLIDEWAY_VERSION;
@@ -99,6 +100,7 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles, Sc
   const Fit fitted = fit(model);
   FitResult summary = summarise(model, fitted);
   result.travel = summarise_travel(problem.lever, fitted_observations(model), model.machine);
+  if (evidence != nullptr) *evidence = slideway::evidence(model, fitted);
   for (const Observation* observation : fitted_observations(model))
     result.low_band_values += static_cast<std::size_t>(observation->values.size());
   if (scope != Scope::fit) {

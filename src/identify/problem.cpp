@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "problem_override.hpp"
 #include "problem_profile.hpp"
 #include "problem_section.hpp"
 #include "problem_toml.hpp"
@@ -297,7 +298,15 @@ void take_or_read(const ProfileEntry& entry, const GivenTraces& given, Profile& 
 
 Problem read_problem(const std::filesystem::path& path,
                      const std::optional<std::filesystem::path>& data_dir) {
-  return problem_of(read_toml(path), path, {path.parent_path(), data_dir, true});
+  return read_problem(path, data_dir, {});
+}
+
+Problem read_problem(const std::filesystem::path& path,
+                     const std::optional<std::filesystem::path>& data_dir,
+                     std::span<const Override> overrides) {
+  TomlValue tree = read_toml(path);
+  for (const Override& override : overrides) put(override, path.string(), tree);
+  return problem_of(tree, path, {path.parent_path(), data_dir, true});
 }
 
 Problem read_problem(const TomlValue& tree, const std::optional<std::filesystem::path>& data_dir) {

@@ -74,6 +74,21 @@ void point_to_simulation(toml::table& table, const ProfileEntry& entry, const st
 
 TomlValue read_toml(const std::filesystem::path& path) { return converted(parsed(path)); }
 
+TomlValue toml_value(const std::string& text) {
+  // Most texts are none, and being refused takes the parser long.
+  const bool may_be_one =
+      text.find_first_of("#\n\r") == std::string::npos && !text.empty() &&
+      std::string_view("0123456789+-.[\"'tfin").find(text[0]) != std::string_view::npos;
+  if (!may_be_one) return {};
+  try {
+    TomlValue value = converted(*toml::parse("value = " + text).get("value"));
+    value.line = 0;
+    return value;
+  } catch (const toml::parse_error&) {
+    return {};
+  }
+}
+
 std::string simulated_problem_text(const Problem& problem, const std::vector<std::string>& files) {
   toml::table root = parsed(problem.path);
   root.erase("truth");

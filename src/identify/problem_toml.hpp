@@ -11,4 +11,7 @@ namespace slideway {
 /// @throws UsageError  "path: ..." if it can not be read, "path:line: ..." if it is no TOML
 TomlValue read_toml(const std::filesystem::path& path);
 
+/// What a text is in TOML, on line 0: std::monostate if it is no value, or a date.
+TomlValue toml_value(const std::string& text);
+
 }  // namespace slideway

@@ -198,10 +198,8 @@ std::string one_line(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-}  // namespace
-
-std::string json_report(const Result& result, const std::optional<TraceResult>& trace,
-                        const std::optional<Details>& details) {
+Json report_json(const Result& result, const std::optional<TraceResult>& trace,
+                 const std::optional<Details>& details) {
   const RankingResult ranking = result.ranking.value_or(RankingResult{});
   Json report = {{"schema", "slideway.report/1"},
                  {"version", result.version},
@@ -232,6 +230,14 @@ std::string json_report(const Result& result, const std::optional<TraceResult>& 
   }
   if (details) add_details(*details, report);
   require_finite(report, "");
+  return report;
+}
+
+}  // namespace
+
+std::string json_report(const Result& result, const std::optional<TraceResult>& trace,
+                        const std::optional<Details>& details) {
+  const Json report = report_json(result, trace, details);
   // A file name need not be UTF-8.
   std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
   if (details) {  // a line for each profile, not for each number
@@ -248,6 +254,10 @@ std::string json_report(const Result& result, const std::optional<TraceResult>& 
     text += "\n    ]\n  }\n}";
   }
   return text + "\n";
+}
+
+std::string json_line(const Result& result, const std::optional<TraceResult>& trace) {
+  return one_line(report_json(result, trace, std::nullopt));
 }
 
 }  // namespace slideway

@@ -33,7 +33,8 @@ void add_widening(const TraceResult& trace, std::vector<Budget>& budgets) {
 Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
                  const AnalysisOptions& options, const Progress& progress) {
   try {
-    Analysis analysis{identify(problem, profiles, options.scope), std::nullopt, std::nullopt};
+    Analysis analysis{identify(problem, profiles, options.scope, options.evidence), std::nullopt,
+                      std::nullopt};
     std::optional<Fitted> after;
     if (options.closes_loop)
       analysis.trace =

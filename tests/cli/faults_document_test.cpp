@@ -1,4 +1,4 @@
-#include "cli/bad_input.hpp"
+#include "cli/bad_batch.hpp"
 #include "problems/program.hpp"
 #include "slideway/base/text.hpp"
 
@@ -57,6 +57,15 @@ std::string section(const std::string& title, const std::string& test,
   return text;
 }
 
+std::string section(const std::string& title, std::span<const BadManifest> list) {
+  std::string text = "\n## " + title + "\n" + header("Bad/BadManifests.IsRefusedInOneLine");
+  for (const BadManifest& bad : list) {
+    const TemporaryFolder folder;
+    text += row(bad.name, run_on(bad, folder));
+  }
+  return text;
+}
+
 // From the lists of the tests and from what the program says to each case.
 TEST(Documents, FaultsAreWhatTheProgramSays) {
   const std::string text =
@@ -68,12 +77,19 @@ TEST(Documents, FaultsAreWhatTheProgramSays) {
       "them.\n\n"
       "Exit codes: 0 done, 1 failed while working, 2 bad usage or bad problem file, 3 unreadable "
       "or\n"
-      "invalid data, 4 negative verdict (`--strict` only).\n\n"
+      "invalid data, 4 negative verdict (`--strict` only), 5 batch finished with failed items.\n\n"
+      "What is wrong with one item of a batch stands in its line of the results, `status` and\n"
+      "`reason`, and stops no other: `bad_problem`, `bad_data` and `failed` as the exit codes 2, "
+      "3\n"
+      "and 1 of `identify`, `timeout`, `out_of_memory`, `crashed`\n"
+      "(`cli/Batch.OneBadItemStopsAndChangesNoOther`, `batch/Workers`).\n\n"
       "A file is written whole or not at all, also when a signal ends the program while it writes\n"
       "(`cli/Signal/Interrupted`, `base/WriteFile`). Every reader is fuzzed: `./dev fuzz`.\n" +
       section("Problem file", bad_problems()) + section("Data", bad_data()) +
       section("File formats", bad_formats()) +
       section("Command line", "Bad/Usage.IsRefusedInOneLine", bad_usages()) +
+      section("Manifest of a batch", bad_manifests()) +
+      section("Command line of a batch", "Bad/BatchUsage.IsRefusedInOneLine", bad_batch_usages()) +
       section("Output", "Bad/BadOutputs.FailInOneLine", bad_outputs());
   expect_current(source_folder() / "docs/faults.md", text);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "slideway/identify/evidence.hpp"
 #include "slideway/identify/problem.hpp"
 #include "slideway/identify/result.hpp"
 
@@ -9,8 +10,9 @@ enum class Scope { rank, fit, identify };
 
 /// The main job on a problem and its profiles: low band, fit, ranking, cross-check. Scope::rank
 /// leaves the fit and cross-check out of the result, Scope::fit the ranking and cross-check.
+/// @param evidence  where to put what a joint evaluation needs; nullptr: not wanted
 /// @throws UsageError, DataError
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
-                Scope scope = Scope::identify);
+                Scope scope = Scope::identify, Evidence* evidence = nullptr);
 
 }  // namespace slideway

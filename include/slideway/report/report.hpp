@@ -21,6 +21,9 @@ std::string json_report(const Result& result, const std::optional<TraceResult>& 
 /// @throws DataError  it is no JSON, of another schema, or something in it is of the wrong kind
 std::string html_report(std::string_view json);
 
+/// The same on one line, without the final newline: part of a longer JSON text.
+std::string json_line(const Result& result, const std::optional<TraceResult>& trace = {});
+
 /// The report for people: aligned plain text in at most 80 columns, values with units, at most two
 /// digits of uncertainty.
 std::string text_report(const Result& result, const std::optional<TraceResult>& trace = {});

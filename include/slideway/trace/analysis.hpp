@@ -13,6 +13,7 @@ struct AnalysisOptions {
   Scope scope = Scope::identify;
   bool closes_loop = true;
   bool with_details = false;
+  Evidence* evidence = nullptr;  // where identify() is to put it
 };
 
 /// All that is found in one problem.

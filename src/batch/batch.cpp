@@ -1,0 +1,163 @@
+#include "slideway/batch/batch.hpp"
+
+#include <charconv>
+#include <system_error>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr char kIdentify = 'i', kFingerprint = 'f';
+
+std::string task(char what, std::size_t item) { return what + std::to_string(item); }
+
+std::size_t item_of(const std::string& task) {
+  std::size_t item = 0;
+  std::from_chars(task.data() + 1, task.data() + task.size(), item);
+  return item;
+}
+
+std::string joined(const Fingerprint& print) {
+  return print.input_sha256 + " " + print.options_hash;
+}
+
+std::string fingerprint_text(const ManifestItem& item, const ItemOptions& options) {
+  try {
+    return joined(fingerprint(item, options));
+  } catch (const std::exception&) {
+    return "none";  // why, its line will say
+  }
+}
+
+/// Has the tasks done, in any order.
+void have_done(Hands& hands, char what, const std::vector<std::size_t>& items,
+               const std::function<void(std::size_t item, Answer&)>& done) {
+  constexpr std::chrono::seconds kAwhile{1};
+  for (auto next = items.begin(); next != items.end() || hands.busy() > 0;) {
+    while (next != items.end() && hands.has_idle()) hands.give(task(what, *next++));
+    for (Answer& answer : hands.wait(kAwhile)) done(item_of(answer.task), answer);
+  }
+}
+
+bool is_current(const ResultHead& head) {
+  return head.status == status::kOk && head.version == results_version();
+}
+
+bool is_there(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) &&
+         std::filesystem::file_size(path, ignored) > 0;
+}
+
+class Batch {
+ public:
+  Batch(const Manifest& manifest, const BatchOptions& options, Hands& hands,
+        const BatchProgress& progress)
+      : manifest_(&manifest), options_(&options), hands_(&hands), progress_(&progress) {
+    for (std::size_t i = 0; i < manifest.items.size(); ++i)
+      if (options.shard.holds(manifest.items[i].id)) items_.push_back(i);
+  }
+
+  BatchSummary run() {
+    if (!options_->resumes && is_there(options_->out))
+      throw UsageError(options_->out.string() +
+                       ": is there already; accepted: --resume, or another name");
+    ResultsFile results(options_->out);
+    if (options_->resumes) resume(results);
+    have_done(*hands_, kIdentify, items_, [&](std::size_t item, Answer& answer) {
+      results.append(line_of(item, answer));
+      report_progress();
+    });
+    return std::move(summary_);
+  }
+
+ private:
+  /// Leaves in the results what need not be done again, and out of the items what is there.
+  void resume(ResultsFile& results) {
+    std::unordered_map<std::string, std::size_t> by_id;
+    for (const std::size_t item : items_) by_id.emplace(manifest_->items[item].id, item);
+    std::unordered_map<std::size_t, std::string> prints;
+    std::size_t lines = 0;
+    lines += read_results(options_->out, [&](const ResultHead& head, std::string_view) {
+      ++lines;
+      const auto item = by_id.find(head.id);
+      if (item == by_id.end())
+        throw UsageError(options_->out.string() + ": holds the id '" + printable(head.id, 60) +
+                         "', which is not among the items; accepted: the manifest and the --shard "
+                         "it was begun with, or another name");
+      if (is_current(head)) prints.emplace(item->second, joined(head.print));
+    });
+    std::vector<std::size_t> candidates;
+    for (const std::size_t item : items_)
+      if (prints.contains(item)) candidates.push_back(item);
+    std::unordered_set<std::string> kept;
+    have_done(*hands_, kFingerprint, candidates, [&](std::size_t item, const Answer& answer) {
+      if (answer.reply == prints.at(item)) kept.insert(manifest_->items[item].id);
+    });
+    if (lines > kept.size())
+      results.keep([&](const ResultHead& head) {
+        return kept.contains(head.id) && is_current(head) &&
+               prints.at(by_id.at(head.id)) == joined(head.print);
+      });
+    std::erase_if(items_,
+                  [&](std::size_t item) { return kept.contains(manifest_->items[item].id); });
+    summary_.present = kept.size();
+    if (!kept.empty()) summary_.counts[status::kOk] = kept.size();
+  }
+
+  std::string line_of(std::size_t item, Answer& answer) {
+    const std::string& id = manifest_->items[item].id;
+    if (!answer.reply) answer.reply = failed_line(id, answer.cause, answer.reason);
+    // The head alone: the line is ours.
+    const ResultHead head = parse_head(*answer.reply).value();
+    ++summary_.counts[head.status];
+    if (head.status != status::kOk) {
+      const auto [at, is_new] = first_.emplace(head.status, item);
+      if (is_new || item < at->second) {
+        at->second = item;
+        summary_.first[head.status] = {id, head.reason};
+      }
+    }
+    return std::move(*answer.reply);
+  }
+
+  void report_progress() {
+    if (!*progress_) return;
+    std::size_t done = 0;
+    for (const auto& [status, count] : summary_.counts) done += count;
+    (*progress_)(done, summary_.present + items_.size(), summary_.failed());
+  }
+
+  const Manifest* manifest_;
+  const BatchOptions* options_;
+  Hands* hands_;
+  const BatchProgress* progress_;
+  std::vector<std::size_t> items_;
+  std::map<std::string, std::size_t> first_;  // item that failed first, by status
+  BatchSummary summary_;
+};
+
+}  // namespace
+
+std::size_t BatchSummary::failed() const {
+  std::size_t sum = 0;
+  for (const auto& [status, count] : counts)
+    if (status != status::kOk) sum += count;
+  return sum;
+}
+
+std::string do_task(const Manifest& manifest, const ItemOptions& options, const std::string& task) {
+  const ManifestItem& item = manifest.items.at(item_of(task));
+  return task[0] == kFingerprint ? fingerprint_text(item, options) : identify_item(item, options);
+}
+
+BatchSummary run_batch(const Manifest& manifest, const BatchOptions& options, Hands& hands,
+                       const BatchProgress& progress) {
+  return Batch(manifest, options, hands, progress).run();
+}
+
+}  // namespace slideway

@@ -1,0 +1,125 @@
+#include "slideway/batch/results.hpp"
+
+#include <gmock/gmock.h>
+
+#include "base/temporary_folder.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/file.hpp"
+
+namespace slideway {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::string line(const std::string& id, const std::string& status = "ok",
+                 const std::string& more = "") {
+  return R"({"id":")" + id + R"(","status":")" + status +
+         R"(","reason":null,"input_sha256":"12","options_hash":"34","version":"0.1.0",)"
+         R"("evidence":null,"report":{"more":")" +
+         more + "\"}}\n";
+}
+
+class Results : public testing::Test {
+ protected:
+  std::vector<std::string> ids(const std::filesystem::path& path, std::size_t* torn = nullptr) {
+    std::vector<std::string> out;
+    const std::size_t left_out = read_results(
+        path, [&](const ResultHead& head, std::string_view) { out.push_back(head.id); });
+    if (torn != nullptr) *torn = left_out;
+    return out;
+  }
+  static std::string text(const std::filesystem::path& path) {
+    return std::string(FileBytes(path).text());
+  }
+  template <typename Call>
+  static std::string refusal(const Call& call) {
+    try {
+      call();
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "";
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Results, WholeLinesAreReadAndTornOnesCounted) {
+  const std::string whole = line("a") + line("b"), last = line("c");
+  for (std::size_t size = 0; size < last.size(); ++size) {
+    std::size_t torn = 9;
+    EXPECT_THAT(ids(folder_.file("r", whole + last.substr(0, size)), &torn), ElementsAre("a", "b"));
+    EXPECT_EQ(torn, size > 0 ? 1U : 0U) << size;
+  }
+}
+
+TEST_F(Results, WhatLooksLikeAnEndInATextIsNone) {
+  const auto path = folder_.file("r", line(R"(x\",\"evidence\":)"));
+  EXPECT_THAT(ids(path), ElementsAre("x\",\"evidence\":"));
+}
+
+TEST_F(Results, LinesOfOtherKindsAreTorn) {
+  std::size_t torn = 0;
+  EXPECT_THAT(
+      ids(folder_.file("r", "\n{}\n[1]\nnull\n{\"id\":\"a\"}\n" + line("") + line("b")), &torn),
+      ElementsAre("b"));
+  EXPECT_EQ(torn, 6U);
+}
+
+TEST_F(Results, KeepDropsTornUnwantedAndRepeatedLines) {
+  const auto path = folder_.file("r", line("a") + line("b", "timeout") + line("a") + "{\"id\":\"c");
+  ResultsFile file(path);
+  file.keep([](const ResultHead& head) { return head.status == "ok"; });
+  file.append(line("b"));
+  EXPECT_EQ(text(path), line("a") + line("b"));
+}
+
+TEST_F(Results, TwoRunsDoNotWriteOneFile) {
+  const ResultsFile first(folder_.path() / "r");
+  EXPECT_THAT(refusal([&] { const ResultsFile second(folder_.path() / "r"); }),
+              HasSubstr("another run is writing it"));
+}
+
+TEST_F(Results, MergeIsSortedAndTheSameForEveryPartition) {
+  const auto one = folder_.file("one", line("c") + line("a"));
+  const auto two = folder_.file("two", line("b"));
+  const auto other = folder_.file("other", line("b") + line("a") + line("c") + "{\"id");
+  const MergeSummary summary = merge_results(folder_.path() / "out", {one, two});
+  EXPECT_EQ(summary.lines, 3U);
+  EXPECT_EQ(text(folder_.path() / "out"), line("a") + line("b") + line("c"));
+  EXPECT_EQ(merge_results(folder_.path() / "out2", {other}).torn, 1U);
+  EXPECT_EQ(text(folder_.path() / "out2"), text(folder_.path() / "out"));
+}
+
+TEST_F(Results, MergePrefersWhatWentWellAndRefusesTwoTruths) {
+  const auto one = folder_.file("one", line("a", "timeout") + line("b"));
+  const auto two = folder_.file("two", line("a") + line("b"));
+  EXPECT_EQ(merge_results(folder_.path() / "out", {one, two}).repeated, 2U);
+  EXPECT_EQ(text(folder_.path() / "out"), line("a") + line("b"));
+  const auto three = folder_.file("three", line("b", "ok", "else"));
+  EXPECT_THAT(refusal([&] {
+                merge_results(folder_.path() / "out3", {one, three});
+              }),
+              HasSubstr("id 'b' has one result in"));
+  EXPECT_FALSE(exists(folder_.path() / "out3"));
+}
+
+TEST_F(Results, VerifyWantsEveryIdOnce) {
+  const Manifest manifest = parse_manifest("id,problem\na,p\nb,p\nc,p\n", "m.csv");
+  const auto verified = [&](const std::string& contents) {
+    return verify_results(manifest, {}, folder_.file("r", contents));
+  };
+  EXPECT_EQ(verified(line("b") + line("a") + line("c", "timeout")),
+            (StatusCounts{{"ok", 2}, {"timeout", 1}}));
+  EXPECT_THAT(refusal([&] { verified(line("a") + line("c")); }),
+              HasSubstr("3 ids expected, each once; 1 missing (first 'b')"));
+  EXPECT_THAT(refusal([&] { verified(line("a") + line("c") + line("b") + line("c")); }),
+              HasSubstr("1 more than once (first 'c')"));
+  EXPECT_THAT(refusal([&] { verified(line("a") + line("c") + line("b") + line("d")); }),
+              HasSubstr("1 not in the manifest (first 'd')"));
+  EXPECT_THAT(refusal([&] { verified(line("a") + line("c") + line("b") + "{"); }),
+              HasSubstr("1 torn line"));
+}
+
+}  // namespace
+}  // namespace slideway

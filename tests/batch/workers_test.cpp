@@ -1,0 +1,133 @@
+#include "slideway/batch/workers.hpp"
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <new>
+#include <thread>
+
+#include "slideway/batch/item.hpp"
+
+namespace slideway {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+
+/// Everything the hands answer to these tasks.
+std::map<std::string, Answer> answers(Hands& hands, const std::vector<std::string>& tasks) {
+  std::map<std::string, Answer> out;
+  for (auto next = tasks.begin(); next != tasks.end() || hands.busy() > 0;) {
+    while (next != tasks.end() && hands.has_idle()) hands.give(*next++);
+    for (Answer& answer : hands.wait(milliseconds(1000))) {
+      std::string task = answer.task;
+      out.emplace(std::move(task), std::move(answer));
+    }
+  }
+  return out;
+}
+
+std::string work(const std::string& task) {
+  if (task == "crash") std::raise(SIGSEGV);
+  if (task == "leave") ::_exit(7);
+  if (task == "sleep") std::this_thread::sleep_for(std::chrono::hours(1));
+  if (task == "long") return std::string(10'000'000, 'x');
+  if (task == "process") return std::to_string(::getpid());
+  return "did " + task;
+}
+
+TEST(Workers, EveryTaskIsAnsweredOnce) {
+  for (const std::size_t count : {1U, 2U, 5U}) {
+    Workers workers(count, work, {});
+    std::vector<std::string> tasks;
+    for (int i = 0; i < 300; ++i) tasks.push_back(std::to_string(i));
+    const auto done = answers(workers, tasks);
+    ASSERT_EQ(done.size(), tasks.size());
+    for (const auto& [task, answer] : done) EXPECT_EQ(answer.reply, "did " + task);
+  }
+}
+
+TEST(Workers, RepliesMayBeLong) {
+  Workers workers(2, work, {});
+  EXPECT_EQ(answers(workers, {"long", "a"}).at("long").reply, std::string(10'000'000, 'x'));
+}
+
+TEST(Workers, ACrashIsAnAnswerAndChangesNoOther) {
+  Workers workers(2, work, {});
+  const auto done = answers(workers, {"a", "crash", "b", "leave", "c", "d"});
+  EXPECT_FALSE(done.at("crash").reply);
+  EXPECT_EQ(done.at("crash").cause, status::kCrashed);
+  EXPECT_EQ(done.at("leave").reason, "ended with exit code 7");
+  for (const char* task : {"a", "b", "c", "d"})
+    EXPECT_EQ(done.at(task).reply, std::string("did ") + task);
+}
+
+TEST(Workers, WhatTakesTooLongIsEnded) {
+  Workers workers(2, work, {.time = milliseconds(200)});
+  const auto done = answers(workers, {"a", "sleep", "b", "c"});
+  EXPECT_EQ(done.at("sleep").cause, status::kTimeout);
+  EXPECT_EQ(done.at("sleep").reason, "took longer than 0.2 s");
+  EXPECT_EQ(done.at("c").reply, "did c");
+}
+
+TEST(Workers, OneThatWasEndedWhileIdleIsReplaced) {
+  Workers workers(1, work, {});
+  const pid_t process = std::stoi(*answers(workers, {"process"}).at("process").reply);
+  ::kill(process, SIGKILL);
+  std::this_thread::sleep_for(milliseconds(100));
+  EXPECT_EQ(answers(workers, {"a"}).at("a").reply, "did a");
+}
+
+TEST(Workers, MemoryIsLimited) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the shadow of a sanitizer is beyond any limit";
+#endif
+  const auto greedy = [](const std::string& task) {
+    try {
+      return std::to_string(std::string(std::stoul(task), 'x').size());
+    } catch (const std::bad_alloc&) {
+      return std::string("no");
+    }
+  };
+  Workers workers(1, greedy, {.memory_bytes = 300'000'000});
+  const auto done = answers(workers, {"1000000000", "1000"});
+  EXPECT_EQ(done.at("1000000000").reply, "no");
+  EXPECT_EQ(done.at("1000").reply, "1000");
+}
+
+TEST(Workers, EndWithTheirParent) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    Workers workers(1, work, {});
+    workers.give("process");
+    const std::vector<Answer> done = workers.wait(milliseconds(1000));
+    const pid_t worker = std::stoi(*done.at(0).reply);
+    workers.give("sleep");
+    static_cast<void>(!::write(ends[1], &worker, sizeof worker));
+    ::kill(::getpid(), SIGKILL);
+  }
+  pid_t worker = 0;
+  ASSERT_EQ(::read(ends[0], &worker, sizeof worker), static_cast<ssize_t>(sizeof worker));
+  int status = 0;
+  ::waitpid(parent, &status, 0);
+  const auto is_there = [&] { return ::kill(worker, 0) == 0; };
+  for (int i = 0; i < 100 && is_there(); ++i) std::this_thread::sleep_for(milliseconds(20));
+  // A zombie of init's may stay where nobody waits for it; it does nothing any more.
+  if (is_there()) {
+    std::ifstream stat("/proc/" + std::to_string(worker) + "/stat");
+    std::string line;
+    std::getline(stat, line);
+    EXPECT_THAT(line, HasSubstr(") Z "));
+  }
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+}  // namespace
+}  // namespace slideway
