@@ -19,6 +19,7 @@ using Eigen::VectorXd;
 constexpr double kRegion = 0.954499736103642;  // of two standard deviations
 constexpr double kFalseAlarm = 0.05;           // of any item of a machine whose items all fit
 constexpr std::size_t kKnowsScatter = 5;       // items that tell a scatter from an outlier
+constexpr std::size_t kKnowsDrift = 6;         // items, all with a time, that tell a drift from one
 
 /// Rows [A | y] of an item for the carriages' parameters alone: what else it has is left free.
 MatrixXd carriage_rows(const PoolItem& item) {
@@ -218,6 +219,27 @@ std::vector<FittedParameter> fitted(const CarriageParameters& parameters, const 
   return out;
 }
 
+/// Every part with as many columns again, for what its parameters change over time: a machine that
+/// drifts is no reason for its first and last items not to fit. Times from -1 to 1 about their
+/// mean; as they are where an item has none, or where too few would tell a drift from an outlier.
+std::vector<MatrixXd> drifting(const std::vector<MatrixXd>& parts,
+                               const std::vector<std::optional<double>>& times) {
+  double mean = 0.0, span = 0.0;
+  for (const std::optional<double>& time : times) {
+    if (!time || parts.size() < kKnowsDrift) return parts;
+    mean += *time / static_cast<double>(times.size());
+  }
+  for (const std::optional<double>& time : times) span = std::max(span, std::abs(*time - mean));
+  if (!(span > 0.0)) return parts;
+  std::vector<MatrixXd> out;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const MatrixXd a = parts[i].leftCols(parts[i].cols() - 1);
+    out.emplace_back(parts[i].rows(), 2 * a.cols() + 1);
+    out.back() << a, a * ((*times[i] - mean) / span), parts[i].rightCols(1);
+  }
+  return out;
+}
+
 }  // namespace
 
 bool is_carriage_parameter(const std::string& name) {
@@ -244,7 +266,8 @@ PooledMachine pool(const std::string& machine, const std::vector<PoolItem>& item
   }
   if (parts.empty()) return out;
 
-  const Comparison comparison(parts);
+  const std::vector<MatrixXd> over_time = drifting(parts, part_times);
+  const Comparison comparison(over_time);
   out.scatter = comparison.scatter();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     out.items[i].fits = comparison.fits()[i];

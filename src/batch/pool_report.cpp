@@ -93,7 +93,7 @@ std::string machine_text(const PooledMachine& machine, bool are_dates) {
   std::string line = "Machine " + printable(machine.machine, 60) + ": " + std::to_string(fit) +
                      " of " + std::to_string(machine.items.size()) + " items fit together";
   if (machine.scatter > 1.0)
-    line += "; they differ " + significant(machine.scatter, 2) +
+    line += "; they differ " + fixed_point(machine.scatter, 2) +
             " times as much as their uncertainties say, which all U allow for";
   if (!machine.left_out.empty())
     line += "; left out, because they declare other carriage parameters than the first: " +

@@ -219,10 +219,12 @@ TEST_F(Batch, VerifyRefusesWhatIsNotWhole) {
 }
 
 TEST_F(Batch, PoolsTheItemsOfAMachine) {
-  std::string manifest = "id,problem,profile.face.file,machine,time\n";
+  // Over half a face the squareness is a tilt, which must then be known.
+  std::string manifest = "id,problem,profile.face.file,machine,time,profile.face.free\n";
   for (int i = 0; i < kFaces; ++i)
     manifest += "i" + std::to_string(i) + ",problem.toml,face" + std::to_string(i) + ".csv," +
-                (i % 2 == 0 ? "even" : "odd") + ",2026-01-" + std::to_string(10 + i) + "\n";
+                (i % 2 == 0 ? "even" : "odd") + ",2026-01-" + std::to_string(10 + i) +
+                ",\"[\"\"offset\"\"]\"\n";
   folder_.file("list.csv", manifest);
   const ProgramRun done = batch("out.jsonl", {"--pool", "machine", "--json", "pool.json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
@@ -231,8 +233,8 @@ TEST_F(Batch, PoolsTheItemsOfAMachine) {
   ASSERT_THAT(json["machines"], SizeIs(2));
   EXPECT_EQ(json["machines"][1]["machine"], "odd");
   EXPECT_THAT(json["machines"][1]["items"], SizeIs(6));
-  EXPECT_EQ(json["machines"][0]["parameters"][0]["name"], "squareness.dbeta_xz");
-  EXPECT_EQ(json["machines"][0]["trends"][0]["unit"], "rad/day");
+  EXPECT_EQ(json["machines"][0]["parameters"].at(0)["name"], "squareness.dbeta_xz");
+  EXPECT_EQ(json["machines"][0]["trends"].at(0)["unit"], "rad/day");
 }
 
 #ifdef SLIDEWAY_MPIEXEC

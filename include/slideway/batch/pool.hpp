@@ -22,7 +22,8 @@
 /// five items on, all uncertainties are multiplied by `scatter`, the square root of the median of
 /// χ² / (its median), where that is above 1. An item whose χ² has a p-value below 0.05 / (number of
 /// items) is left out, the worst first, and all are held against the rest again (Cox 2007, largest
-/// consistent subset); never more than half.
+/// consistent subset); never more than half. Where six items or more all have a time, the rest has
+/// a drift: as many parameters again, times the time.
 namespace slideway {
 
 /// One item as it goes in.
