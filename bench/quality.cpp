@@ -1,9 +1,11 @@
-// quality [--effect NAME] [--cases N] [--design 1|2|3] [--seed S] [--size N|any] [--nose MM]
+// quality [--effect NAME] [--cases N] [--design 1|2|3] [--seed S] [--size N|any|limit] [--nose MM]
 //
 // One JSON object a line for every case; bench/quality_table.py makes docs/quality.md of them. How
 // good the closed loop is: faces made by the process (tests/support/turning.hpp), with an
 // effect the model does not declare, given to the loop, and what it says held against the truth.
-// Off-grid shapes, amplitudes from half to fifty times the noise, one to three cuts.
+// Off-grid shapes, amplitudes from half to fifty times the noise ("any") or what the program says
+// of the same faces without the effect that it finds with 80 % probability ("limit"), one to three
+// cuts.
 
 #include <algorithm>
 #include <array>
@@ -16,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/trace/trace.hpp"
 #include "support/hidden_effect.hpp"
@@ -33,6 +36,20 @@ double squareness_of(const std::vector<FittedParameter>& parameters, double* unc
       return *p.value;
     }
   return NAN;
+}
+
+// Of the process' amplitude, in the unit of the effect's first parameter: rates are per the first
+// cut.
+double per_amplitude(const std::string& name) {
+  return name == "linear_drift" ? 5.0 : name == "tool_wear" ? 17.3 : 1.0;
+}
+
+// The size at the detection limit stated for these faces as they are without the effect.
+double size_at_limit(const std::string& name, int cuts, double nose_radius_mm, std::uint64_t seed) {
+  const TraceResult clean = close_loop(face_problem(), make_faces({}, cuts, nose_radius_mm, seed));
+  for (const DetectionLimit& limit : clean.detection_limits)
+    if (limit.effect == name) return limit.value * per_amplitude(name) * kMicrometre / kFaceNoise;
+  throw UsageError("no detection limit is stated for " + name);
 }
 
 Json run_case(const std::string& name, int cuts, double size, double nose_radius_mm,
@@ -67,9 +84,7 @@ Json run_case(const std::string& name, int cuts, double size, double nose_radius
   json["u_before"] = u_before;
   json["u_after"] = u_after;
   json["amplitude_um"] = amplitude / kMicrometre;
-  // In the unit of the effect's parameter: the process counts rates over the first cut.
-  const double per = name == "linear_drift" ? 5.0 : name == "tool_wear" ? 17.3 : 1.0;
-  json["truth_value"] = amplitude / kMicrometre / per;
+  json["truth_value"] = amplitude / kMicrometre / per_amplitude(name);
   for (const TraceRound& round : result.rounds)
     if (round.accepted == name && !round.parameters.empty())
       json["found_um"] = {round.parameters[0].value.value_or(0.0),
@@ -97,15 +112,18 @@ int main(int argc, char** argv) {
                                             {"--size", "10"},      {"--nose", "2"}};
   for (int i = 1; i + 1 < argc; i += 2) option[argv[i]] = argv[i + 1];
   try {
+    const std::string name = option["--effect"];
+    const int cuts = std::stoi(option["--design"]);
+    const double nose_radius_mm = std::stod(option["--nose"]);
     const auto seed = static_cast<std::uint64_t>(std::stoull(option["--seed"]));
     for (int i = 0; i < std::stoi(option["--cases"]); ++i) {
       const std::uint64_t own = seed + static_cast<std::uint64_t>(i);
       RandomStream random(own, "size");
       const double size = option["--size"] == "any" ? 0.5 * std::pow(100.0, random.uniform())
-                                                    : std::stod(option["--size"]);
-      std::cout << run_case(option["--effect"], std::stoi(option["--design"]), size,
-                            std::stod(option["--nose"]), own)
-                << std::endl;
+                          : option["--size"] == "limit"
+                              ? size_at_limit(name, cuts, nose_radius_mm, own)
+                              : std::stod(option["--size"]);
+      std::cout << run_case(name, cuts, size, nose_radius_mm, own) << std::endl;
     }
   } catch (const std::exception& error) {
     std::cerr << "quality: " << error.what() << '\n';

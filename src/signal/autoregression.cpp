@@ -58,15 +58,21 @@ double Autoregression::long_run_ratio() const {
 }
 
 void Autoregression::whiten(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  const Eigen::Index p = order(), started = std::min<Eigen::Index>(p, rows.rows());
+  const Eigen::Index rest = rows.rows() - started;
+  std::vector<double> copy(static_cast<std::size_t>(rows.rows()));
+  const Eigen::Map<Eigen::VectorXd> raw(copy.data(), rows.rows());
   for (Eigen::Index column = 0; column < rows.cols(); ++column) {
-    double* e = rows.col(column).data();
-    for (Eigen::Index t = rows.rows() - 1; t >= 0; --t) {  // upwards: the rows before are still raw
-      const int m = static_cast<int>(std::min<Eigen::Index>(t, order()));
-      const double* before = e + t;
-      double error = e[t];
-      for (const double phi : predictor(m)) error -= phi * *--before;
-      e[t] = m == order() ? error : error / std::sqrt(relative_variance(m));
+    auto e = rows.col(column);
+    std::copy(e.begin(), e.end(), copy.begin());
+    for (Eigen::Index t = 0; t < started; ++t) {
+      const int m = static_cast<int>(t);
+      const std::span<const double> phi = predictor(m);
+      for (Eigen::Index k = 0; k < t; ++k) e[t] -= phi[k] * raw[t - 1 - k];
+      e[t] /= std::sqrt(relative_variance(m));
     }
+    for (Eigen::Index k = 0; k < p && rest > 0; ++k)
+      e.tail(rest) -= predictor(static_cast<int>(p))[k] * raw.segment(p - 1 - k, rest);
   }
 }
 

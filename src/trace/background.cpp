@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "linear_algebra.hpp"
+#include "slideway/base/parallel.hpp"
 #include "slideway/base/units.hpp"
 
 namespace slideway {
@@ -250,20 +251,20 @@ Eigen::MatrixXd loose_values(const Model& model, const Fit& fit, const std::vect
 
 std::vector<Noise> background_noise(const Fit& fit, const Eigen::MatrixXd& loose,
                                     const std::vector<Eigen::MatrixXd>& suspect) {
-  std::vector<Noise> out;
-  Eigen::Index first = 0;
-  for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
+  std::vector<Eigen::Index> first{0};
+  for (const Observation* observation : fit.linear.observations)
+    first.push_back(first.back() + observation->values.size());
+  std::vector<Noise> out(fit.linear.observations.size());
+  parallel_for(out.size(), [&](std::size_t i) {
     const std::optional<LinearProfile> repeats = from_repeats(fit.linear, i);
-    const Eigen::Index count = fit.linear.observations[i]->values.size();
-    const Eigen::MatrixXd own = loose.middleRows(first, count);
-    first += count;
+    const Eigen::MatrixXd own = loose.middleRows(first[i], first[i + 1] - first[i]);
     const std::vector<LinearProfile> one{repeats ? *repeats
                                                  : from_fine_band(fit.linear, i, own, suspect)};
     const Eigen::Index spare = one[0].residual.size() - one[0].nuisances.cols();
     const double least = kRounding * fit.linear.observations[i]->values.norm();
     const bool usable = spare >= kLeastSpare && one[0].residual.norm() > least;
-    out.push_back(usable ? estimate_noise(one, Eigen::MatrixXd(0, 0)).front() : fit.noise[i]);
-  }
+    out[i] = usable ? estimate_noise(one, Eigen::MatrixXd(0, 0)).front() : fit.noise[i];
+  });
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "gates.hpp"
 #include "linear_algebra.hpp"
+#include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 
 namespace slideway {
@@ -116,14 +117,18 @@ std::optional<double> detection_limit(const Model& model, const Whitened& data,
 std::vector<DetectionLimit> detection_limits(const Model& model, const Whitened& data,
                                              const Candidates& candidates,
                                              const Calibration& calibration, double significance) {
+  std::vector<std::optional<double>> limits(candidates.size());
+  parallel_for(candidates.size(), [&](std::size_t c) {
+    limits[c] = detection_limit(model, data, *candidates[c], middle_shape(*candidates[c]),
+                                calibration, significance);
+  });
   std::vector<DetectionLimit> out;
-  for (const Candidate* candidate : candidates) {
-    const std::span<const double> shape = middle_shape(*candidate);
-    const auto limit = detection_limit(model, data, *candidate, shape, calibration, significance);
-    if (!limit) continue;
-    const Parameter& first = candidate->term.effect->parameters()[0];
-    out.push_back(
-        {candidate->name(), first.name, first.unit, *limit, shape_text(*candidate, shape)});
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (!limits[c]) continue;
+    const Candidate& candidate = *candidates[c];
+    const Parameter& first = candidate.term.effect->parameters()[0];
+    out.push_back({candidate.name(), first.name, first.unit, *limits[c],
+                   shape_text(candidate, middle_shape(candidate))});
   }
   return out;
 }

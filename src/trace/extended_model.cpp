@@ -41,7 +41,7 @@ Extender::Extender(const Problem& problem, const std::vector<Profile>& profiles)
 Extended Extender::extend(std::vector<Added> added) const {
   Extended out(std::move(added), base_, {});
   if (out.added.empty()) {
-    out.fit = fit(out.model);
+    out.fit = base_fit_;
     return out;
   }
   out.model = with(std::move(out.model), out.added);

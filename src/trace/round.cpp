@@ -6,6 +6,7 @@
 
 #include "background.hpp"
 #include "gates.hpp"
+#include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
 
@@ -73,21 +74,29 @@ std::vector<Seen> look_closer(const Model& model, const Fit& fit, const Whitened
                               const Calibration& calibration) {
   std::stable_sort(findings.begin(), findings.end(),
                    [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
-  std::vector<Seen> out;
-  bool any = false;
-  for (const Finding& finding : findings) {
-    const double best = findings.front().delta_bic;
-    const bool near = finding.delta_bic <= std::max(best + kWorthRefining, kWorthShare * best);
-    const bool pays = finding.delta_bic <= kWorthRefining - kEnough;
-    if (out.size() == kMostRefined || finding.rank == 0 || !(near || (!any && pays))) break;
-    Seen& seen = out.emplace_back();
+  const auto looked_at = [&](const Finding& finding) {
+    Seen seen;
     seen.refined = refine(model, data, finding);
     seen.p_value = calibration.p_value(-seen.refined.delta_bic);
     seen.held_out = leave_one_out(fit.linear, data, seen.refined);
     seen.refused = reason_against(seen.refined, seen.p_value, significance, seen.held_out);
     seen.fitted = data.outside(seen.refined.columns * seen.refined.projection.amplitudes);
-    any = any || seen.refused.empty();
-  }
+    return seen;
+  };
+  const auto worth = [&](double most) {
+    const auto first_not = std::find_if(findings.begin(), findings.end(), [&](const Finding& f) {
+      return f.rank == 0 || f.delta_bic > most;
+    });
+    return std::min<std::size_t>(first_not - findings.begin(), kMostRefined);
+  };
+  const double best = findings.front().delta_bic;
+  std::vector<Seen> out(worth(std::max(best + kWorthRefining, kWorthShare * best)));
+  parallel_for(out.size(), [&](std::size_t i) { out[i] = looked_at(findings[i]); });
+  const std::size_t pay = worth(kWorthRefining - kEnough);
+  const auto none = [&] {
+    return std::none_of(out.begin(), out.end(), [](const Seen& s) { return s.refused.empty(); });
+  };
+  while (out.size() < pay && none()) out.push_back(looked_at(findings[out.size()]));
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
     return a.refined.delta_bic < b.refined.delta_bic;
   });

@@ -37,6 +37,7 @@ class Loop {
     while (true) {
       tell("searching round " + std::to_string(state.added.size() + 1));
       last = look_at(state);
+      if (!first_look_) first_look_ = last;
       if (is_full(state)) break;
       const Seen* choice = last->choice();
       if (!choice) break;
@@ -175,8 +176,11 @@ class Loop {
     for (std::size_t i = 0; i < state.added.size(); ++i) {
       const Extended without = extender_.extend(all_but(state.added, i));
       // The others' names are no choice, but rivals they can be: two lines of one clock.
-      const Look look = slideway::look(without.model, without.fit, candidates_without(ruled_out_),
-                                       problem_.trace.significance, calibration_);
+      const bool as_first = without.added.empty() && ruled_out_.empty();
+      const Look look =
+          as_first ? *first_look_
+                   : slideway::look(without.model, without.fit, candidates_without(ruled_out_),
+                                    problem_.trace.significance, calibration_);
       const Seen* best = look.choice(taken(without.added));
       if (!best) continue;
       const Seen* own = nullptr;
@@ -297,6 +301,7 @@ class Loop {
   Extender extender_;
   Dictionary dictionary_;
   std::optional<Calibration> calibration_;
+  std::optional<Look> first_look_;  // at the declared model alone
   std::optional<FitResult> before_;
   std::vector<std::string> ruled_out_, advice_, notes_;
 };
