@@ -64,11 +64,12 @@ class Part {
 Eigen::MatrixXd apply_in_parts(const LowBand& low_band, Eigen::Index samples, Eigen::Index count,
                                const FillColumns& fill) {
   constexpr Eigen::Index kSamples = 4096, kLeast = 64, kPerTask = 8;
+  constexpr Eigen::Index kWhole = 1 << 16;  // samples that gain nothing by parts
   const LowBandOptions& options = low_band.options();
   const Eigen::Index values = low_band.values();
   const Eigen::Index size = std::max(kSamples >> options.level, kLeast);  // coefficients of a part
   const Eigen::Index parts =
-      is_local(options.boundary) && !low_band.resampled() ? values / size : 0;
+      samples > kWhole && is_local(options.boundary) && !low_band.resampled() ? values / size : 0;
   if (parts < 2) {
     Eigen::MatrixXd columns(samples, count);
     fill(0, columns);

@@ -29,7 +29,7 @@ TEST(ApplyInParts, IsTheTransformOfTheWholeToTheLastBit) {
   for (const std::string wavelet : {"db1", "db4", "db19"})
     for (const std::string_view boundary :
          {"symmetric", "smooth", "zero", "reflect", "periodic", "periodization", "antireflect"})
-      for (const Eigen::Index n : {40'000, 40'001, 40'031, 300'000}) {
+      for (const Eigen::Index n : {70'000, 70'001, 70'031, 300'000}) {
         const LowBand low_band({wavelet, 5, slideway::boundary(boundary)}, uniform(n));
         Eigen::MatrixXd whole(n, 2);
         fill(0, whole);
@@ -39,7 +39,7 @@ TEST(ApplyInParts, IsTheTransformOfTheWholeToTheLastBit) {
 }
 
 TEST(ApplyInParts, TakesNoLevelManyLevelsAndAGrid) {
-  const Eigen::Index n = 50'000;
+  const Eigen::Index n = 80'000;
   std::vector<double> positions = uniform(n);
   Eigen::MatrixXd whole(n, 1);
   fill(0, whole);
