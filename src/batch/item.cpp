@@ -71,7 +71,7 @@ std::string identified(const ManifestItem& item, const ItemOptions& options, Fin
   print.input_sha256 = sha256(inputs);
   Evidence evidence;
   const Analysis analysis =
-      analyse(problem, profiles, {Scope::identify, options.closes_loop, &evidence});
+      analyse(problem, profiles, {.closes_loop = options.closes_loop, .evidence = &evidence});
   return head(item.id, status::kOk, "", print) + ",\"evidence\":" + evidence_text(evidence) +
          ",\"report\":" + json_line(analysis.result, analysis.trace) + "}\n";
 }

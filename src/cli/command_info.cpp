@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "output.hpp"
-#include "picture.hpp"
 #include "report_command.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/profile/outliers.hpp"
 #include "slideway/report/layout.hpp"
+#include "slideway/report/picture.hpp"
 #include "trace_arguments.hpp"
 
 namespace slideway {

@@ -59,10 +59,11 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
   }
   const Analysis analysis = [&] {
     const ProgressLine line(closes_loop && !is_quiet());
-    return analyse(problem, read_profiles(problem), {scope, closes_loop, wants_json()},
+    return analyse(problem, read_profiles(problem),
+                   {scope, closes_loop, closes_loop || wants_json()},
                    [&](const std::string& stage) { line.show("closing the loop: " + stage); });
   }();
-  report([&] { return text_report(analysis.result, analysis.trace); },
+  report([&] { return text_report(analysis.result, analysis.trace, analysis.details); },
          [&] { return json_report(analysis.result, analysis.trace, analysis.details); });
   return strict_ && is_negative(analysis) ? kNegativeVerdict : kDone;
 }

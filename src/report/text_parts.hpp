@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "slideway/trace/details.hpp"
 #include "slideway/trace/trace.hpp"
 
 namespace slideway {
@@ -16,5 +17,9 @@ std::string probability(double p);
 
 /// The `trace` part of the report.
 std::string trace_text(const TraceResult& trace);
+
+/// The residual of the profile in which the loop has lowered it most, before and after; "" where it
+/// has not.
+std::string residual_pictures(const Details& details);
 
 }  // namespace slideway

@@ -337,7 +337,8 @@ std::string notes(const FitResult& fit) {
 
 }  // namespace
 
-std::string text_report(const Result& result, const std::optional<TraceResult>& trace) {
+std::string text_report(const Result& result, const std::optional<TraceResult>& trace,
+                        const std::optional<Details>& details) {
   std::string text = title(result) + inputs(result) + low_band(result);
   if (result.ranking) text += ranking(*result.ranking);
   text += dominant(result.dominant);
@@ -346,6 +347,7 @@ std::string text_report(const Result& result, const std::optional<TraceResult>& 
             residuals(result, *result.fit);
   if (result.squareness) text += crosscheck(*result.squareness);
   if (trace) text += trace_text(*trace);
+  if (details) text += residual_pictures(*details);
   if (result.fit) text += notes(*result.fit);
   return text;
 }

@@ -58,6 +58,15 @@ class Batch : public ProgramTest {
     }
     return nullptr;
   }
+
+  /// The report of identify, without what is there for its page alone.
+  [[nodiscard]] std::string alone() const {
+    Json report = Json::parse(contents(path("alone.json")));
+    for (const char* key :
+         {"model", "setups", "options", "straightness", "uncertainty_budget", "what_if", "curves"})
+      EXPECT_EQ(report.erase(key), 1) << key;
+    return report.dump();
+  }
 };
 
 TEST_F(Batch, EveryReportIsThatOfIdentifyAlone) {
@@ -71,7 +80,7 @@ TEST_F(Batch, EveryReportIsThatOfIdentifyAlone) {
     const Json line = result("out.jsonl", name);
     EXPECT_EQ(line["status"], "ok");
     EXPECT_TRUE(line["reason"].is_null());
-    EXPECT_EQ(line["report"].dump(2) + "\n", contents(path("alone.json"))) << name;
+    EXPECT_EQ(line["report"].dump(), alone()) << name;
   }
 }
 
@@ -81,7 +90,7 @@ TEST_F(Batch, TheLoopIsInTheReportUnlessItIsLeftOut) {
   ASSERT_EQ(run({"batch", "list.csv", "--out", "out.jsonl"}).exit_code, 0);
   ASSERT_EQ(run({"identify", "problem.toml", "--json", "alone.json"}).exit_code, 0);
   const Json line = result("out.jsonl", "problem.toml");
-  EXPECT_EQ(line["report"].dump(2) + "\n", contents(path("alone.json")));
+  EXPECT_EQ(line["report"].dump(), alone());
   EXPECT_FALSE(line["report"]["trace"].is_null());
 }
 

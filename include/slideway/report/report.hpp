@@ -26,6 +26,7 @@ std::string json_line(const Result& result, const std::optional<TraceResult>& tr
 
 /// The report for people: aligned plain text in at most 80 columns, values with units, at most two
 /// digits of uncertainty.
-std::string text_report(const Result& result, const std::optional<TraceResult>& trace = {});
+std::string text_report(const Result& result, const std::optional<TraceResult>& trace = {},
+                        const std::optional<Details>& details = {});
 
 }  // namespace slideway

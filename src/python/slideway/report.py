@@ -98,10 +98,22 @@ class CandidateCorrelation:
 
 
 @dataclass(frozen=True)
+class Travel:
+    """What the fitted profiles cover of the slide, and the levers that act on it."""
+
+    lever: str
+    slide_min_mm: float
+    slide_max_mm: float
+    spindle_position_mm: float | None
+    overhang_mm: float | None
+
+
+@dataclass(frozen=True)
 class Dominant:
     by_correlation: str | None
     by_fit: str | None
     agree: bool | None
+    doubt: str
 
 
 @dataclass(frozen=True)
@@ -200,6 +212,7 @@ class Fit:
     contributions: list[Contribution]
     residuals: list[Residual]
     neglected_um: float | None
+    implausible: str
     notes: list[str]
 
 
@@ -331,6 +344,7 @@ class Report:
     version: str
     title: str
     inputs: list[Input]
+    travel: Travel | None
     low_band: LowBand
     ranking: list[Ranking]
     candidate_correlations: list[CandidateCorrelation]
@@ -341,6 +355,14 @@ class Report:
     trace: Trace | None
     before: Model | None = None
     after: Model | None = None
+    # What the page shows beside, as the document has it.
+    model: list[dict[str, Any]] | None = None
+    setups: list[dict[str, Any]] | None = None
+    options: dict[str, Any] | None = None
+    straightness: dict[str, Any] | None = None
+    uncertainty_budget: list[dict[str, Any]] | None = None
+    what_if: list[dict[str, Any]] | None = None
+    curves: dict[str, Any] | None = None
     text: str = dataclasses.field(default="", repr=False, compare=False)
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-#include "picture.hpp"
+#include "slideway/report/picture.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kColumns = 66, kRows = 8;  // of characters, 2 by 4 dots each
-constexpr std::size_t kWide = 2 * kColumns, kHigh = 4 * kRows;
+constexpr std::size_t kColumns = 66;  // of characters, 2 by 4 dots each
+constexpr std::size_t kWide = 2 * kColumns;
 
 struct Extent {
   double low = INFINITY, high = -INFINITY;
@@ -40,8 +40,10 @@ std::string padded(const std::string& text, std::size_t width) {
 
 }  // namespace
 
-std::string picture(std::span<const double> positions, std::span<const double> values) {
-  Extent across, up;
+std::string picture(std::span<const double> positions, std::span<const double> values,
+                    const PictureFrame& frame) {
+  const std::size_t high = 4 * frame.rows;
+  Extent across, up{frame.low, frame.high};
   for (std::size_t i = 0; i < values.size(); ++i) {
     across.add(positions[i]);
     up.add(values[i]);
@@ -52,11 +54,11 @@ std::string picture(std::span<const double> positions, std::span<const double> v
 
   static constexpr std::array<std::array<unsigned, 4>, 2> kDots{
       {{0x01, 0x02, 0x04, 0x40}, {0x08, 0x10, 0x20, 0x80}}};
-  std::vector<unsigned> cells(kColumns * kRows);
+  std::vector<unsigned> cells(kColumns * frame.rows);
   for (std::size_t x = 0; x < kWide; ++x) {
     if (columns[x].is_empty()) continue;
-    const std::size_t top = kHigh - 1 - up.part(columns[x].high, kHigh);
-    const std::size_t bottom = kHigh - 1 - up.part(columns[x].low, kHigh);
+    const std::size_t top = high - 1 - up.part(columns[x].high, high);
+    const std::size_t bottom = high - 1 - up.part(columns[x].low, high);
     for (std::size_t y = top; y <= bottom; ++y)
       cells[y / 4 * kColumns + x / 2] |= kDots[x % 2][y % 4];
   }
@@ -64,10 +66,10 @@ std::string picture(std::span<const double> positions, std::span<const double> v
   int digits = 4;
   while (digits < 7 && significant(up.low, digits) == significant(up.high, digits)) ++digits;
   std::string text;
-  for (std::size_t row = 0; row < kRows; ++row) {
+  for (std::size_t row = 0; row < frame.rows; ++row) {
     std::string label;
     if (row == 0) label = significant(up.high, digits);
-    if (row + 1 == kRows) label = significant(up.low, digits);
+    if (row + 1 == frame.rows) label = significant(up.low, digits);
     text += padded(label, kMargin) + " ";
     for (std::size_t x = 0; x < kColumns; ++x) text += braille(cells[row * kColumns + x]);
     text += '\n';
