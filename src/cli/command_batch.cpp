@@ -122,7 +122,7 @@ class BatchCommand : public ReportCommand {
 
   int batch() const {
     keep_input(words_[0], out_);
-    keep_input(words_[0], json_file());
+    keep(words_[0]);
     const Manifest manifest = read_manifest(words_[0]);
     if (!pool_.empty()) check_pool(manifest);
     const ItemOptions item{data_directory(data_), !no_trace_, ignore_checksum_};

@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kRunningPoints = 200;
 constexpr std::size_t kMostLags = 200;  // of the low band, on either side
 constexpr double kAlike = 0.95;
-constexpr double kRounding = 1e-9;  // a signal this small beside the profile is rounding
+constexpr double kNoSignal = 1e-9;  // a signal this small beside the profile is rounding
 constexpr double kSignificant = 0.05;
 // Smaller leads come and go with the next profile.
 constexpr double kClearRest = 0.8;  // of the variance the next effect leaves unexplained
@@ -46,7 +46,7 @@ Signal signal_of(const Model& model, const Fit& fit, const ModelTerm& term,
   const Profile& profile = *observation.profile;
   Signal out{&term, effect_signal(model, term, profile, amplitudes, shape), {}};
   const Eigen::Map<const Eigen::VectorXd> values(profile.values.data(), out.raw.size());
-  if (out.raw.norm() <= kRounding * values.norm()) {
+  if (out.raw.norm() <= kNoSignal * values.norm()) {
     amplitudes.setConstant(amplitudes.size() == 1 ? 1.0 : 0.0);
     out.raw = effect_signal(model, term, profile, amplitudes, shape);
   }

@@ -214,7 +214,7 @@ std::string result_table(const Json& report, std::vector<Fact>& facts) {
         was = html_number(value, 4);
         if (!now || !(now->U > 0.0)) continue;
         const double shifted = (value - now->value) / now->U;
-        shift = html_number(std::round(1000.0 * shifted) / 1000.0, 2);
+        shift = html_number(std::round(1000.0 * shifted) / 1000.0 + 0.0, 2);  // no -0
         if (std::abs(shifted) > std::abs(most)) most = shifted, which = text_of(p, "name");
       }
       cells.push_back(was);

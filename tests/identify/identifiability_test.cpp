@@ -18,13 +18,13 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 
-const turning::Carriage kCarriage{
+const turning::Carriage kLathe{
     .b = {0.0, 0.0, 2e-8, -1e-10}, .c = {0.0, 1e-5, 2e-7, -1e-9}, .squareness = 2e-5};
 
 /// A face of that machine at height z; the trace runs from `first` mm (a radius from 0, a diameter
 /// from -50) to 50 mm.
 Profile face(double z_mm, double first_mm = 0.0) {
-  turning::Carriage carriage = kCarriage;
+  turning::Carriage carriage = kLathe;
   carriage.z_mm = z_mm;
   turning::Cut cut;
   cut.radius_mm = 50.0;
@@ -190,7 +190,7 @@ TEST(Identifiability, OfASlideReadingHasNoSquareness) {
   turning::Pass pass;
   pass.noise.white = 1e-5;
   const auto error = [](const turning::ToolPoint& tool) {
-    return turning::polynomial(kCarriage.b, tool.x);
+    return turning::polynomial(kLathe.b, tool.x);
   };
   Profile slide = cases::profile("slide", Kind::slide, positions,
                                  turning::slide_heights(error, positions, pass, random));

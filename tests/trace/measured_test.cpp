@@ -9,7 +9,7 @@ namespace {
 
 using namespace faces;  // NOLINT(google-build-using-namespace)
 
-TraceResult close_on(const std::string& name) {
+TraceResult close_problem(const std::string& name) {
   const Problem problem = shipped_problem(name);
   return close_loop(problem, read_profiles(problem));
 }
@@ -23,7 +23,7 @@ class Measured : public ::testing::Test {
 };
 
 TEST_F(Measured, TestBarRunsOut) {
-  const TraceResult result = close_on("real/test-bar.toml");
+  const TraceResult result = close_problem("real/test-bar.toml");
   SCOPED_TRACE(story(result));
   ASSERT_FALSE(result.rounds.empty());
   const TraceRound& first = result.rounds.front();
@@ -39,7 +39,7 @@ TEST_F(Measured, TestBarRunsOut) {
 }
 
 TEST_F(Measured, LatheBedHasNoEffectOfTheSlide) {
-  const TraceResult result = close_on("real/lathe-bed.toml");
+  const TraceResult result = close_problem("real/lathe-bed.toml");
   SCOPED_TRACE(story(result));
   EXPECT_THAT(result.rounds, ::testing::IsEmpty());
 }
@@ -64,7 +64,7 @@ TEST_F(Measured, CurvatureOfAMirrorDeclaredStraightComesBack) {
 }
 
 TEST(Shipped, ThreeLevelsLackNothing) {
-  const TraceResult result = close_on("three-levels/problem.toml");
+  const TraceResult result = close_problem("three-levels/problem.toml");
   SCOPED_TRACE(story(result));
   EXPECT_EQ(result.verdict, "nothing_missing");
 }
