@@ -25,10 +25,8 @@ using Json = nlohmann::ordered_json;
 class BatchCommand : public ReportCommand {
  public:
   BatchCommand()
-      : ReportCommand("batch",
-                      "MANIFEST --out RESULTS.jsonl [options] | merge OUT IN... | verify MANIFEST "
-                      "RESULTS",
-                      "Identifies one problem a line of a manifest") {
+      : ReportCommand("batch", "MANIFEST --out RESULTS | merge OUT IN... | verify MANIFEST RESULTS",
+                      "Identifies each problem of a manifest; merges, verifies results") {
     add_inputs("MANIFEST", &words_);
     auto options = add_options();
     options("out", po::value(&out_)->value_name("FILE"), "the results, one JSON object a line");
