@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 class BatchCommand : public ReportCommand {
  public:
   BatchCommand()
-      : ReportCommand("batch", "MANIFEST --out RESULTS | merge OUT IN... | verify MANIFEST RESULTS",
+      : ReportCommand("batch", "MANIFEST --out OUT | merge OUT IN... | verify MANIFEST OUT",
                       "Identifies each problem of a manifest; merges, verifies results") {
     add_inputs("MANIFEST", &words_);
     auto options = add_options();
