@@ -112,9 +112,9 @@ void check_plausibility(const Model& model, const Fit& fit, FitResult& out) {
   const double good = kGoodStraightness * (part < 1.0 ? part * part : part);
   if (!face || found < kImplausible * good || !is_curved(out)) return;
   out.implausible = "the fitted straightness is " + significant(found / kMicrometre, 2) +
-                    " um over " + significant(travel, 4) +
-                    " mm; a slide of 1 um per 200 mm makes " + significant(good / kMicrometre, 2) +
-                    " um there";
+                    " µm over " + significant(travel, 4) +
+                    " mm; a slide of 1 µm per 200 mm makes " + significant(good / kMicrometre, 2) +
+                    " µm there";
   out.notes.push_back(out.implausible + ": look for another cause before blaming the slide");
 }
 

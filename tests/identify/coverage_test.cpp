@@ -13,7 +13,7 @@
 namespace slideway {
 namespace {
 
-constexpr int kRuns = 500;
+constexpr int kSimulations = 500;
 // A true 95 % leaves 460 ... 487 of 500 (92 to 97.5 %) once in 240 times (binomial); the seeds are
 // fixed.
 constexpr int kFewest = 460, kMost = 487;
@@ -117,7 +117,7 @@ std::map<std::string, int> hits(const Experiment& experiment) {
   const Problem problem = declared(experiment);
   const std::map<std::string, double> expected = truth(experiment);
   std::map<std::string, int> out;
-  for (int run = 0; run < kRuns; ++run) {
+  for (int run = 0; run < kSimulations; ++run) {
     RandomStream random(static_cast<std::uint64_t>(run), experiment.name);
     const std::vector<Profile> profiles = measure(experiment, surfaces, random);
     const Model model = build_model(problem, profiles);
