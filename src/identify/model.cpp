@@ -174,7 +174,7 @@ Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
   const Eigen::Index amplitudes = term.effect->amplitudes();
   if (!term.effect->applies_to(profile.setup))
     return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
-  const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
+  const auto fill = [&](Eigen::Index first, const Eigen::Ref<Eigen::MatrixXd>& rows) {
     term.effect->columns(part_of(profile, model.machine, first, rows.rows()), shape, rows);
   };
   return apply_in_parts(observation.low_band, std::ssize(profile.positions), amplitudes, fill);
@@ -197,7 +197,7 @@ Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
             low_band_columns(model, term, observation, below)) /
            (2.0 * reach);
   }
-  const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
+  const auto fill = [&](Eigen::Index first, const Eigen::Ref<Eigen::MatrixXd>& rows) {
     term.effect->derivatives(part_of(profile, model.machine, first, rows.rows()), shape, which,
                              rows);
   };
