@@ -54,14 +54,17 @@ std::string_view version_of(std::string_view bytes) {
              : trimmed(bytes.substr(0, std::min(bytes.find('\n'), bytes.size())));
 }
 
+[[noreturn]] void refuse(const std::string& key, double value, const std::string& accepted) {
+  throw DataError("header: " + key + " = " + significant(value, 6) + "; accepted: " + accepted);
+}
+
 void check(const Header& header, double compression, double checksum, double type) {
-  const auto refuse = [](const std::string& key, double value, const std::string& accepted) {
-    throw DataError("header: " + key + " = " + significant(value, 6) + "; accepted: " + accepted);
-  };
   if (compression != 0.0) refuse("Compression", compression, "0 (none)");
   if (checksum != 0.0) refuse("CheckType", checksum, "0 (none)");
   if (!(type >= 0.0 && type <= 7.0) || type != std::floor(type)) refuse("DataType", type, "0 to 7");
-  if (!(header.x_scale > 0.0)) refuse("Xscale", header.x_scale, "a spacing above 0, in m");
+  const auto extent = static_cast<double>(header.points) * header.x_scale;
+  if (!(header.x_scale > 0.0 && std::isfinite(extent)))
+    refuse("Xscale", header.x_scale, "a spacing above 0, in m");
   if (header.profiles > 1 && !(header.y_scale > 0.0))
     refuse("Yscale", header.y_scale, "a spacing above 0, in m");
   if (header.z_scale == 0.0 || !std::isfinite(header.z_scale))
@@ -210,7 +213,10 @@ Trace Sdf::read(std::string_view bytes, const TraceRequest& request) const {
     header = read_text_header(bytes.substr(0, end));
     heights = read_text_values(bytes.substr(end + 1), header);
   }
-  for (double& height : heights) height *= header.z_scale;
+  for (double& height : heights) {
+    height *= header.z_scale;
+    if (std::isinf(height)) refuse("Zscale", header.z_scale, "one that leaves heights finite");
+  }
   const Grid grid{even_positions(header.points, 0.0, header.x_scale),
                   even_positions(header.profiles, 0.0, header.y_scale), std::move(heights)};
   Trace trace = line_of(grid, request.line, "m");
