@@ -20,7 +20,7 @@ std::string packed(const Answer& answer) {
 Answer unpacked(std::string_view text) {
   const auto part = [&text] {
     const std::size_t newline = text.find('\n');
-    const std::string out(text.substr(0, newline));
+    std::string out(text.substr(0, newline));
     text.remove_prefix(newline + 1);
     return out;
   };

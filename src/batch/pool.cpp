@@ -33,7 +33,7 @@ MatrixXd carriage_rows(const PoolItem& item) {
     for (Index p = 0; p <= all; ++p)
       a(i, p) = p < all ? item.evidence.rows[i][p] : item.evidence.values[i];
   own.push_back(all);
-  const MatrixXd kept = a(Eigen::all, own);
+  MatrixXd kept = a(Eigen::all, own);
   if (others.empty()) return kept;
   MatrixXd foreign = a(Eigen::all, others);
   foreign.colwise().normalize();

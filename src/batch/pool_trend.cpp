@@ -30,7 +30,7 @@ Line fit_line(const Eigen::MatrixX2d& columns, const Eigen::VectorXd& values,
 double variance_between(const Line& line, const Eigen::MatrixX2d& columns,
                         const Eigen::VectorXd& weights) {
   const Eigen::Matrix2d squares = columns.transpose() * weights.cwiseAbs2().asDiagonal() * columns;
-  const double expected = static_cast<double>(columns.rows() - 2);
+  const auto expected = static_cast<double>(columns.rows() - 2);
   return std::max(
       0.0, (line.chi_square - expected) / (weights.sum() - (line.covariance * squares).trace()));
 }
@@ -68,7 +68,7 @@ std::vector<Trend> trends(const std::vector<std::vector<FittedParameter>>& items
     Trend trend{items.front()[p].name, items.front()[p].unit, known.size()};
     trend.rate = line.coefficients[1] * unit / span;
     trend.standard_uncertainty = std::sqrt(line.covariance(1, 1) * excess) * unit / span;
-    const double freedom = static_cast<double>(n - 2);
+    const auto freedom = static_cast<double>(n - 2);
     trend.expanded_uncertainty = coverage_factor(freedom) * trend.standard_uncertainty;
     trend.p_value = 2.0 * cdf(complement(boost::math::students_t(freedom),
                                          std::abs(trend.rate / trend.standard_uncertainty)));
