@@ -2,7 +2,6 @@
 #include <sys/mman.h>
 
 #include <csignal>
-#include <cstdint>
 #include <cstdlib>
 #include <exception>
 #include <memory>
@@ -43,8 +42,10 @@ void prepare_memory() {
   mallopt(M_TRIM_THRESHOLD, kRoom);
   void* const room = std::malloc(kRoom - kHugePage);  // addresses only, no memory yet
   if (room == nullptr) return;
-  const auto first = (reinterpret_cast<std::uintptr_t>(room) + kHugePage - 1) & ~(kHugePage - 1);
-  ::madvise(reinterpret_cast<void*>(first), kRoom - 2 * kHugePage, MADV_HUGEPAGE);
+  void* first = room;
+  std::size_t left = kRoom - kHugePage;
+  if (std::align(kHugePage, kRoom - 2 * kHugePage, first, left) != nullptr)
+    ::madvise(first, kRoom - 2 * kHugePage, MADV_HUGEPAGE);
   std::free(room);
 }
 
