@@ -69,10 +69,10 @@ std::string identified(const ManifestItem& item, const ItemOptions& options, Fin
   std::string inputs;
   for (const Profile& profile : profiles) inputs += profile.sha256 + "\n";
   print.input_sha256 = sha256(inputs);
-  Evidence evidence;
   const Analysis analysis =
-      analyse(problem, profiles, {.closes_loop = options.closes_loop, .evidence = &evidence});
-  return head(item.id, status::kOk, "", print) + ",\"evidence\":" + evidence_text(evidence) +
+      analyse(problem, profiles, {.closes_loop = options.closes_loop, .with_evidence = true});
+  return head(item.id, status::kOk, "", print) +
+         ",\"evidence\":" + evidence_text(*analysis.evidence) +
          ",\"report\":" + json_line(analysis.result, analysis.trace) + "}\n";
 }
 

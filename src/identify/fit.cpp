@@ -141,4 +141,13 @@ Fit fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   return out;
 }
 
+Fitted fitted(Model model, const std::optional<Eigen::VectorXd>& shapes) {
+  Fit made = fit(model, shapes);
+  return {std::move(model), std::move(made)};
+}
+
+Fitted fit_declared(const Problem& problem, const std::vector<Profile>& profiles) {
+  return fitted(build_model(problem, profiles));
+}
+
 }  // namespace slideway

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "slideway/identify/crosscheck.hpp"
-#include "slideway/identify/fit.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/ranking.hpp"
 
@@ -70,11 +69,9 @@ TravelSummary summarise_travel(Lever lever, const std::vector<const Observation*
   bool one_overhang = true;
   for (const Observation* observation : fitted) {
     const Setup& setup = observation->profile->setup;
-    const Stations stations(observation->profile->positions, setup, machine);
-    for (Eigen::Index i = 0; i < stations.size(); ++i) {
-      out.slide_min_mm = std::min(out.slide_min_mm, stations.slide(i));
-      out.slide_max_mm = std::max(out.slide_max_mm, stations.slide(i));
-    }
+    const SlideRange range = slide_range(*observation->profile, machine);
+    out.slide_min_mm = std::min(out.slide_min_mm, range.least);
+    out.slide_max_mm = std::max(out.slide_max_mm, range.greatest);
     if (setup.kind != Kind::face) continue;
     one_overhang = one_overhang && out.overhang_mm.value_or(setup.overhang_mm) == setup.overhang_mm;
     out.overhang_mm = setup.overhang_mm;
@@ -86,8 +83,12 @@ TravelSummary summarise_travel(Lever lever, const std::vector<const Observation*
 
 }  // namespace
 
-Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope,
-                Evidence* evidence) {
+Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope) {
+  return identify(problem, profiles, fit_declared(problem, profiles), scope);
+}
+
+Result identify(const Problem& problem, const std::vector<Profile>& profiles,
+                const Fitted& declared, Scope scope) {
   Result result;
   result.title = problem.title;
   result.version = SLIDEWAY_VERSION;
@@ -96,15 +97,13 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles, Sc
   result.level = problem.low_band.level;
   result.boundary = name(problem.low_band.boundary);
 
-  const Model model = build_model(problem, profiles);
-  const Fit fitted = fit(model);
-  FitResult summary = summarise(model, fitted);
+  const auto& [model, fit] = declared;
+  FitResult summary = summarise(model, fit);
   result.travel = summarise_travel(problem.lever, fitted_observations(model), model.machine);
-  if (evidence != nullptr) *evidence = slideway::evidence(model, fitted);
   for (const Observation* observation : fitted_observations(model))
     result.low_band_values += static_cast<std::size_t>(observation->values.size());
   if (scope != Scope::fit) {
-    result.ranking = rank_effects(model, fitted);
+    result.ranking = rank_effects(model, fit);
     result.dominant = dominant_effects(*result.ranking, summary);
   }
   if (scope == Scope::identify)

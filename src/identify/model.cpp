@@ -21,18 +21,36 @@ std::array<Eigen::Index, 4> extreme_samples(const Profile& profile) {
   return {0, std::clamp<Eigen::Index>(axis - 1, 0, last), std::min(axis, last), last};
 }
 
+}  // namespace
+
+SlideRange slide_range(const Profile& profile, const Machine& machine) {
+  const Stations stations = profile.stations(machine);
+  SlideRange range{INFINITY, -INFINITY};
+  for (const Eigen::Index i : extreme_samples(profile)) {
+    range.least = std::min(range.least, stations.slide(i));
+    range.greatest = std::max(range.greatest, stations.slide(i));
+  }
+  return range;
+}
+
+void leave_out(Observation& observation, const std::vector<Eigen::Index>& values) {
+  Eigen::MatrixXd& nuisances = observation.nuisances;
+  const Eigen::Index known = nuisances.cols();
+  nuisances.conservativeResize(observation.values.size(), known + std::ssize(values));
+  nuisances.rightCols(std::ssize(values)).setZero();
+  for (std::size_t j = 0; j < values.size(); ++j)
+    nuisances(values[j], known + static_cast<Eigen::Index>(j)) = 1.0;
+}
+
+namespace {
+
 TravelRange travel_range(const std::vector<Profile>& profiles, const Machine& machine) {
   TravelRange range{INFINITY, -INFINITY, INFINITY, -INFINITY};
   for (const Profile& profile : profiles) {
-    const Stations stations = profile.stations(machine);
-    for (const Eigen::Index i : extreme_samples(profile)) {
-      range.slide_min = std::min(range.slide_min, stations.slide(i));
-      range.slide_max = std::max(range.slide_max, stations.slide(i));
-    }
-    if (profile.setup.base_mm) {  // the feet of a bridge reach beyond its centre
-      range.slide_min -= *profile.setup.base_mm / 2.0;
-      range.slide_max += *profile.setup.base_mm / 2.0;
-    }
+    const SlideRange own = slide_range(profile, machine);
+    const double foot = profile.setup.base_mm.value_or(0.0) / 2.0;  // beyond the centre of a bridge
+    range.slide_min = std::min(range.slide_min, own.least - foot);
+    range.slide_max = std::max(range.slide_max, own.greatest + foot);
     if (profile.setup.feed_mm_per_min && profile.setup.spindle_rpm)
       range.coarsest_feed_mm = std::max(
           range.coarsest_feed_mm, *profile.setup.feed_mm_per_min / *profile.setup.spindle_rpm);
@@ -63,19 +81,6 @@ Eigen::MatrixXd nuisance_columns(const Profile& profile, const LowBand& low_band
   };
   return apply_in_parts(low_band, n, std::ssize(names), fill);
 }
-
-}  // namespace
-
-void leave_out(Observation& observation, const std::vector<Eigen::Index>& values) {
-  Eigen::MatrixXd& nuisances = observation.nuisances;
-  const Eigen::Index known = nuisances.cols();
-  nuisances.conservativeResize(observation.values.size(), known + std::ssize(values));
-  nuisances.rightCols(std::ssize(values)).setZero();
-  for (std::size_t j = 0; j < values.size(); ++j)
-    nuisances(values[j], known + static_cast<Eigen::Index>(j)) = 1.0;
-}
-
-namespace {
 
 Observation observe(const Profile& profile, const LowBandOptions& options) {
   LowBand low_band(options, profile.positions);

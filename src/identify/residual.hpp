@@ -10,10 +10,6 @@
 
 namespace slideway {
 
-inline std::span<const double> shapes_of(const ModelTerm& term, const Eigen::VectorXd& shapes) {
-  return {shapes.data() + term.first_shape, term.effect->shapes().size()};
-}
-
 /// Orthonormal basis of an observation's nuisances, and columns with that basis taken out of them.
 Eigen::MatrixXd nuisance_basis(const Observation& observation);
 void project_out(const Eigen::MatrixXd& basis, Eigen::Ref<Eigen::MatrixXd> columns);

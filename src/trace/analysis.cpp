@@ -33,16 +33,17 @@ void add_widening(const TraceResult& trace, std::vector<Budget>& budgets) {
 Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
                  const AnalysisOptions& options, const Progress& progress) {
   try {
-    Analysis analysis{identify(problem, profiles, options.scope, options.evidence), std::nullopt,
-                      std::nullopt};
-    std::optional<Fitted> after;
-    if (options.closes_loop)
-      analysis.trace =
-          close_loop(problem, profiles, progress, options.with_details ? &after : nullptr);
+    const Fitted declared = fit_declared(problem, profiles);
+    Analysis analysis{identify(problem, profiles, declared, options.scope), {}, {}, {}};
+    if (options.with_evidence) analysis.evidence = evidence(declared.model, declared.fit);
+    std::optional<Fitted> extended;
+    if (options.closes_loop) {
+      ClosedLoop loop = close_loop(problem, profiles, declared, progress);
+      analysis.trace = std::move(loop.trace);
+      extended = std::move(loop.extended);
+    }
     if (options.with_details) {
-      Fitted before{build_model(problem, profiles), {}};
-      before.fit = fit(before.model);
-      analysis.details = make_details(problem, before, after ? &*after : nullptr);
+      analysis.details = make_details(problem, declared, extended ? &*extended : nullptr);
       if (analysis.trace && analysis.trace->unnamed)
         add_widening(*analysis.trace, analysis.details->budget);
     }

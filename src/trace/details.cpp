@@ -72,19 +72,19 @@ class View {
   }
 
   [[nodiscard]] Eigen::VectorXd contribution(const ModelTerm& term) const {
-    return effect_signal(fitted_.model, term, profile(), amplitudes(term), shapes(term));
+    return effect_signal(fitted_.model, term, profile(), amplitudes(term),
+                         shapes_of(term, fitted_.fit.estimate.shapes));
   }
 
   [[nodiscard]] Eigen::VectorXd low_band_contribution(const ModelTerm& term) const {
-    return low_band_columns(fitted_.model, term, observation_, shapes(term)) * amplitudes(term);
+    return low_band_columns(fitted_.model, term, observation_,
+                            shapes_of(term, fitted_.fit.estimate.shapes)) *
+           amplitudes(term);
   }
 
  private:
   [[nodiscard]] Eigen::VectorXd amplitudes(const ModelTerm& term) const {
     return fitted_.fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
-  }
-  [[nodiscard]] std::span<const double> shapes(const ModelTerm& term) const {
-    return {fitted_.fit.estimate.shapes.data() + term.first_shape, term.effect->shapes().size()};
   }
 
   const Fitted& fitted_;

@@ -32,20 +32,17 @@ std::vector<Added> all_but(std::vector<Added> added, std::size_t i) {
   return added;
 }
 
-Extender::Extender(const Problem& problem, const std::vector<Profile>& profiles)
-    : base_(build_model(for_search(problem, profiles), profiles)), base_fit_(fit(base_)) {
-  if (base_.observations.front().low_band.options().level != problem.low_band.level)
-    declared_ = build_model(problem, profiles);
+Extender::Extender(const Problem& problem, const std::vector<Profile>& profiles,
+                   const Fitted& declared)
+    : declared_(declared) {
+  const Problem search = for_search(problem, profiles);
+  if (search.low_band.level != problem.low_band.level) coarser_ = fit_declared(search, profiles);
 }
 
 Extended Extender::extend(std::vector<Added> added) const {
-  Extended out(std::move(added), base_, {});
-  if (out.added.empty()) {
-    out.fit = base_fit_;
-    return out;
-  }
-  out.model = with(std::move(out.model), out.added);
-  out.fit = fit(out.model, shapes_of(out.added));
+  if (added.empty()) return {{base().model, base().fit}, {}};
+  Fitted with_effects = fitted(with(base().model, added), shapes_of(added));
+  Extended out(std::move(with_effects), std::move(added));
   out.lost_centre_mm = lost_centre(out.model, out.fit);
   if (out.lost_centre_mm > 0.0) {
     leave_out_centre(out.model, out.lost_centre_mm);
@@ -60,20 +57,25 @@ const FitResult& Extender::summary(const Extended& extended) const {
 }
 
 FitResult Extender::summarised(const Extended& extended) const {
-  if (!declared_) return summarise(extended.model, extended.fit);
-  const Fitted fitted = declared(extended);
-  return summarise(fitted.model, fitted.fit);
+  if (!coarser_) return summarise(extended.model, extended.fit);
+  const auto& [model, fit] = refitted(extended);
+  return summarise(model, fit);
 }
 
-Fitted Extender::declared(const Extended& extended) const {
-  Fitted out{with(declared_ ? *declared_ : base_, extended.added), {}};
-  leave_out_centre(out.model, extended.lost_centre_mm);
-  out.fit = fit(out.model, shapes_of(extended.added));
-  return out;
+Fitted Extender::refitted(const Extended& extended) const {
+  Model model = with(declared_.model, extended.added);
+  leave_out_centre(model, extended.lost_centre_mm);
+  return fitted(std::move(model), shapes_of(extended.added));
+}
+
+Fitted Extender::in_declared_band(Extended extended) const {
+  if (coarser_) return refitted(extended);
+  return extended;
 }
 
 Eigen::VectorXd Extender::shapes_of(const std::vector<Added>& added) const {
-  std::vector<double> all(base_fit_.estimate.shapes.begin(), base_fit_.estimate.shapes.end());
+  const Eigen::VectorXd& own = base().fit.estimate.shapes;
+  std::vector<double> all(own.begin(), own.end());
   for (const Added& effect : added) all.insert(all.end(), effect.shape.begin(), effect.shape.end());
   return Eigen::Map<const Eigen::VectorXd>(all.data(), std::ssize(all));
 }

@@ -2,7 +2,6 @@
 
 #include "dictionary.hpp"
 #include "slideway/identify/fit.hpp"
-#include "slideway/trace/details.hpp"
 #include "slideway/trace/trace.hpp"
 
 namespace slideway {
@@ -18,19 +17,12 @@ struct Added {
 
 std::vector<Added> all_but(std::vector<Added> added, std::size_t i);
 
-/// The declared model with added effects, fitted. Its fit points into its model: moved, never
-/// copied.
-struct Extended {
-  Extended(std::vector<Added> effects, Model with_effects, Fit of_it)
-      : added(std::move(effects)), model(std::move(with_effects)), fit(std::move(of_it)) {}
-  Extended(const Extended&) = delete;
-  Extended& operator=(const Extended&) = delete;
-  Extended(Extended&&) = default;
-  Extended& operator=(Extended&&) = default;
+/// The declared model with added effects, fitted.
+struct Extended : Fitted {
+  Extended(Fitted with_effects, std::vector<Added> effects)
+      : Fitted(std::move(with_effects)), added(std::move(effects)) {}
 
   std::vector<Added> added;
-  Model model;
-  Fit fit;
   double lost_centre_mm = 0.0;               // values within this radius are left out of the fit
   mutable std::optional<FitResult> numbers;  // Extender::summary(), made once
 };
@@ -39,11 +31,10 @@ struct Extended {
 /// or the first coarser one that leaves every profile few enough values.
 class Extender {
  public:
-  /// The profiles must outlive it and what it makes.
-  Extender(const Problem& problem, const std::vector<Profile>& profiles);
+  /// The profiles and the declared model must outlive it and what it makes.
+  Extender(const Problem& problem, const std::vector<Profile>& profiles, const Fitted& declared);
 
-  [[nodiscard]] const Model& base() const { return base_; }
-  [[nodiscard]] const Fit& base_fit() const { return base_fit_; }
+  [[nodiscard]] const Fitted& base() const { return coarser_ ? *coarser_ : declared_; }
 
   [[nodiscard]] Extended extend(std::vector<Added> added) const;
 
@@ -51,15 +42,15 @@ class Extender {
   [[nodiscard]] const FitResult& summary(const Extended& extended) const;
 
   /// The same model, fitted in the declared low band.
-  [[nodiscard]] Fitted declared(const Extended& extended) const;
+  [[nodiscard]] Fitted in_declared_band(Extended extended) const;
 
  private:
   [[nodiscard]] FitResult summarised(const Extended& extended) const;
+  [[nodiscard]] Fitted refitted(const Extended& extended) const;
   [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<Added>& added) const;
 
-  Model base_;
-  Fit base_fit_;
-  std::optional<Model> declared_;  // where its low band is another than the base's
+  const Fitted& declared_;
+  std::optional<Fitted> coarser_;
 };
 
 }  // namespace slideway

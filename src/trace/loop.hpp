@@ -1,13 +1,17 @@
 #pragma once
 
-#include "slideway/trace/details.hpp"
+#include "slideway/identify/fit.hpp"
 #include "slideway/trace/trace.hpp"
 
 namespace slideway {
 
-/// close_loop() that also hands out the model it ends with.
-/// @param last_model  may be null; left alone where no effect was added
-TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles,
-                       const Progress& progress, std::optional<Fitted>* last_model);
+struct ClosedLoop {
+  TraceResult trace;
+  std::optional<Fitted> extended;  // with the effects that were added; none: none was
+};
+
+/// @param declared  fit_declared() of the problem
+ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profiles,
+                      const Fitted& declared, const Progress& progress);
 
 }  // namespace slideway

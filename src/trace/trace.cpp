@@ -24,15 +24,18 @@ constexpr double kLeastJointSize = 3.0;  // standard uncertainties of an effect 
 
 class Loop {
  public:
-  Loop(const Problem& problem, const std::vector<Profile>& profiles, const Progress& progress)
-      : problem_(problem), profiles_(profiles), progress_(progress), extender_(problem, profiles) {
+  Loop(const Problem& problem, const std::vector<Profile>& profiles, const Fitted& declared,
+       const Progress& progress)
+      : problem_(problem),
+        profiles_(profiles),
+        progress_(progress),
+        extender_(problem, profiles, declared) {
     tell("making the columns of every candidate");
-    dictionary_ =
-        make_dictionary(extender_.base(), problem, extender_.base_fit().linear.prior_rows.rows());
+    dictionary_ = make_dictionary(extender_.base().model, problem,
+                                  extender_.base().fit.linear.prior_rows.rows());
   }
 
-  /// @param last_model  set to the model with the effects that were added, if it asks and any was
-  TraceResult run(std::optional<Fitted>* last_model) {
+  ClosedLoop run() {
     Extended state = extender_.extend({});
     before_ = extender_.summary(state);
     std::optional<Look> last;
@@ -55,8 +58,9 @@ class Loop {
     const bool retracted = retract(state, last->data);
     if (retracted) last = look_at(state);
     tell("describing what is left");
-    if (last_model && !state.added.empty()) last_model->emplace(extender_.declared(state));
-    return report(state, *last, retracted);
+    ClosedLoop out{report(state, *last, retracted), std::nullopt};
+    if (!state.added.empty()) out.extended = extender_.in_declared_band(std::move(state));
+    return out;
   }
 
  private:
@@ -285,9 +289,9 @@ class Loop {
         inseparable(state.model, state.fit, last.data, candidates_without(taken(state.added)));
     if (calibration_)
       out.detection_limits = detection_limits(
-          extender_.base(),
-          {extender_.base_fit().linear, last.data.noise(),
-           loose_values(extender_.base(), extender_.base_fit(), last.data.noise())},
+          extender_.base().model,
+          {extender_.base().fit.linear, last.data.noise(),
+           loose_values(extender_.base().model, extender_.base().fit, last.data.noise())},
           candidates_without({}), *calibration_, problem_.trace.significance);
     out.advice = advice_;
     out.notes = notes_;
@@ -313,12 +317,12 @@ class Loop {
 
 TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles,
                        const Progress& progress) {
-  return close_loop(problem, profiles, progress, nullptr);
+  return close_loop(problem, profiles, fit_declared(problem, profiles), progress).trace;
 }
 
-TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles,
-                       const Progress& progress, std::optional<Fitted>* last_model) {
-  return Loop(problem, profiles, progress).run(last_model);
+ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profiles,
+                      const Fitted& declared, const Progress& progress) {
+  return Loop(problem, profiles, declared, progress).run();
 }
 
 bool is_negative(const TraceResult& trace) {

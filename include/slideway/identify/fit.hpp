@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "slideway/identify/identifiability.hpp"
@@ -30,6 +32,25 @@ struct Fit {
 /// @param shapes  start from these shapes instead of searching their whole range
 /// @throws DataError  fewer low-band values than parameters
 Fit fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
+
+/// A model with the fit of its profiles. The fit points into the model: moved, never copied.
+struct Fitted {
+  Fitted(Model of, Fit by) : model(std::move(of)), fit(std::move(by)) {}
+  Fitted(const Fitted&) = delete;
+  Fitted& operator=(const Fitted&) = delete;
+  Fitted(Fitted&&) = default;
+  Fitted& operator=(Fitted&&) = default;
+  ~Fitted() = default;
+
+  Model model;
+  Fit fit;
+};
+
+/// A model together with fit().
+Fitted fitted(Model model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
+
+/// The declared model, built and fitted. @throws UsageError, DataError  as build_model(), fit()
+Fitted fit_declared(const Problem& problem, const std::vector<Profile>& profiles);
 
 /// The fit for the report.
 FitResult summarise(const Model& model, const Fit& fit);

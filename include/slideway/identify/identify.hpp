@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slideway/identify/evidence.hpp"
+#include "slideway/identify/fit.hpp"
 #include "slideway/identify/problem.hpp"
 #include "slideway/identify/result.hpp"
 
@@ -10,9 +10,11 @@ enum class Scope { rank, fit, identify };
 
 /// The main job on a problem and its profiles: low band, fit, ranking, cross-check. Scope::rank
 /// leaves the fit and cross-check out of the result, Scope::fit the ranking and cross-check.
-/// @param evidence  where to put what a joint evaluation needs; nullptr: not wanted
+/// @param declared  fit_declared() of the same
 /// @throws UsageError, DataError
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
-                Scope scope = Scope::identify, Evidence* evidence = nullptr);
+                const Fitted& declared, Scope scope = Scope::identify);
+Result identify(const Problem& problem, const std::vector<Profile>& profiles,
+                Scope scope = Scope::identify);
 
 }  // namespace slideway

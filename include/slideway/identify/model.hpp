@@ -22,6 +22,11 @@ struct ModelTerm {
   Eigen::Index first_parameter = 0;
 };
 
+/// The shape parameters of a term among those of all terms.
+inline std::span<const double> shapes_of(const ModelTerm& term, const Eigen::VectorXd& shapes) {
+  return {shapes.data() + term.first_shape, term.effect->shapes().size()};
+}
+
 /// One profile as the fit sees it: its low band and the columns of its own nuisances in it.
 struct Observation {
   const Profile* profile = nullptr;
@@ -35,6 +40,12 @@ struct Observation {
     return nuisances.cols() - std::ssize(nuisance_names);
   }
 };
+
+/// Least and greatest slide coordinate of a profile's readings (of a base: its centre). mm
+struct SlideRange {
+  double least = 0.0, greatest = 0.0;
+};
+SlideRange slide_range(const Profile& profile, const Machine& machine);
 
 /// Leaves low-band values of an observation out of every fit.
 void leave_out(Observation& observation, const std::vector<Eigen::Index>& values);

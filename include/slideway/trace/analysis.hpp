@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "slideway/identify/evidence.hpp"
 #include "slideway/identify/identify.hpp"
 #include "slideway/trace/details.hpp"
 #include "slideway/trace/trace.hpp"
@@ -13,7 +14,7 @@ struct AnalysisOptions {
   Scope scope = Scope::identify;
   bool closes_loop = true;
   bool with_details = false;
-  Evidence* evidence = nullptr;  // where identify() is to put it
+  bool with_evidence = false;
 };
 
 /// All that is found in one problem.
@@ -21,6 +22,7 @@ struct Analysis {
   Result result;
   std::optional<TraceResult> trace;  // none where the loop was not asked for
   std::optional<Details> details;    // the same
+  std::optional<Evidence> evidence;  // the same; of the declared model
 };
 
 /// Identifies the declared model and closes the loop: the whole way from profiles to verdict.

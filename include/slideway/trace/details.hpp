@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slideway/identify/budget.hpp"
+#include "slideway/identify/fit.hpp"
 #include "slideway/identify/straightness.hpp"
 #include "slideway/signal/thin.hpp"
 
@@ -51,11 +52,6 @@ struct Details {
   std::optional<IdentifiedStraightness> straightness;  // of the final model
   std::vector<Budget> budget;                          // of the final model
   Problem problem;                                     // the conditions and options
-};
-
-struct Fitted {
-  Model model;
-  Fit fit;
 };
 
 /// @param before  the declared model
