@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kPower = 0.8;
 constexpr double kPowerDeviate = 0.8416;  // normal deviate of 80 %
-constexpr double kNegligible = 0.02;      // of a column's size: not worth a name
+constexpr int kSpreadShapes = 9;
+constexpr double kNegligible = 0.02;  // of a column's size: not worth a name
 
 /// Distribution of a gain where there is an effect, in plain doubles; not finite instead of an
 /// exception where it can not be evaluated.
@@ -30,14 +31,26 @@ std::span<const double> middle_shape(const Candidate& candidate) {
   return candidate.shapes[candidate.shapes.size() / 2];
 }
 
-std::string shape_text(const Candidate& candidate, std::span<const double> shape) {
-  std::string out;
-  for (std::size_t s = 0; s < shape.size(); ++s) {
-    const int p = candidate.term.effect->shapes()[s].parameter;
-    out += candidate.term.effect->parameters()[static_cast<std::size_t>(p)].name + " = " +
-           significant(shape[s], 3);
-  }
+/// Places from one end of what the search looks at to the other, evenly (in the logarithm where the
+/// shape has one); one empty shape for a candidate without.
+std::vector<std::vector<double>> spread_shapes(const Candidate& candidate) {
+  if (candidate.shapes.front().empty()) return {{}};
+  const Shape& kind = candidate.term.effect->shapes()[0];
+  const double first = kind.inner(candidate.shapes.front()[0]);
+  const double last = kind.inner(candidate.shapes.back()[0]);
+  std::vector<std::vector<double>> out;
+  for (int i = 0; i < kSpreadShapes; ++i)
+    out.push_back({kind.outer(first + (i + 0.5) / kSpreadShapes * (last - first))});
   return out;
+}
+
+std::string range_text(const Candidate& candidate) {
+  if (candidate.shapes.front().empty()) return "";
+  const Effect& effect = *candidate.term.effect;
+  const int p = effect.shapes()[0].parameter;
+  return effect.parameters()[static_cast<std::size_t>(p)].name + " from " +
+         significant(candidate.shapes.front()[0], 3) + " to " +
+         significant(candidate.shapes.back()[0], 3);
 }
 
 /// Share of a candidate's column each parameter of the model takes, as a column of its own.
@@ -74,21 +87,27 @@ std::string made_by(const Model& model, const Fit& fit, const Whitened& data,
   return out.empty() ? "offset and tilt of the traces" : joined(out);
 }
 
-}  // namespace
+/// What it takes to be found at one shape.
+struct Limit {
+  double size = 0.0;     // found with 80 % probability
+  double deviate = 0.0;  // that size in standard deviations of its estimate
 
-std::optional<double> detection_limit(const Model& model, const Whitened& data,
-                                      const Candidate& candidate, std::span<const double> shape,
-                                      const Calibration& calibration, double significance) {
-  const Eigen::MatrixXd columns =
-      stacked_columns(model, candidate.term, shape, data.rows() - data.values());
+  [[nodiscard]] double chance(double other_size) const {
+    const double z = deviate * (other_size / size - 1.0) + kPowerDeviate;
+    return 0.5 * std::erfc(-z / std::sqrt(2.0));
+  }
+};
+
+std::optional<Limit> limit_at(const Model& model, const Whitened& data, const Candidate& candidate,
+                              std::span<const double> shape, double least_gain) {
+  const Eigen::Index priors = data.rows() - data.values();
+  const Eigen::MatrixXd columns = stacked_columns(model, candidate.term, shape, priors);
   const Projection own = project(data, columns);
-  if (own.rank == 0 || !candidate.term.effect->has_one_size()) return std::nullopt;
-  const double enough = std::max(penalty(data, candidate.unknowns(own.rank)) +
-                                     std::max(kEnough, calibration.threshold(significance)),
-                                 kLeastSize * kLeastSize);
+  if (own.rank == 0) return std::nullopt;
+  const double enough =
+      std::max(penalty(data, candidate.unknowns(own.rank)) + least_gain, kLeastSize * kLeastSize);
   const double noncentrality =
       GainOfEffect::find_non_centrality(static_cast<double>(own.rank), enough, 1.0 - kPower);
-  if (!std::isfinite(noncentrality)) return std::nullopt;
   const Effect& effect = *candidate.term.effect;
   const Eigen::Index a = candidate.amplitudes();
   Eigen::VectorXd values =
@@ -98,37 +117,65 @@ std::optional<double> detection_limit(const Model& model, const Whitened& data,
   // Gain of one unit of the first parameter; the mean over its phase, where it has one.
   const double gain = own.gram.diagonal().head(std::min<Eigen::Index>(a, 2)).mean() *
                       effect.from_parameters(values).head(a).squaredNorm();
-  if (!(gain > 0.0)) return std::nullopt;
-  const double limit = std::sqrt(noncentrality / gain);
-  if (shape.empty()) return limit;
-  values[0] = limit;
+  if (!(gain > 0.0) || !std::isfinite(noncentrality)) return std::nullopt;
+  const Limit by_gain{std::sqrt(noncentrality / gain), std::sqrt(noncentrality)};
+  if (shape.empty()) return by_gain;
+  values[0] = by_gain.size;
   const Eigen::VectorXd inner = effect.from_parameters(values);
   Eigen::MatrixXd joint(data.rows(), a + 1);
-  joint << columns, stacked_derivatives(model, candidate.term, shape, data.rows() - data.values()) *
-                        inner.head(a);
+  joint << columns, stacked_derivatives(model, candidate.term, shape, priors) * inner.head(a);
   joint = data.outside(std::move(joint));
   const Eigen::MatrixXd inverse =
       Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(joint).pseudoInverse();
   const ParameterValues at = effect.parameter_values(inner.head(a), shape);
-  const double uncertainty = (at.jacobian.row(0) * inverse).norm();
-  return std::max(limit, (kLeastSize + kPowerDeviate) * uncertainty);
+  constexpr double kDeviate = kLeastSize + kPowerDeviate;
+  const Limit by_size{kDeviate * (at.jacobian.row(0) * inverse).norm(), kDeviate};
+  return by_size.size > by_gain.size ? by_size : by_gain;
 }
+
+/// The size at which the mean chance over all shapes is 80 %; none where too many have no limit.
+std::optional<double> mean_limit(const std::vector<std::optional<Limit>>& limits) {
+  const auto chance = [&](double size) {
+    double sum = 0.0;
+    for (const std::optional<Limit>& limit : limits) sum += limit ? limit->chance(size) : 0.0;
+    return sum / static_cast<double>(limits.size());
+  };
+  double below = 0.0, above = 0.0;
+  for (const std::optional<Limit>& limit : limits)
+    if (limit) above = std::max(above, 2.0 * limit->size);
+  if (chance(above) < kPower) return std::nullopt;
+  while (above - below > 1e-6 * above) {
+    const double middle = 0.5 * (below + above);
+    (chance(middle) < kPower ? below : above) = middle;
+  }
+  return above;
+}
+
+std::optional<double> detection_limit(const Model& model, const Whitened& data,
+                                      const Candidate& candidate, double least_gain) {
+  if (!candidate.term.effect->has_one_size()) return std::nullopt;
+  std::vector<std::optional<Limit>> limits;
+  for (const std::vector<double>& shape : spread_shapes(candidate))
+    limits.push_back(limit_at(model, data, candidate, shape, least_gain));
+  return mean_limit(limits);
+}
+
+}  // namespace
 
 std::vector<DetectionLimit> detection_limits(const Model& model, const Whitened& data,
                                              const Candidates& candidates,
                                              const Calibration& calibration, double significance) {
+  const double least_gain = std::max(kEnough, calibration.threshold(significance));
   std::vector<std::optional<double>> limits(candidates.size());
   parallel_for(candidates.size(), [&](std::size_t c) {
-    limits[c] = detection_limit(model, data, *candidates[c], middle_shape(*candidates[c]),
-                                calibration, significance);
+    limits[c] = detection_limit(model, data, *candidates[c], least_gain);
   });
   std::vector<DetectionLimit> out;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (!limits[c]) continue;
-    const Candidate& candidate = *candidates[c];
-    const Parameter& first = candidate.term.effect->parameters()[0];
-    out.push_back({candidate.name(), first.name, first.unit, *limits[c],
-                   shape_text(candidate, middle_shape(candidate))});
+    const Parameter& first = candidates[c]->term.effect->parameters()[0];
+    out.push_back(
+        {candidates[c]->name(), first.name, first.unit, *limits[c], range_text(*candidates[c])});
   }
   return out;
 }

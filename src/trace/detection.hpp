@@ -6,18 +6,13 @@
 
 namespace slideway {
 
-/// For every candidate the size that is found with 80 % probability: its gain must pass what the
-/// search finds in noise, ΔBIC -10, and five standard uncertainties. At the shape in the middle of
-/// its search grid.
+/// For every candidate the size that is found with 80 % probability, in the unit of its first
+/// parameter: its gain must pass what the search finds in noise, ΔBIC -10, and five standard
+/// uncertainties. Where it has a shape, the mean of that probability over the shapes the search
+/// looks at. None for a candidate the model spans, or whose size is not one number.
 std::vector<DetectionLimit> detection_limits(const Model& model, const Whitened& data,
                                              const Candidates& candidates,
                                              const Calibration& calibration, double significance);
-
-/// Size of one effect at a given shape that is found with 80 % probability, in the unit of its
-/// first parameter; none if the model spans it or its size is not one number.
-std::optional<double> detection_limit(const Model& model, const Whitened& data,
-                                      const Candidate& candidate, std::span<const double> shape,
-                                      const Calibration& calibration, double significance);
 
 /// Candidates whose columns the model makes itself, with the parameters that make them: (cup,
 /// "straightness.b2").
