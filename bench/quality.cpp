@@ -15,6 +15,7 @@
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,15 +45,34 @@ double per_amplitude(const std::string& name) {
   return name == "linear_drift" ? 5.0 : name == "tool_wear" ? 17.3 : 1.0;
 }
 
-// The size at the detection limit stated for these faces as they are without the effect.
-double size_at_limit(const std::string& name, int cuts, double nose_radius_mm, std::uint64_t seed) {
-  const TraceResult clean = close_loop(face_problem(), make_faces({}, cuts, nose_radius_mm, seed));
-  for (const DetectionLimit& limit : clean.detection_limits)
-    if (limit.effect == name) return limit.value * per_amplitude(name) * kMicrometre / kFaceNoise;
-  throw UsageError("no detection limit is stated for " + name);
+// The limit a result states for an effect of this shape: between two of the shapes it lists, on a
+// line in the logarithms.
+std::optional<double> limit_of(const TraceResult& result, const Hidden& hidden) {
+  for (const DetectionLimit& limit : result.detection_limits) {
+    if (limit.effect != hidden.name) continue;
+    const auto& listed = limit.by_shape;
+    if (listed.size() < 2) return limit.value;
+    auto above = std::find_if(listed.begin() + 1, listed.end() - 1,
+                              [&](const auto& each) { return each.first > hidden.shape; });
+    const auto [s0, v0] = *std::prev(above);
+    const auto [s1, v1] = *above;
+    const double at = std::log(hidden.shape / s0) / std::log(s1 / s0);
+    return v0 * std::pow(v1 / v0, std::clamp(at, 0.0, 1.0));
+  }
+  return std::nullopt;
 }
 
-Json run_case(const std::string& name, int cuts, double size, double nose_radius_mm,
+// The size at the detection limit stated for these faces as they are without the effect.
+double size_at_limit(const std::string& name, int cuts, double nose_radius_mm, std::uint64_t seed) {
+  RandomStream random(seed, name);
+  const auto limit =
+      limit_of(close_loop(face_problem(), make_faces({}, cuts, nose_radius_mm, seed)),
+               make_hidden(name, kFaceNoise, random));
+  if (!limit) throw UsageError("no detection limit is stated for " + name);
+  return *limit * per_amplitude(name) * kMicrometre / kFaceNoise;
+}
+
+Json run_case(const std::string& name, int cuts, double size, bool at_limit, double nose_radius_mm,
               std::uint64_t seed) {
   RandomStream random(seed, name);
   const double amplitude = size * kFaceNoise;
@@ -62,6 +82,7 @@ Json run_case(const std::string& name, int cuts, double size, double nose_radius
   const TraceResult result = close_loop(problem, faces);
   Json json{{"truth", name},
             {"cuts", cuts},
+            {"at_limit", at_limit},
             {"size", size},
             {"seed", seed},
             {"verdict", result.verdict},
@@ -72,8 +93,7 @@ Json run_case(const std::string& name, int cuts, double size, double nose_radius
     json["accepted"].push_back(round.accepted);
     for (const std::string& rival : round.ambiguous_with) json["rivals"].push_back(rival);
   }
-  for (const DetectionLimit& limit : result.detection_limits)
-    if (limit.effect == name) json["limit"] = limit.value;
+  if (const auto limit = limit_of(result, hidden)) json["limit"] = *limit;
   if (result.unnamed) {
     json["clock"] = result.unnamed->clock;
     json["unnamed_um"] = result.unnamed->rms;
@@ -123,7 +143,8 @@ int main(int argc, char** argv) {
                           : option["--size"] == "limit"
                               ? size_at_limit(name, cuts, nose_radius_mm, own)
                               : std::stod(option["--size"]);
-      std::cout << run_case(name, cuts, size, nose_radius_mm, own) << std::endl;
+      std::cout << run_case(name, cuts, size, option["--size"] == "limit", nose_radius_mm, own)
+                << std::endl;
     }
   } catch (const std::exception& error) {
     std::cerr << "quality: " << error.what() << '\n';

@@ -33,6 +33,7 @@ def row(name, cases):
     wrong = [c for c in cases if not c["rivals"] and set(named(c)) - {name, TWIN.get(name)}]
     near = [c for c in cases if c.get("limit") and 0.8 <= c["truth_value"] / c["limit"] < 1.25]
     found_near = [c for c in near if name in c["accepted"] + c["rivals"]]
+    bias = [abs(c["bias_after"]) <= 1.96 * c["u_after"] for c in in_set if c["u_after"] > 0]
     z = [(c["found_um"][0] - c["truth_value"]) / c["found_um"][1] for c in above
          if "found_um" in c and c["found_um"][1] > 0]
     bent = [c for c in in_set if abs(c["bias_before"]) > 5 * c["u_after"]]
@@ -41,7 +42,50 @@ def row(name, cases):
             share(len(alone), len(above)), share(len(wrong), len(cases)),
             share(len(found_near), len(near)),
             f"{sum(abs(x) <= 2 for x in z)}/{len(z)}" if z else "",
+            f"{sum(bias)}/{len(bias)}" if bias else "",
             f"{100 * statistics.median(fall):.0f} %" if fall else ""]
+
+
+def found(name, case):
+    return name in case["accepted"] + case["rivals"]
+
+
+def at_limit_row(name, cases):
+    hits = sum(found(name, c) for c in cases)
+    return [f"`{name}`", share(hits, len(cases))]
+
+
+def verdict_of(case):
+    """Column of the confusion matrix: the first name that is not of every face, else the verdict."""
+    names = named(case)
+    return names[0] if names else "unnamed" if case["verdict"] == "unnamed" else "nothing"
+
+
+def confusion(groups, cuts):
+    """Cases by hidden effect and first name: how many had it alone, how many with rivals."""
+    truths = [n for n in CATALOGUE + OPEN + ["clean"] if groups[cuts, n]]
+    seen = {verdict_of(c) for n in truths for c in groups[cuts, n]}
+    columns = [n for n in CATALOGUE + sorted(seen - set(CATALOGUE) - {"unnamed", "nothing"})
+               + ["unnamed", "nothing"] if n in seen]
+    rows = []
+    for name in truths:
+        cells = []
+        for column in columns:
+            own = [c for c in groups[cuts, name] if verdict_of(c) == column]
+            rivals = sum(bool(c["rivals"]) for c in own)
+            cells.append("" if not own else f"{len(own)}" if column in ("unnamed", "nothing")
+                         else f"{len(own) - rivals}+{rivals}")
+        rows.append([f"`{name}`"] + cells)
+    return table(["hidden"] + [f"`{c}`" for c in columns], rows)
+
+
+def coverage(cases):
+    """How many 95 % intervals hold the truth after the loop has chosen the model."""
+    dbeta = [abs(c["bias_after"]) <= 1.96 * c["u_after"] for c in cases if c["u_after"] > 0]
+    size = [abs(c["found_um"][0] - c["truth_value"]) <= 1.96 * c["found_um"][1]
+            for c in cases if c.get("found_um") and c["found_um"][1] > 0]
+    return (f"95 % intervals after selection: Δβxz in {share(sum(dbeta), len(dbeta))} of all cases, "
+            f"the size of the accepted effect in {share(sum(size), len(size))}.\n")
 
 
 def table(head, rows):
@@ -51,9 +95,9 @@ def table(head, rows):
 
 def main():
     cases = [json.loads(line) for line in open(sys.argv[1])]
-    groups = collections.defaultdict(list)
+    groups, at_limit = collections.defaultdict(list), collections.defaultdict(list)
     for case in cases:
-        groups[case["cuts"], case["truth"]].append(case)
+        (at_limit if case["at_limit"] else groups)[case["cuts"], case["truth"]].append(case)
     print(__doc__ and open("bench/quality_head.md").read())
     for cuts in sorted({c["cuts"] for c in cases}, reverse=True):
         print(f"## {cuts} cut{'s' if cuts > 1 else ''}\n")
@@ -63,7 +107,7 @@ def main():
         print(f"Nothing hidden: {share(len(false), len(clean))} named an effect that is not there "
               f"(feed marks apart), {share(len(unnamed), len(clean))} called noise structure.\n")
         head = ["hidden effect", "cases", "in the set, >= 2 limits", "named alone, >= 2 limits",
-                "wrong name alone", "found at 0.8 to 1.25 limits", "within 2 u", "bias removed"]
+                "wrong name alone", "found at 0.8 to 1.25 limits", "size within 2 u", "Δβxz within 1.96 u", "bias removed"]
         print(table(head, [row(n, groups[cuts, n]) for n in CATALOGUE if groups[cuts, n]]) + "\n")
         rows = []
         for name in OPEN:
@@ -73,11 +117,23 @@ def main():
             no_name = [c for c in own if c["verdict"] == "unnamed"]
             right = [c for c in own if c["verdict"] != "unnamed" and named(c)
                      and set(named(c)) <= ON_CLOCK[CLOCK[name]]]
+            among = [c for c in own if c["verdict"] != "unnamed" and c not in right
+                     and set(named(c) + c["rivals"]) & ON_CLOCK[CLOCK[name]]]
             rows.append([f"`{name}`", str(len(own)), share(len(no_name), len(own)),
-                         share(len(right), len(own))])
+                         share(len(right), len(own)), share(len(among), len(own))])
         if rows:
             print("Shapes in no catalogue, from 5 times the noise up:\n")
-            print(table(["shape", "cases", "unnamed", "named on the right clock"], rows) + "\n")
+            print(table(["shape", "cases", "unnamed", "named on the right clock",
+                         "right clock among rivals"], rows) + "\n")
+        print(coverage([c for n in CATALOGUE + ["clean"] for c in groups[cuts, n]]))
+        print("First name given (alone + with rivals), by what was hidden:\n")
+        print(confusion(groups, cuts) + "\n")
+        rows = [at_limit_row(n, at_limit[cuts, n]) for n in CATALOGUE if at_limit[cuts, n]]
+        if rows:
+            hits = [found(n, c) for n in CATALOGUE for c in at_limit[cuts, n]]
+            print("At the stated detection limit (wanted: 80 % found):\n")
+            print(table(["hidden effect", "found"],
+                        rows + [["all", share(sum(hits), len(hits))]]) + "\n")
 
 
 if __name__ == "__main__":

@@ -48,8 +48,11 @@ Unnamed unnamed(const Node& node) {
 }
 
 DetectionLimit limit(const Node& node) {
-  return {node["effect"].text(), node["parameter"].text(), node["unit"].text(),
-          node["value"].number(), node["at"].text()};
+  const auto at_shape = [](const Node& each) {
+    return std::pair(each["shape"].number(), each["value"].number());
+  };
+  return {node["effect"].text(),  node["parameter"].text(), node["unit"].text(),
+          node["value"].number(), node["at"].text(),        node["by_shape"].list(at_shape)};
 }
 
 std::vector<std::pair<std::string, std::string>> pairs(const Node& node,

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "html_parts.hpp"
 
 namespace slideway {
@@ -72,6 +74,16 @@ std::string tried(const Json& trace) {
   return table.html();
 }
 
+std::string extremes(const Json& limit) {
+  const Json& shapes = list_of(limit, "by_shape");
+  if (shapes.empty()) return "";
+  const auto [least, most] =
+      std::minmax_element(shapes.begin(), shapes.end(), [](const Json& a, const Json& b) {
+        return a.at("value").get<double>() < b.at("value").get<double>();
+      });
+  return html_cell(*least, "value", 2) + " to " + html_cell(*most, "value", 2);
+}
+
 std::string untried(const Json& trace) {
   HtmlTable table("Effects not told apart or not testable with these data",
                   {{"effect", Column::text}, {"why", Column::text}});
@@ -84,10 +96,12 @@ std::string untried(const Json& trace) {
                     {"parameter", Column::text},
                     {"found from", Column::number},
                     {"unit", Column::text},
-                    {"at", Column::text}});
+                    {"at", Column::text},
+                    {"at other shapes", Column::text}});
   for (const Json& limit : list_of(trace, "detection_limits"))
     limits.add({text_of(limit, "effect"), text_of(limit, "parameter"), html_cell(limit, "value", 2),
-                html_unit(limit.at("unit").get<std::string>()), text_of(limit, "at")});
+                html_unit(limit.at("unit").get<std::string>()), text_of(limit, "at"),
+                extremes(limit)});
   return table.html() + limits.html();
 }
 

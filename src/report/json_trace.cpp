@@ -45,11 +45,12 @@ Json unnamed(const Unnamed& left) {
 }
 
 Json limit(const DetectionLimit& limit) {
-  return {{"effect", limit.effect},
-          {"parameter", limit.parameter},
-          {"unit", limit.unit},
-          {"value", limit.value},
-          {"at", limit.at}};
+  Json by_shape = Json::array();
+  for (const auto& [shape, value] : limit.by_shape)
+    by_shape.push_back({{"shape", shape}, {"value", value}});
+  return {{"effect", limit.effect}, {"parameter", limit.parameter},
+          {"unit", limit.unit},     {"value", limit.value},
+          {"at", limit.at},         {"by_shape", by_shape}};
 }
 
 }  // namespace

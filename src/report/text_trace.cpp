@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "slideway/base/text.hpp"
 #include "slideway/report/layout.hpp"
@@ -102,10 +103,15 @@ std::string left_over(const Unnamed& left) {
 
 std::string limits(const TraceResult& trace) {
   if (trace.detection_limits.empty()) return "";
-  TextTable table({"effect", "found from", "unit", "at"},
-                  {Column::effect, Column::number, Column::text, Column::text});
+  const auto extremes = [](const DetectionLimit& limit) -> std::string {
+    if (limit.by_shape.empty()) return "";
+    const auto [least, most] = std::ranges::minmax(limit.by_shape | std::views::values);
+    return number(least, 2) + " to " + number(most, 2);
+  };
+  TextTable table({"effect", "found from", "unit", "at", "other shapes"},
+                  {Column::effect, Column::number, Column::text, Column::text, Column::text});
   for (const DetectionLimit& limit : trace.detection_limits)
-    table.add({limit.effect, number(limit.value, 2), limit.unit, limit.at});
+    table.add({limit.effect, number(limit.value, 2), limit.unit, limit.at, extremes(limit)});
   return item("Sizes found with 80 % probability:") + table.text();
 }
 

@@ -44,13 +44,11 @@ std::vector<std::vector<double>> spread_shapes(const Candidate& candidate) {
   return out;
 }
 
-std::string range_text(const Candidate& candidate) {
-  if (candidate.shapes.front().empty()) return "";
+std::string shape_text(const Candidate& candidate, std::span<const double> shape) {
+  if (shape.empty()) return "";
   const Effect& effect = *candidate.term.effect;
-  const int p = effect.shapes()[0].parameter;
-  return effect.parameters()[static_cast<std::size_t>(p)].name + " from " +
-         significant(candidate.shapes.front()[0], 3) + " to " +
-         significant(candidate.shapes.back()[0], 3);
+  const auto p = static_cast<std::size_t>(effect.shapes()[0].parameter);
+  return effect.parameters()[p].name + " = " + significant(shape[0], 3);
 }
 
 /// Share of a candidate's column each parameter of the model takes, as a column of its own.
@@ -87,19 +85,9 @@ std::string made_by(const Model& model, const Fit& fit, const Whitened& data,
   return out.empty() ? "offset and tilt of the traces" : joined(out);
 }
 
-/// What it takes to be found at one shape.
-struct Limit {
-  double size = 0.0;     // found with 80 % probability
-  double deviate = 0.0;  // that size in standard deviations of its estimate
-
-  [[nodiscard]] double chance(double other_size) const {
-    const double z = deviate * (other_size / size - 1.0) + kPowerDeviate;
-    return 0.5 * std::erfc(-z / std::sqrt(2.0));
-  }
-};
-
-std::optional<Limit> limit_at(const Model& model, const Whitened& data, const Candidate& candidate,
-                              std::span<const double> shape, double least_gain) {
+/// Size found with 80 % probability at one shape.
+std::optional<double> limit_at(const Model& model, const Whitened& data, const Candidate& candidate,
+                               std::span<const double> shape, double least_gain) {
   const Eigen::Index priors = data.rows() - data.values();
   const Eigen::MatrixXd columns = stacked_columns(model, candidate.term, shape, priors);
   const Projection own = project(data, columns);
@@ -118,9 +106,9 @@ std::optional<Limit> limit_at(const Model& model, const Whitened& data, const Ca
   const double gain = own.gram.diagonal().head(std::min<Eigen::Index>(a, 2)).mean() *
                       effect.from_parameters(values).head(a).squaredNorm();
   if (!(gain > 0.0) || !std::isfinite(noncentrality)) return std::nullopt;
-  const Limit by_gain{std::sqrt(noncentrality / gain), std::sqrt(noncentrality)};
+  const double by_gain = std::sqrt(noncentrality / gain);
   if (shape.empty()) return by_gain;
-  values[0] = by_gain.size;
+  values[0] = by_gain;
   const Eigen::VectorXd inner = effect.from_parameters(values);
   Eigen::MatrixXd joint(data.rows(), a + 1);
   joint << columns, stacked_derivatives(model, candidate.term, shape, priors) * inner.head(a);
@@ -128,36 +116,27 @@ std::optional<Limit> limit_at(const Model& model, const Whitened& data, const Ca
   const Eigen::MatrixXd inverse =
       Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(joint).pseudoInverse();
   const ParameterValues at = effect.parameter_values(inner.head(a), shape);
-  constexpr double kDeviate = kLeastSize + kPowerDeviate;
-  const Limit by_size{kDeviate * (at.jacobian.row(0) * inverse).norm(), kDeviate};
-  return by_size.size > by_gain.size ? by_size : by_gain;
+  const double uncertainty = (at.jacobian.row(0) * inverse).norm();
+  return std::max(by_gain, (kLeastSize + kPowerDeviate) * uncertainty);
 }
 
-/// The size at which the mean chance over all shapes is 80 %; none where too many have no limit.
-std::optional<double> mean_limit(const std::vector<std::optional<Limit>>& limits) {
-  const auto chance = [&](double size) {
-    double sum = 0.0;
-    for (const std::optional<Limit>& limit : limits) sum += limit ? limit->chance(size) : 0.0;
-    return sum / static_cast<double>(limits.size());
-  };
-  double below = 0.0, above = 0.0;
-  for (const std::optional<Limit>& limit : limits)
-    if (limit) above = std::max(above, 2.0 * limit->size);
-  if (chance(above) < kPower) return std::nullopt;
-  while (above - below > 1e-6 * above) {
-    const double middle = 0.5 * (below + above);
-    (chance(middle) < kPower ? below : above) = middle;
-  }
-  return above;
-}
-
-std::optional<double> detection_limit(const Model& model, const Whitened& data,
-                                      const Candidate& candidate, double least_gain) {
+/// Over all shapes, stated for the middle one.
+std::optional<DetectionLimit> detection_limit(const Model& model, const Whitened& data,
+                                              const Candidate& candidate, double least_gain) {
   if (!candidate.term.effect->has_one_size()) return std::nullopt;
-  std::vector<std::optional<Limit>> limits;
-  for (const std::vector<double>& shape : spread_shapes(candidate))
-    limits.push_back(limit_at(model, data, candidate, shape, least_gain));
-  return mean_limit(limits);
+  const Parameter& first = candidate.term.effect->parameters()[0];
+  DetectionLimit out{candidate.name(), first.name, first.unit, 0.0, "", {}};
+  const std::vector<std::vector<double>> shapes = spread_shapes(candidate);
+  for (const std::vector<double>& shape : shapes) {
+    const std::optional<double> limit = limit_at(model, data, candidate, shape, least_gain);
+    if (shape == shapes[shapes.size() / 2]) {
+      if (!limit) return std::nullopt;
+      out.value = *limit;
+      out.at = shape_text(candidate, shape);
+    }
+    if (limit && !shape.empty()) out.by_shape.emplace_back(shape[0], *limit);
+  }
+  return out;
 }
 
 }  // namespace
@@ -166,17 +145,13 @@ std::vector<DetectionLimit> detection_limits(const Model& model, const Whitened&
                                              const Candidates& candidates,
                                              const Calibration& calibration, double significance) {
   const double least_gain = std::max(kEnough, calibration.threshold(significance));
-  std::vector<std::optional<double>> limits(candidates.size());
+  std::vector<std::optional<DetectionLimit>> limits(candidates.size());
   parallel_for(candidates.size(), [&](std::size_t c) {
     limits[c] = detection_limit(model, data, *candidates[c], least_gain);
   });
   std::vector<DetectionLimit> out;
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    if (!limits[c]) continue;
-    const Parameter& first = candidates[c]->term.effect->parameters()[0];
-    out.push_back(
-        {candidates[c]->name(), first.name, first.unit, *limits[c], range_text(*candidates[c])});
-  }
+  for (std::optional<DetectionLimit>& limit : limits)
+    if (limit) out.push_back(std::move(*limit));
   return out;
 }
 

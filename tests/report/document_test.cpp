@@ -36,7 +36,13 @@ TraceResult sample_trace() {
   trace.not_testable = {{"traverse_periodic", "traverse_mm_per_s"}};
   trace.not_separable = {{"cup", "tool_wear"}};
   trace.refused = {tried};
-  trace.detection_limits = {{"cup", "sag_um", "um", 0.1, ""}};
+  trace.detection_limits = {{"cup", "sag_um", "um", 0.1, "", {}},
+                            {"thermal_drift",
+                             "amplitude_um",
+                             "um",
+                             0.2,
+                             "time_constant_s = 9",
+                             {{3.0, 0.1}, {9.0, 0.2}}}};
   trace.before = trace.after = sample_fit().parameters;
   trace.after_rms_um = 0.05;
   return trace;

@@ -35,45 +35,54 @@ Hidden make_hidden(const std::string& name, double A, RandomStream& random) {
   if (name == "linear_drift") return {name, [=](const ToolPoint& p) { return A * p.t / 300.0; }};
   if (name == "thermal_drift") {
     const double tau = log_between(random, 20.0, 200.0);
-    return {name, [=](const ToolPoint& p) { return A * (1.0 - std::exp(-p.t / tau)); }};
+    return {name, [=](const ToolPoint& p) { return A * (1.0 - std::exp(-p.t / tau)); }, nullptr,
+            tau};
   }
   if (name == "time_periodic") {
     const double period = log_between(random, 5.0, 80.0);
     return {name,
-            [=](const ToolPoint& p) { return A * std::cos(2.0 * kPi * p.t / period + phase); }};
+            [=](const ToolPoint& p) { return A * std::cos(2.0 * kPi * p.t / period + phase); },
+            nullptr, period};
   }
   if (name == "tool_wear") return {name, [=](const ToolPoint& p) { return A * p.s / 17.3e3; }};
   if (name == "tool_running_in") {
     const double distance = log_between(random, 0.5e3, 8e3);
-    return {name, [=](const ToolPoint& p) { return A * (1.0 - std::exp(-p.s / distance)); }};
+    return {name, [=](const ToolPoint& p) { return A * (1.0 - std::exp(-p.s / distance)); },
+            nullptr, distance / 1e3};
   }
   if (name == "slide_periodic") {
     const double length = log_between(random, 0.5, 6.0);
     return {name,
-            [=](const ToolPoint& p) { return A * std::cos(2.0 * kPi * p.x / length + phase); }};
+            [=](const ToolPoint& p) { return A * std::cos(2.0 * kPi * p.x / length + phase); },
+            nullptr, length};
   }
   if (name == "revolution_periodic") {
     const double cycles = log_between(random, 0.02, 0.3);
     return {name,
-            [=](const ToolPoint& p) { return A * std::cos(2.0 * kPi * cycles * p.k + phase); }};
+            [=](const ToolPoint& p) { return A * std::cos(2.0 * kPi * cycles * p.k + phase); },
+            nullptr, cycles};
   }
   if (name == "step") {
     const double place = between(random, 1.0, 9.0);
-    return {name, [=](const ToolPoint& p) { return p.r < place ? A : 0.0; }};
+    return {name, [=](const ToolPoint& p) { return p.r < place ? A : 0.0; }, nullptr, place};
   }
   if (name == "centre_height") {
     const double h = log_between(random, 0.1, 1.0);
-    return {name, [=](const ToolPoint& p) { return A * (std::hypot(p.r, h) - std::abs(p.r)) / h; }};
+    return {name, [=](const ToolPoint& p) { return A * (std::hypot(p.r, h) - std::abs(p.r)) / h; },
+            nullptr, h};
   }
   if (name == "speed_effect") {
     const double m = between(random, 0.1, 0.5);
-    return {name, [=](const ToolPoint& p) {
+    return {name,
+            [=](const ToolPoint& p) {
               return A * (std::pow(std::max(std::abs(p.r), 0.02) / kRadius, -m) - 1.0);
-            }};
+            },
+            nullptr, m};
   }
   if (name == "edge_roll_off") {
     const double w = log_between(random, 0.1, 0.5);
-    return {name, [=](const ToolPoint& p) { return A * std::exp((p.r - kRadius) / w); }};
+    return {name, [=](const ToolPoint& p) { return A * std::exp((p.r - kRadius) / w); }, nullptr,
+            w};
   }
   if (name == "cup")
     return {name, [=](const ToolPoint& p) { return A * p.r * p.r / (kRadius * kRadius); }};
@@ -87,7 +96,7 @@ Hidden make_hidden(const std::string& name, double A, RandomStream& random) {
   if (name == "traverse_periodic") {
     const double hz = log_between(random, 0.2, 3.0);
     return {name, nullptr,
-            [=](double, double m) { return A * std::cos(2.0 * kPi * hz * m + phase); }};
+            [=](double, double m) { return A * std::cos(2.0 * kPi * hz * m + phase); }, hz};
   }
   // Shapes in no catalogue.
   if (name == "stretched_exponential")

@@ -20,6 +20,7 @@ struct Hidden {
   std::string name;
   Error tool = nullptr;
   std::function<double(double X, double m)> datum = nullptr;
+  double shape = 0.0;  // its shape parameter in the unit of the catalogue, where it has one
 };
 
 /// An effect of the catalogue, or one of the shapes in no catalogue ("stretched_exponential",

@@ -52,11 +52,12 @@ struct Unnamed {
   std::optional<double> odd_share;  // of its square on a diameter, 0: even, 1: odd
 };
 
-/// The size an effect must have to be found with 80 % probability, on the average of its shapes.
+/// The size an effect must have to be found with 80 % probability.
 struct DetectionLimit {
   std::string effect, parameter, unit;
   double value = 0.0;
-  std::string at;  // shapes it holds for: "time_constant_s from 8 to 2400"; empty: it has none
+  std::string at;  // shape it holds for: "time_constant_s = 120"; empty: the effect has none
+  std::vector<std::pair<double, double>> by_shape;  // shape and size, from end to end of the search
 };
 
 struct TraceResult {

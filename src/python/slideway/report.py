@@ -300,14 +300,23 @@ class NotSeparable:
 
 
 @dataclass(frozen=True)
+class LimitAtShape:
+    """The size found with 80 % probability at one shape, in the unit of its DetectionLimit."""
+
+    shape: float
+    value: float
+
+
+@dataclass(frozen=True)
 class DetectionLimit:
-    """The size an effect must have to be found with 80 % probability."""
+    """The size an effect must have to be found with 80 % probability, at the middle shape."""
 
     effect: str
     parameter: str
     unit: str
     value: float
     at: str
+    by_shape: list[LimitAtShape]
 
 
 @dataclass(frozen=True)
