@@ -113,10 +113,10 @@ std::optional<double> limit_at(const Model& model, const Whitened& data, const C
   Eigen::MatrixXd joint(data.rows(), a + 1);
   joint << columns, stacked_derivatives(model, candidate.term, shape, priors) * inner.head(a);
   joint = data.outside(std::move(joint));
-  const Eigen::MatrixXd inverse =
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(joint).pseudoInverse();
+  const Eigen::MatrixXd covariance = amplitude_covariance(joint);
   const ParameterValues at = effect.parameter_values(inner.head(a), shape);
-  const double uncertainty = (at.jacobian.row(0) * inverse).norm();
+  const double uncertainty =
+      std::sqrt(at.jacobian.row(0) * covariance * at.jacobian.row(0).transpose());
   return std::max(by_gain, (kLeastSize + kPowerDeviate) * uncertainty);
 }
 

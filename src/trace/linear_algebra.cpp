@@ -34,4 +34,12 @@ LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd
   return out;
 }
 
+Eigen::MatrixXd amplitude_covariance(const Eigen::MatrixXd& columns) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
+  const Eigen::MatrixXd triangle =
+      qr.matrixQR().topRows(columns.cols()).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd inverse = triangle.completeOrthogonalDecomposition().pseudoInverse();
+  return inverse * inverse.transpose();
+}
+
 }  // namespace slideway

@@ -13,4 +13,7 @@ struct LeastSquares {
 };
 LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& targets);
 
+/// (C'C)⁺: covariance of the amplitudes of the columns C, for white data of unit variance.
+Eigen::MatrixXd amplitude_covariance(const Eigen::MatrixXd& columns);
+
 }  // namespace slideway

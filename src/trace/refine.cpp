@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear_algebra.hpp"
+
 namespace slideway {
 namespace {
 
@@ -111,9 +113,7 @@ void assess(const Model& model, const Whitened& data, Refined& out) {
     columns.col(a) = stacked_derivatives(model, term, out.shape, data.rows() - data.values()) *
                      out.projection.amplitudes;
   columns = data.outside(std::move(columns));
-  const Eigen::MatrixXd inverse =
-      Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(columns).pseudoInverse();
-  const Eigen::MatrixXd covariance = inverse * inverse.transpose();
+  const Eigen::MatrixXd covariance = amplitude_covariance(columns);
   const ParameterValues values =
       term.effect->parameter_values(out.projection.amplitudes, out.shape);
   out.values = values.values;
