@@ -1,4 +1,5 @@
-// quality [--effect NAME] [--cases N] [--design 1|2|3] [--seed S] [--size N|any|limit] [--nose MM]
+// quality [--effect NAME,NAME...] [--cases N] [--design 1|2|3] [--seed S] [--size N|any|limit]
+// [--nose MM]
 //
 // One JSON object a line for every case; bench/quality_table.py makes docs/quality.md of them. How
 // good the closed loop is: faces made by the process (tests/support/turning.hpp), with an
@@ -16,10 +17,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
-#include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/trace/trace.hpp"
 #include "support/hidden_effect.hpp"
@@ -60,16 +61,6 @@ std::optional<double> limit_of(const TraceResult& result, const Hidden& hidden) 
     return v0 * std::pow(v1 / v0, std::clamp(at, 0.0, 1.0));
   }
   return std::nullopt;
-}
-
-// The size at the detection limit stated for these faces as they are without the effect.
-double size_at_limit(const std::string& name, int cuts, double nose_radius_mm, std::uint64_t seed) {
-  RandomStream random(seed, name);
-  const auto limit =
-      limit_of(close_loop(face_problem(), make_faces({}, cuts, nose_radius_mm, seed)),
-               make_hidden(name, kFaceNoise, random));
-  if (!limit) throw UsageError("no detection limit is stated for " + name);
-  return *limit * per_amplitude(name) * kMicrometre / kFaceNoise;
 }
 
 Json run_case(const std::string& name, int cuts, double size, bool at_limit, double nose_radius_mm,
@@ -124,6 +115,55 @@ Json run_case(const std::string& name, int cuts, double size, bool at_limit, dou
   return json;
 }
 
+// The sizes of the effects hidden in one set of faces.
+class Sizes {
+ public:
+  Sizes(const std::string& rule, int cuts, double nose_radius_mm, std::uint64_t seed)
+      : rule_(rule), cuts_(cuts), nose_radius_mm_(nose_radius_mm), seed_(seed) {}
+
+  // None where no limit is stated for it.
+  std::optional<double> of(const std::string& name) {
+    if (rule_ == "limit") return at_limit(name);
+    if (rule_ != "any") return std::stod(rule_);
+    RandomStream random(seed_, "size");
+    return 0.5 * std::pow(100.0, random.uniform());
+  }
+
+ private:
+  // The limit stated for these faces as they are without the effect.
+  std::optional<double> at_limit(const std::string& name) {
+    if (!clean_) clean_ = close_loop(face_problem(), make_faces({}, cuts_, nose_radius_mm_, seed_));
+    RandomStream random(seed_, name);
+    const auto limit = limit_of(*clean_, make_hidden(name, kFaceNoise, random));
+    if (!limit) return std::nullopt;
+    return *limit * per_amplitude(name) * kMicrometre / kFaceNoise;
+  }
+
+  std::string rule_;
+  int cuts_;
+  double nose_radius_mm_;
+  std::uint64_t seed_;
+  std::optional<TraceResult> clean_;
+};
+
+void run(std::map<std::string, std::string>& option) {
+  std::vector<std::string> names;
+  std::istringstream list(option["--effect"]);
+  for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+  const int cuts = std::stoi(option["--design"]);
+  const double nose_radius_mm = std::stod(option["--nose"]);
+  const std::uint64_t first = std::stoull(option["--seed"]);
+  for (std::uint64_t seed = first; seed < first + std::stoull(option["--cases"]); ++seed) {
+    Sizes sizes(option["--size"], cuts, nose_radius_mm, seed);
+    for (const std::string& name : names) {
+      const std::optional<double> size = sizes.of(name);
+      if (!size) continue;
+      std::cout << run_case(name, cuts, *size, option["--size"] == "limit", nose_radius_mm, seed)
+                << std::endl;
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -132,20 +172,7 @@ int main(int argc, char** argv) {
                                             {"--size", "10"},      {"--nose", "2"}};
   for (int i = 1; i + 1 < argc; i += 2) option[argv[i]] = argv[i + 1];
   try {
-    const std::string name = option["--effect"];
-    const int cuts = std::stoi(option["--design"]);
-    const double nose_radius_mm = std::stod(option["--nose"]);
-    const auto seed = static_cast<std::uint64_t>(std::stoull(option["--seed"]));
-    for (int i = 0; i < std::stoi(option["--cases"]); ++i) {
-      const std::uint64_t own = seed + static_cast<std::uint64_t>(i);
-      RandomStream random(own, "size");
-      const double size = option["--size"] == "any" ? 0.5 * std::pow(100.0, random.uniform())
-                          : option["--size"] == "limit"
-                              ? size_at_limit(name, cuts, nose_radius_mm, own)
-                              : std::stod(option["--size"]);
-      std::cout << run_case(name, cuts, size, option["--size"] == "limit", nose_radius_mm, own)
-                << std::endl;
-    }
+    run(option);
   } catch (const std::exception& error) {
     std::cerr << "quality: " << error.what() << '\n';
     return 1;
