@@ -108,10 +108,10 @@ std::string limits(const TraceResult& trace) {
     const auto [least, most] = std::ranges::minmax(limit.by_shape | std::views::values);
     return number(least, 2) + " to " + number(most, 2);
   };
-  TextTable table({"effect", "found from", "unit", "at", "other shapes"},
-                  {Column::effect, Column::number, Column::text, Column::text, Column::text});
+  TextTable table({"effect", "found from", "at", "other shapes"},
+                  {Column::effect, Column::text, Column::text, Column::text});
   for (const DetectionLimit& limit : trace.detection_limits)
-    table.add({limit.effect, number(limit.value, 2), limit.unit, limit.at, extremes(limit)});
+    table.add({limit.effect, number(limit.value, 2) + " " + limit.unit, limit.at, extremes(limit)});
   return item("Sizes found with 80 % probability:") + table.text();
 }
 
