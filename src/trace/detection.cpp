@@ -5,6 +5,7 @@
 #include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <cmath>
 
+#include "background.hpp"
 #include "gates.hpp"
 #include "linear_algebra.hpp"
 #include "slideway/base/parallel.hpp"
@@ -85,50 +86,73 @@ std::string made_by(const Model& model, const Fit& fit, const Whitened& data,
   return out.empty() ? "offset and tilt of the traces" : joined(out);
 }
 
-/// Size found with 80 % probability at one shape.
-std::optional<double> limit_at(const Model& model, const Whitened& data, const Candidate& candidate,
-                               std::span<const double> shape, double least_gain) {
-  const Eigen::Index priors = data.rows() - data.values();
-  const Eigen::MatrixXd columns = stacked_columns(model, candidate.term, shape, priors);
-  const Projection own = project(data, columns);
+/// One effect at one shape.
+struct Case {
+  const Model& model;
+  const Candidate& candidate;
+  std::span<const double> shape;
+  Eigen::MatrixXd columns;
+
+  /// Amplitudes where the first parameter has this value.
+  [[nodiscard]] Eigen::VectorXd amplitudes(double size) const {
+    const Effect& effect = *candidate.term.effect;
+    Eigen::VectorXd values =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effect.parameters().size()));
+    values[0] = size;
+    for (std::size_t s = 0; s < shape.size(); ++s) values[effect.shapes()[s].parameter] = shape[s];
+    return effect.from_parameters(values).head(candidate.amplitudes());
+  }
+};
+
+/// Size found with 80 % probability in these data.
+std::optional<double> limit_in(const Whitened& data, const Case& one, double least_gain) {
+  const Projection own = project(data, one.columns);
   if (own.rank == 0) return std::nullopt;
-  const double enough =
-      std::max(penalty(data, candidate.unknowns(own.rank)) + least_gain, kLeastSize * kLeastSize);
+  const double enough = std::max(penalty(data, one.candidate.unknowns(own.rank)) + least_gain,
+                                 kLeastSize * kLeastSize);
   const double noncentrality =
       GainOfEffect::find_non_centrality(static_cast<double>(own.rank), enough, 1.0 - kPower);
-  const Effect& effect = *candidate.term.effect;
-  const Eigen::Index a = candidate.amplitudes();
-  Eigen::VectorXd values =
-      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(effect.parameters().size()));
-  values[0] = 1.0;
-  for (std::size_t s = 0; s < shape.size(); ++s) values[effect.shapes()[s].parameter] = shape[s];
+  const Eigen::Index a = one.candidate.amplitudes();
   // Gain of one unit of the first parameter; the mean over its phase, where it has one.
   const double gain = own.gram.diagonal().head(std::min<Eigen::Index>(a, 2)).mean() *
-                      effect.from_parameters(values).head(a).squaredNorm();
+                      one.amplitudes(1.0).squaredNorm();
   if (!(gain > 0.0) || !std::isfinite(noncentrality)) return std::nullopt;
   const double by_gain = std::sqrt(noncentrality / gain);
-  if (shape.empty()) return by_gain;
-  values[0] = by_gain;
-  const Eigen::VectorXd inner = effect.from_parameters(values);
+  if (one.shape.empty()) return by_gain;
+  const Eigen::VectorXd inner = one.amplitudes(by_gain);
   Eigen::MatrixXd joint(data.rows(), a + 1);
-  joint << columns, stacked_derivatives(model, candidate.term, shape, priors) * inner.head(a);
-  joint = data.outside(std::move(joint));
-  const Eigen::MatrixXd covariance = amplitude_covariance(joint);
-  const ParameterValues at = effect.parameter_values(inner.head(a), shape);
+  joint << one.columns,
+      stacked_derivatives(one.model, one.candidate.term, one.shape, data.rows() - data.values()) *
+          inner;
+  const Eigen::MatrixXd covariance = amplitude_covariance(data.outside(std::move(joint)));
+  const ParameterValues at = one.candidate.term.effect->parameter_values(inner, one.shape);
   const double uncertainty =
       std::sqrt(at.jacobian.row(0) * covariance * at.jacobian.row(0).transpose());
   return std::max(by_gain, (kLeastSize + kPowerDeviate) * uncertainty);
 }
 
+/// The same; an effect that is steep at the centre takes the values there out of the search.
+std::optional<double> limit_at(const Fitted& fitted, const Whitened& data, const Case& one,
+                               double least_gain) {
+  std::optional<double> limit = limit_in(data, one, least_gain);
+  if (!limit || !is_centred(*one.candidate.term.effect)) return limit;
+  const Eigen::MatrixXd loose =
+      loose_values(fitted.model, fitted.fit, data.noise(), one.columns * one.amplitudes(*limit));
+  return limit_in({fitted.fit.linear, data.noise(), loose}, one, least_gain);
+}
+
 /// Over all shapes, stated for the middle one.
-std::optional<DetectionLimit> detection_limit(const Model& model, const Whitened& data,
+std::optional<DetectionLimit> detection_limit(const Fitted& fitted, const Whitened& data,
                                               const Candidate& candidate, double least_gain) {
   if (!candidate.term.effect->has_one_size()) return std::nullopt;
   const Parameter& first = candidate.term.effect->parameters()[0];
   DetectionLimit out{candidate.name(), first.name, first.unit, 0.0, "", {}};
   const std::vector<std::vector<double>> shapes = spread_shapes(candidate);
   for (const std::vector<double>& shape : shapes) {
-    const std::optional<double> limit = limit_at(model, data, candidate, shape, least_gain);
+    const Case one{
+        fitted.model, candidate, shape,
+        stacked_columns(fitted.model, candidate.term, shape, data.rows() - data.values())};
+    const std::optional<double> limit = limit_at(fitted, data, one, least_gain);
     if (shape == shapes[shapes.size() / 2]) {
       if (!limit) return std::nullopt;
       out.value = *limit;
@@ -141,13 +165,13 @@ std::optional<DetectionLimit> detection_limit(const Model& model, const Whitened
 
 }  // namespace
 
-std::vector<DetectionLimit> detection_limits(const Model& model, const Whitened& data,
+std::vector<DetectionLimit> detection_limits(const Fitted& fitted, const Whitened& data,
                                              const Candidates& candidates,
                                              const Calibration& calibration, double significance) {
   const double least_gain = std::max(kEnough, calibration.threshold(significance));
   std::vector<std::optional<DetectionLimit>> limits(candidates.size());
   parallel_for(candidates.size(), [&](std::size_t c) {
-    limits[c] = detection_limit(model, data, *candidates[c], least_gain);
+    limits[c] = detection_limit(fitted, data, *candidates[c], least_gain);
   });
   std::vector<DetectionLimit> out;
   for (std::optional<DetectionLimit>& limit : limits)

@@ -9,7 +9,7 @@ namespace slideway {
 /// For every candidate the size that is found with 80 % probability, in the unit of its first
 /// parameter: its gain must pass what the search finds in noise, ΔBIC -10, and five standard
 /// uncertainties. None for a candidate the model spans, or whose size is not one number.
-std::vector<DetectionLimit> detection_limits(const Model& model, const Whitened& data,
+std::vector<DetectionLimit> detection_limits(const Fitted& fitted, const Whitened& data,
                                              const Candidates& candidates,
                                              const Calibration& calibration, double significance);
 

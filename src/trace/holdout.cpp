@@ -30,6 +30,50 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
   return rows;
 }
 
+/// Model, and model with effect, fitted to the rows of all profiles but one.
+struct OtherProfiles {
+  LeastSquares without, with;
+
+  OtherProfiles(const Linearisation& linear, const std::vector<Eigen::MatrixXd>& rows,
+                std::size_t left_out) {
+    const Eigen::Index k = linear.prior_rows.cols(), priors = linear.prior_rows.rows();
+    const Eigen::Index last = rows[0].cols() - 1;
+    Eigen::Index count = priors;
+    for (std::size_t i = 0; i < rows.size(); ++i) count += i == left_out ? 0 : rows[i].rows();
+    Eigen::MatrixXd kept = Eigen::MatrixXd::Zero(count, last + 1);
+    Eigen::Index next = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (i == left_out) continue;
+      kept.middleRows(next, rows[i].rows()) = rows[i];
+      next += rows[i].rows();
+    }
+    kept.bottomLeftCorner(priors, k) = linear.prior_rows;
+    kept.bottomRightCorner(priors, 1) = linear.prior_residuals;
+    without = least_squares(kept.leftCols(k), kept.col(last));
+    with = least_squares(kept.leftCols(last), kept.col(last));
+  }
+
+  [[nodiscard]] double gain() const { return without.square - with.square; }
+};
+
+/// A square summed over the profiles left out, as predicted without and with the effect.
+struct PredictionError {
+  double before = 0.0, after = 0.0;
+
+  void add(const Eigen::VectorXd& without, const Eigen::VectorXd& with) {
+    before += without.squaredNorm();
+    after += with.squaredNorm();
+  }
+  [[nodiscard]] bool falls() const { return after < before; }
+};
+
+/// Prediction of a profile's low band, its own levelling allowed: what is left of the residual.
+Eigen::VectorXd left_over(const Observation& observation, Eigen::VectorXd rest) {
+  if (observation.nuisances.cols() > 0)
+    rest -= observation.nuisances * fitted_nuisances(observation, rest);
+  return rest;
+}
+
 }  // namespace
 
 std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened& data,
@@ -40,59 +84,40 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
   std::vector<Eigen::MatrixXd> rows;
   for (std::size_t i = 0; i < count; ++i)
     rows.push_back(white_rows(linear, data, i, candidate.columns));
-  double own_before = 0.0, own_after = 0.0;
-  double before = 0.0, after = 0.0, values = 0.0, before_mm = 0.0, after_mm = 0.0, samples = 0.0;
-  for (std::size_t left_out = 0; left_out < count; ++left_out) {
-    if (rows[left_out].middleCols(k, a).isZero(0.0)) continue;
-    Eigen::MatrixXd kept(data.rows() - data.count(left_out), k + a + 1);
-    Eigen::Index next = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (i == left_out) continue;
-      kept.middleRows(next, rows[i].rows()) = rows[i];
-      next += rows[i].rows();
-    }
-    kept.bottomRows(linear.prior_rows.rows()).setZero();
-    kept.bottomLeftCorner(linear.prior_rows.rows(), k + a + 1).leftCols(k) = linear.prior_rows;
-    kept.bottomRightCorner(linear.prior_rows.rows(), 1) = linear.prior_residuals;
-    const LeastSquares without = least_squares(kept.leftCols(k), kept.col(k + a));
-    const LeastSquares with = least_squares(kept.leftCols(k + a), kept.col(k + a));
-    const double gain = without.square - with.square;
-    if (gain < std::max(kTold * kTold, kLeastShare * candidate.projection.gain)) continue;
-    const Eigen::VectorXd carried = rows[left_out].middleCols(k, a) * with.values.bottomRows(a);
+  PredictionError beyond_model, white, heights;
+  double samples = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto model = rows[i].leftCols(k), effect = rows[i].middleCols(k, a);
+    if (effect.isZero(0.0)) continue;
+    const OtherProfiles others(linear, rows, i);
+    if (others.gain() < std::max(kTold * kTold, kLeastShare * candidate.projection.gain)) continue;
+    const Eigen::VectorXd amplitudes = others.with.values.bottomRows(a);
+    const Eigen::VectorXd carried = effect * amplitudes;
     if (carried.squaredNorm() < kTold * kTold) continue;
-    const Eigen::MatrixXd basis = orthonormal(rows[left_out].leftCols(k));
-    Eigen::MatrixXd own(carried.size(), 2);
-    own << rows[left_out].col(k + a), carried;
-    own -= basis * (basis.transpose() * own).eval();
-    if (own.col(1).squaredNorm() >= kTold * kTold) {
-      own_before += own.col(0).squaredNorm();
-      own_after += (own.col(0) - own.col(1)).squaredNorm();
-    }
-    const Observation& observation = *linear.observations[left_out];
-    Eigen::VectorXd rest_before =
-        linear.residuals[left_out] - linear.columns[left_out] * without.values;
-    Eigen::VectorXd rest_after =
-        linear.residuals[left_out] - linear.columns[left_out] * with.values.topRows(k) -
-        candidate.columns.middleRows(data.first_row(left_out), data.count(left_out)) *
-            with.values.bottomRows(a);
-    if (observation.nuisances.cols() > 0) {
-      rest_before -= observation.nuisances * fitted_nuisances(observation, rest_before);
-      rest_after -= observation.nuisances * fitted_nuisances(observation, rest_after);
-    }
-    const double variance = std::pow(data.noise()[left_out].standard_deviation(), 2);
-    before += rest_before.squaredNorm() / variance;
-    after += rest_after.squaredNorm() / variance;
-    values += static_cast<double>(rest_before.size());
+    const Eigen::VectorXd residual = rows[i].col(k + a);
+    white.add(residual - model * others.without.values,
+              residual - model * others.with.values.topRows(k) - carried);
+    const Eigen::MatrixXd basis = orthonormal(model);
+    const auto outside = [&](const Eigen::VectorXd& column) -> Eigen::VectorXd {
+      return column - basis * (basis.transpose() * column);
+    };
+    if (outside(carried).squaredNorm() >= kTold * kTold)
+      beyond_model.add(outside(residual), outside(residual - carried));
+    const Observation& observation = *linear.observations[i];
     if (observation.profile->setup.quantity != Quantity::height) continue;
-    before_mm += rest_before.squaredNorm();
-    after_mm += rest_after.squaredNorm();
+    const auto own = candidate.columns.middleRows(data.first_row(i), data.count(i));
+    heights.add(
+        left_over(observation, linear.residuals[i] - linear.columns[i] * others.without.values),
+        left_over(observation, linear.residuals[i] -
+                                   linear.columns[i] * others.with.values.topRows(k) -
+                                   own * amplitudes));
     samples += static_cast<double>(observation.low_band.samples());
   }
-  if (values == 0.0) return std::nullopt;
-  HeldOut out{own_before > 0.0 ? own_after < own_before : after < before, {}, {}};
+  if (white.before == 0.0) return std::nullopt;
+  HeldOut out{beyond_model.before > 0.0 ? beyond_model.falls() : white.falls(), {}, {}};
   if (samples > 0.0) {
-    out.before_um = std::sqrt(before_mm / samples) / kMicrometre;
-    out.after_um = std::sqrt(after_mm / samples) / kMicrometre;
+    out.before_um = std::sqrt(heights.before / samples) / kMicrometre;
+    out.after_um = std::sqrt(heights.after / samples) / kMicrometre;
   }
   return out;
 }

@@ -289,7 +289,7 @@ class Loop {
         inseparable(state.model, state.fit, last.data, candidates_without(taken(state.added)));
     if (calibration_)
       out.detection_limits = detection_limits(
-          extender_.base().model,
+          extender_.base(),
           {extender_.base().fit.linear, last.data.noise(),
            loose_values(extender_.base().model, extender_.base().fit, last.data.noise())},
           candidates_without({}), *calibration_, problem_.trace.significance);
