@@ -3,10 +3,13 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "background.hpp"
 #include "calibration.hpp"
+#include "detection.hpp"
 #include "refine.hpp"
+#include "search.hpp"
 #include "slideway/base/units.hpp"
 #include "structure.hpp"
 #include "trace/faces.hpp"
@@ -197,6 +200,48 @@ TEST(LackOfFit, SeesASlowWave) {
         5e-4 * std::cos(10.0 * kPi * static_cast<double>(i) / static_cast<double>(n));
   const LackOfFit found = lack_of_fit(Whitened(linear, {noise}, Eigen::MatrixXd(n, 0)), linear);
   EXPECT_TRUE(found.significant());
+}
+
+/// Limits of one cut whose noise has this innovation.
+std::vector<DetectionLimit> limits_at(const Bench& bench, const Dictionary& dictionary,
+                                      double innovation) {
+  Candidates candidates;
+  for (const Candidate& candidate : dictionary.candidates) candidates.push_back(&candidate);
+  const Whitened data = bench.white(first_order(0.4, innovation));
+  return detection_limits({bench.model, bench.fitted}, data, candidates, {20.0, 2.0}, 0.01);
+}
+
+TEST(DetectionLimit, IsTheSizeWhoseGainPassesTheGateInFourOfFive) {
+  const Bench bench;
+  const Dictionary dictionary = make_dictionary(bench.model, problem_of({"feed_marks"}), 0);
+  const std::vector<DetectionLimit> limits = limits_at(bench, dictionary, 5e-5);
+  ASSERT_EQ(limits.size(), 1U);
+  const Whitened data = bench.white();
+  const Candidate& marks = dictionary.candidates[0];
+  const Eigen::VectorXd one = marks.term.effect->from_parameters(Eigen::VectorXd::Ones(1));
+  const double norm = data.outside(stacked_columns(bench.model, marks.term, {}, 0) * one).norm();
+  const double gate = penalty(data, 1) + Calibration{20.0, 2.0}.threshold(0.01);
+  // 0.8416: normal deviate of 80 %; of the gate's square root the other tail is below 1e-8.
+  EXPECT_NEAR(limits[0].value * norm, std::sqrt(gate) + 0.8416, 1e-4);
+}
+
+TEST(DetectionLimit, GrowsWithTheNoise) {
+  const Bench bench;
+  const Dictionary dictionary = make_dictionary(
+      bench.model, problem_of({"feed_marks", "thermal_drift", "slide_periodic", "step"}), 0);
+  const std::vector<DetectionLimit> quiet = limits_at(bench, dictionary, 5e-5);
+  const std::vector<DetectionLimit> noisy = limits_at(bench, dictionary, 1e-4);
+  ASSERT_EQ(quiet.size(), 4U);
+  for (std::size_t i = 0; i < quiet.size(); ++i) {
+    SCOPED_TRACE(quiet[i].effect);
+    EXPECT_NEAR(noisy[i].value, 2.0 * quiet[i].value, kRounding * quiet[i].value);
+    EXPECT_EQ(quiet[i].by_shape.empty(), quiet[i].at.empty());
+    for (std::size_t k = 0; k < quiet[i].by_shape.size(); ++k) {
+      EXPECT_NEAR(noisy[i].by_shape[k].second, 2.0 * quiet[i].by_shape[k].second,
+                  kRounding * quiet[i].by_shape[k].second);
+    }
+    EXPECT_TRUE(std::ranges::is_sorted(quiet[i].by_shape | std::views::keys));
+  }
 }
 
 }  // namespace
