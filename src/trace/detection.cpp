@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kPower = 0.8;
 constexpr double kPowerDeviate = 0.8416;  // normal deviate of 80 %
-constexpr int kSpreadShapes = 9;
+constexpr int kSpreadShapes = 5;
+constexpr int kMostRounds = 8;        // of a limit that depends on itself
 constexpr double kNegligible = 0.02;  // of a column's size: not worth a name
 
 /// Distribution of a gain where there is an effect, in plain doubles; not finite instead of an
@@ -131,14 +132,21 @@ std::optional<double> limit_in(const Whitened& data, const Case& one, double lea
   return std::max(by_gain, (kLeastSize + kPowerDeviate) * uncertainty);
 }
 
-/// The same; an effect that is steep at the centre takes the values there out of the search.
+/// The same; an effect that is steep at the centre takes the values there out of the search, the
+/// more of them the larger it is.
 std::optional<double> limit_at(const Fitted& fitted, const Whitened& data, const Case& one,
                                double least_gain) {
   std::optional<double> limit = limit_in(data, one, least_gain);
-  if (!limit || !is_centred(*one.candidate.term.effect)) return limit;
-  const Eigen::MatrixXd loose =
-      loose_values(fitted.model, fitted.fit, data.noise(), one.columns * one.amplitudes(*limit));
-  return limit_in({fitted.fit.linear, data.noise(), loose}, one, least_gain);
+  if (!is_centred(*one.candidate.term.effect)) return limit;
+  Eigen::Index lost = 0;
+  for (int round = 0; limit && round < kMostRounds; ++round) {
+    const Eigen::MatrixXd loose =
+        loose_values(fitted.model, fitted.fit, data.noise(), one.columns * one.amplitudes(*limit));
+    if (loose.cols() <= lost) break;
+    lost = loose.cols();
+    limit = limit_in({fitted.fit.linear, data.noise(), loose}, one, least_gain);
+  }
+  return limit;
 }
 
 /// Over all shapes, stated for the middle one.
