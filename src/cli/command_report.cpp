@@ -2,7 +2,6 @@
 
 #include "command.hpp"
 #include "output.hpp"
-#include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 #include "slideway/report/report.hpp"
 
@@ -23,14 +22,7 @@ class ReportAgainCommand : public Command {
     if (html_.empty()) fail("--html FILE is missing");
     keep_input(input_, html_);
     const FileBytes json(input_);
-    const std::string page = [&] {
-      try {
-        return html_report(json.text());
-      } catch (const DataError& error) {
-        throw DataError(input_ + ": " + error.what());
-      }
-    }();
-    write_output(html_, page);
+    write_output(html_, html_report(json.text(), input_));
     return kDone;
   }
 

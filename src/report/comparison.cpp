@@ -6,6 +6,7 @@
 #include "json_parts.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/report/document.hpp"
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "text_parts.hpp"
@@ -26,11 +27,6 @@ struct Pair {
 struct Change {
   std::string what, a, b;  // "" where a report does not have it
 };
-
-Parameters parameters_of(const Analysis& analysis) {
-  if (analysis.trace) return analysis.trace->after;
-  return analysis.result.fit ? analysis.result.fit->parameters : Parameters{};
-}
 
 const FittedParameter* find(const Parameters& all, const std::string& name) {
   const auto found = std::ranges::find(all, name, &FittedParameter::name);
@@ -55,7 +51,7 @@ Pair pair_of(const FittedParameter* a, const FittedParameter* b) {
 }
 
 std::vector<Pair> pairs_of(const NamedReport& a, const NamedReport& b) {
-  const Parameters in_a = parameters_of(a.analysis), in_b = parameters_of(b.analysis);
+  const Parameters &in_a = final_parameters(a.analysis), &in_b = final_parameters(b.analysis);
   std::vector<Pair> out;
   for (const FittedParameter& p : in_a) {
     const FittedParameter* other = find(in_b, p.name);

@@ -9,6 +9,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
+#include "slideway/report/document.hpp"
 #include "slideway/report/number.hpp"
 
 namespace slideway {
@@ -18,10 +19,6 @@ constexpr double kPieces = 50.0;  // of the travel, where no step is asked for
 constexpr double kMost = 5000.0;
 
 using Parameters = std::vector<FittedParameter>;
-
-const Parameters& final_parameters(const Analysis& analysis) {
-  return analysis.trace ? analysis.trace->after : analysis.result.fit->parameters;
-}
 
 bool is_determined(const FittedParameter& p) { return p.identifiable && p.value; }
 

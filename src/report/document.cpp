@@ -1,7 +1,6 @@
 #include "slideway/report/document.hpp"
 
-#include <cmath>
-#include <tuple>
+#include <algorithm>
 
 #include "document_node.hpp"
 #include "slideway/base/file.hpp"
@@ -24,9 +23,16 @@ FittedParameter fitted_parameter(const Node& node) {
   return p;
 }
 
+Correlation correlation(const Node& node) {
+  const auto parts = node.entries();
+  if (parts.size() != 3) node.fail("two names and a coefficient");
+  return {parts[0].text(), parts[1].text(), parts[2].number()};
+}
+
 namespace {
 
 constexpr int kDeepest = 32;  // levels of brackets; a report has 7
+constexpr const char* kAccepted = "a report of slideway (--json FILE)";
 
 OutlierSummary outlier(const Node& node) {
   return {node["row"].count(), node["value"].number(), node["expected"].number(),
@@ -86,7 +92,7 @@ Dominant dominant(const Node& node) {
   Dominant out;
   out.by_correlation = node["by_correlation"].text_or_null();
   out.by_fit = node["by_fit"].text_or_null();
-  if (!node["agree"].is_null()) out.agree = node["agree"].truth();
+  if (node.has("agree")) out.agree = node["agree"].truth();
   out.doubt = node["doubt"].text_or_null().value_or("");
   return out;
 }
@@ -128,12 +134,6 @@ Contribution contribution(const Node& node) {
 ResidualSummary residual(const Node& node) {
   return {node["profile"].text(), node["role"].text(), in_micro(node, "rms").number(),
           in_micro(node, "pv").number(), node["rms_um"].is_null() ? "urad" : "um"};
-}
-
-std::tuple<std::string, std::string, double> correlation(const Node& node) {
-  const auto parts = node.list([](const Node& each) { return each; });
-  if (parts.size() != 3) node.fail("two names and a coefficient");
-  return {parts[0].text(), parts[1].text(), parts[2].number()};
 }
 
 FitResult fit(const Node& node) {
@@ -180,7 +180,7 @@ Result result(const Node& node) {
   out.title = node["title"].text();
   out.version = node["version"].text();
   out.inputs = node["inputs"].list(input);
-  if (!node["travel"].is_null()) out.travel = travel(node["travel"]);
+  if (node.has("travel")) out.travel = travel(node["travel"]);
   const Node band = node["low_band"];
   out.wavelet = band["wavelet"].text();
   out.level = band["level"].small_integer();
@@ -190,43 +190,52 @@ Result result(const Node& node) {
                  node["candidate_correlations"].list(candidate_correlation),
                  node["ranking_notes"].texts()};
   out.dominant = dominant(node["dominant"]);
-  if (!node["fit"].is_null()) out.fit = fit(node["fit"]);
+  if (node.has("fit")) out.fit = fit(node["fit"]);
   const Node check = node["crosscheck"]["squareness"];
   if (!check.is_null()) out.squareness = squareness(check);
   return out;
 }
 
-Json parsed(const std::filesystem::path& path) {
-  const FileBytes bytes(path);
-  const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
-    if (depth > kDeepest)
-      throw DataError(path.string() + ": brackets more than " + std::to_string(kDeepest) +
-                      " deep; accepted: a report of slideway (--json FILE)");
-    return true;
-  };
-  try {
-    return Json::parse(bytes.text(), shallow);
-  } catch (const Json::exception& error) {
-    throw DataError(path.string() + ": is no JSON (" + printable(error.what(), 120) +
-                    "); accepted: a report of slideway (--json FILE)");
-  }
-}
-
 }  // namespace
 
+Json parse_document(std::string_view text, std::initializer_list<std::string_view> schemas) {
+  const auto shallow = [](int depth, Json::parse_event_t, const Json&) {
+    if (depth > kDeepest)
+      throw DataError("brackets more than " + std::to_string(kDeepest) +
+                      " deep; accepted: " + kAccepted);
+    return true;
+  };
+  Json json = [&] {
+    try {
+      return Json::parse(text, shallow);
+    } catch (const Json::exception& error) {
+      throw DataError("is no JSON (" + printable(error.what(), 120) + "); accepted: " + kAccepted);
+    }
+  }();
+  std::vector<std::string> accepted;
+  for (const std::string_view each : schemas) accepted.push_back('"' + std::string(each) + '"');
+  const std::string known = joined(accepted, " or ") + ", as --json FILE of slideway writes it";
+  const Node schema = Node(json)["schema"];
+  if (schema.is_null()) schema.fail(known);
+  if (std::ranges::find(schemas, schema.verbatim()) == schemas.end())
+    throw DataError("schema: is \"" + printable(schema.verbatim(), 40) + "\"; accepted: " + known);
+  return json;
+}
+
+const std::vector<FittedParameter>& final_parameters(const Analysis& analysis) {
+  static const std::vector<FittedParameter> kNone;
+  if (analysis.trace) return analysis.trace->after;
+  return analysis.result.fit ? analysis.result.fit->parameters : kNone;
+}
+
 Analysis read_report(const std::filesystem::path& path) {
-  const Json json = parsed(path);
-  const Node report(json, path.string(), "");
-  constexpr const char* kSchema = "slideway.report/1";
-  const auto schema = json.is_object() ? json.find("schema") : json.end();
-  if (schema == json.end() || *schema != kSchema)
-    throw DataError(path.string() + ": schema: is " +
-                    (schema == json.end() ? "missing" : printable(schema->dump(), 40)) +
-                    "; accepted: \"" + kSchema + "\", as --json FILE of slideway writes it");
-  Analysis out;
-  out.result = result(report);
-  if (!report["trace"].is_null()) out.trace = trace_result(report);
-  return out;
+  const FileBytes bytes(path);
+  return read_document(bytes.text(), path.string(), {kReportSchema}, [](const Node& report) {
+    Analysis out;
+    out.result = result(report);
+    if (report.has("trace")) out.trace = trace_result(report);
+    return out;
+  });
 }
 
 }  // namespace slideway

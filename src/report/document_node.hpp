@@ -1,8 +1,10 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "json_parts.hpp"
@@ -11,13 +13,12 @@
 
 namespace slideway {
 
-/// A value of a document with its place in it, read as what it is expected to be.
-/// Every function throws DataError: "result.json: fit.parameters[0].unit: is a number; accepted:
-/// a text".
+/// A value of a document with its place in it, read as what it is expected to be. Every function
+/// throws DataError: "fit.parameters[0].unit: is number; accepted: a text".
 class Node {
  public:
-  Node(const Json& json, std::string file, std::string place)
-      : json_(&json), file_(std::move(file)), place_(std::move(place)) {}
+  explicit Node(const Json& json, std::string place = "")
+      : json_(&json), place_(std::move(place)) {}
 
   [[nodiscard]] bool is_null() const { return json_->is_null(); }
 
@@ -26,12 +27,14 @@ class Node {
     static const Json kNull;
     if (!json_->is_object()) fail("an object");
     const auto found = json_->find(key);
-    return {found == json_->end() ? kNull : *found, file_,
-            place_.empty() ? key : place_ + "." + key};
+    return Node(found == json_->end() ? kNull : *found, place_.empty() ? key : place_ + "." + key);
   }
+  /// Whether a key is there and not null.
+  [[nodiscard]] bool has(const std::string& key) const { return !(*this)[key].is_null(); }
 
+  [[nodiscard]] bool is_number() const { return json_->is_number(); }
   [[nodiscard]] double number() const {
-    if (!json_->is_number()) fail("a number");
+    if (!is_number()) fail("a number");
     return json_->get<double>();
   }
   [[nodiscard]] std::optional<double> number_or_null() const {
@@ -52,11 +55,13 @@ class Node {
     if (!json_->is_boolean()) fail("true or false");
     return json_->get<bool>();
   }
-  /// Without what a terminal would obey.
-  [[nodiscard]] std::string text() const {
+  /// As it stands, for who escapes it.
+  [[nodiscard]] const std::string& verbatim() const {
     if (!json_->is_string()) fail("a text");
-    return printable(json_->get_ref<const std::string&>(), std::string::npos);
+    return json_->get_ref<const std::string&>();
   }
+  /// Without what a terminal would obey.
+  [[nodiscard]] std::string text() const { return printable(verbatim(), std::string::npos); }
   [[nodiscard]] std::optional<std::string> text_or_null() const {
     if (is_null()) return std::nullopt;
     return text();
@@ -68,37 +73,72 @@ class Node {
     if (!json_->is_array()) fail("a list");
     std::vector<decltype(read(*this))> out;
     out.reserve(json_->size());
-    for (std::size_t i = 0; i < json_->size(); ++i)
-      out.push_back(read(Node((*json_)[i], file_, place_ + "[" + std::to_string(i) + "]")));
+    for (std::size_t i = 0; i < json_->size(); ++i) out.push_back(read(entry(i)));
     return out;
+  }
+  /// The entries of a list, none where it is null.
+  [[nodiscard]] std::vector<Node> entries() const {
+    if (is_null()) return {};
+    return list([](const Node& each) { return each; });
   }
   [[nodiscard]] std::vector<std::string> texts() const {
     return list([](const Node& each) { return each.text(); });
   }
   [[nodiscard]] std::vector<double> numbers() const {
-    return list([](const Node& each) { return each.number(); });
+    if (!json_->is_array()) fail("a list");
+    std::vector<double> out;
+    out.reserve(json_->size());
+    for (std::size_t i = 0; i < json_->size(); ++i)  // thousands: a place only where it is needed
+      out.push_back((*json_)[i].is_number() ? (*json_)[i].get<double>() : entry(i).number());
+    return out;
   }
   /// An object of numbers, in its order.
   [[nodiscard]] std::vector<std::pair<std::string, double>> named_numbers() const {
     if (!json_->is_object()) fail("an object of numbers");
     std::vector<std::pair<std::string, double>> out;
     for (const auto& [key, value] : json_->items())
-      out.emplace_back(printable(key, std::string::npos),
-                       Node(value, file_, place_ + "." + key).number());
+      out.emplace_back(printable(key, std::string::npos), (*this)[key].number());
     return out;
   }
 
   [[noreturn]] void fail(const std::string& accepted) const {
     const std::string what = is_null() ? "is missing" : std::string("is ") + json_->type_name();
-    throw DataError(file_ + ": " + printable(place_, 80) + ": " + what + "; accepted: " + accepted);
+    throw DataError((place_.empty() ? "" : printable(place_, 80) + ": ") + what +
+                    "; accepted: " + accepted);
   }
 
  private:
+  [[nodiscard]] Node entry(std::size_t i) const {
+    return Node((*json_)[i], place_ + "[" + std::to_string(i) + "]");
+  }
+
   const Json* json_;
-  std::string file_, place_;
+  std::string place_;
 };
 
+inline constexpr std::string_view kReportSchema = "slideway.report/1";
+inline constexpr std::string_view kColumnsSchema = "slideway.columns/1";
+
+/// A document that --json wrote: brackets at most 32 deep, one of these schemas. @throws DataError
+/// it is none
+Json parse_document(std::string_view text, std::initializer_list<std::string_view> schemas);
+
+/// What `read` makes of a document; what is wrong with it is said with its name in front.
+template <typename Read>
+auto read_document(std::string_view text, const std::string& name,
+                   std::initializer_list<std::string_view> schemas, Read&& read) {
+  try {
+    const Json json = parse_document(text, schemas);
+    return read(Node(json));
+  } catch (const DataError& error) {
+    throw DataError(name + ": " + error.what());
+  }
+}
+
 FittedParameter fitted_parameter(const Node& node);
+
+using Correlation = std::tuple<std::string, std::string, double>;
+Correlation correlation(const Node& node);
 
 /// The `trace` part of a report, with `before` and `after`.
 TraceResult trace_result(const Node& report);

@@ -68,7 +68,7 @@ TraceResult trace_result(const Node& report) {
   TraceResult out;
   out.verdict = node["verdict"].text();
   out.rounds = node["rounds"].list(round);
-  if (!node["unnamed"].is_null()) out.unnamed = unnamed(node["unnamed"]);
+  if (node.has("unnamed")) out.unnamed = unnamed(node["unnamed"]);
   out.advice = node["advice"].texts();
   out.not_testable = pairs(node["not_testable"], "needs");
   out.not_separable = pairs(node["not_separable"], "same_as");

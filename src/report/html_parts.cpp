@@ -9,11 +9,6 @@
 namespace slideway {
 namespace {
 
-double checked(double value) {
-  if (!std::isfinite(value)) throw DataError("a number is beyond all measure");
-  return value;
-}
-
 /// "1.5e-06" as 1.5 × 10⁻⁶, "-3" with a true minus.
 std::string typeset(const std::string& text) {
   const std::size_t e = text.find('e');
@@ -27,6 +22,12 @@ std::string typeset(const std::string& text) {
 }
 
 }  // namespace
+
+double finite(double value) {
+  if (!std::isfinite(value))
+    throw DataError("a number is beyond all measure; accepted: what --json of slideway writes");
+  return value;
+}
 
 std::string escaped(std::string_view text) {
   std::string out;
@@ -58,40 +59,25 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-bool has(const Json& object, const char* key) {
-  return object.contains(key) && !object.at(key).is_null();
+std::string html_text(const Node& value) {
+  return value.is_number() ? html_number(value.number(), 6) : escaped(value.verbatim());
 }
 
-std::string text_of(const Json& object, const char* key) {
-  const Json& value = object.at(key);
-  if (value.is_number()) return html_number(value.get<double>(), 6);
-  return escaped(value.get_ref<const std::string&>());
-}
+std::string html_bold(std::string_view text) { return "<b>" + escaped(text) + "</b>"; }
 
-std::optional<double> number_of(const Json& object, const char* key) {
-  if (!has(object, key)) return std::nullopt;
-  return object.at(key).get<double>();
-}
-
-const Json& list_of(const Json& object, const char* key) {
-  static const Json kNone = Json::array();
-  if (!has(object, key)) return kNone;
-  const Json& list = object.at(key);
-  if (!list.is_array()) throw DataError(std::string("'") + key + "' is no list");
-  return list;
-}
-
-std::vector<double> numbers_of(const Json& object, const char* key) {
-  return list_of(object, key).get<std::vector<double>>();
+std::vector<std::string> html_texts(const Node& texts) {
+  std::vector<std::string> out;
+  for (const Node& text : texts.entries()) out.push_back(escaped(text.verbatim()));
+  return out;
 }
 
 std::string html_number(double value, int digits) {
-  return typeset(significant(checked(value), digits));
+  return typeset(significant(finite(value), digits));
 }
 
 std::string html_pair(double value, double uncertainty) {
-  if (!(checked(uncertainty) >= 0.0)) throw DataError("an uncertainty is negative");
-  return typeset(with_uncertainty(checked(value), uncertainty));
+  if (!(finite(uncertainty) >= 0.0)) throw DataError("an uncertainty is negative");
+  return typeset(with_uncertainty(finite(value), uncertainty));
 }
 
 std::string html_probability(double p) {
@@ -120,26 +106,53 @@ std::string html_symbol(std::string_view symbol) {
   return "<i>" + text.substr(0, index) + "</i><sub>" + text.substr(index + 1) + "</sub>";
 }
 
-std::string html_size(const Json& object, const std::string& name, int digits) {
+std::string html_unit(const Node& owner) { return html_unit(owner["unit"].verbatim()); }
+
+std::string html_size(const Node& owner, const std::string& name, int digits) {
   for (const std::string unit : {"um", "urad"})
-    if (const auto value = number_of(object, (name + "_" + unit).c_str()))
+    if (const auto value = owner[name + "_" + unit].number_or_null())
       return html_number(*value, digits) + " " + html_unit(unit);
   return "–";
+}
+
+std::string html_change(const Node& before, const std::string& name_before, const Node& after,
+                        const std::string& name_after) {
+  for (const std::string unit : {"um", "urad"}) {
+    const auto from = before[name_before + "_" + unit].number_or_null();
+    const auto to = after[name_after + "_" + unit].number_or_null();
+    if (from && to)
+      return html_number(*from, 3) + " → " + html_number(*to, 3) + " " + html_unit(unit);
+  }
+  return "";
 }
 
 std::string numbered(std::string stem, std::size_t number) {
   return stem.append(std::to_string(number));
 }
 
-std::string html_cell(const Json& object, const char* key, int digits) {
-  const auto value = number_of(object, key);
-  return value ? html_number(*value, digits) : "–";
+std::string html_cell(const Node& value, int digits) {
+  return value.is_null() ? "–" : html_number(value.number(), digits);
+}
+
+std::string html_scroll(const std::string& body) {
+  return "<div class=\"scroll\" tabindex=\"0\" role=\"group\">" + body + "</div>";
 }
 
 std::string html_figure(const std::string& picture, const std::string& caption,
                         const std::string& attributes) {
-  return "<figure" + attributes + "><div class=\"scroll\" tabindex=\"0\" role=\"group\">" +
-         picture + "</div><figcaption>" + caption + "</figcaption></figure>\n";
+  return "<figure" + attributes + ">" + html_scroll(picture) + "<figcaption>" + caption +
+         "</figcaption></figure>\n";
+}
+
+std::string html_each_profile(
+    const Node& report, const std::string& prefix,
+    const std::function<std::string(const Node&, const std::string&)>& picture) {
+  if (!report.has("curves")) return "";
+  std::string out;
+  std::size_t index = 0;
+  for (const Node& curves : report["curves"]["profiles"].entries())
+    out += picture(curves, numbered(prefix, index++));
+  return out;
 }
 
 HtmlTable::HtmlTable(std::string caption, std::vector<std::pair<std::string, Column>> columns)
@@ -157,12 +170,11 @@ void HtmlTable::add(const std::vector<std::string>& cells) {
 
 std::string HtmlTable::html() const {
   if (rows_.empty()) return "";
-  std::string out = "<div class=\"scroll\" tabindex=\"0\" role=\"group\"><table><caption>" +
-                    caption_ + "</caption>\n<thead><tr>";
+  std::string out = "<table><caption>" + caption_ + "</caption>\n<thead><tr>";
   for (const auto& [heading, column] : columns_)
     out += std::string("<th scope=\"col\"") + (column == Column::number ? " class=\"n\">" : ">") +
            heading + "</th>";
-  return out + "</tr></thead>\n<tbody>\n" + rows_ + "</tbody></table></div>\n";
+  return html_scroll(out + "</tr></thead>\n<tbody>\n" + rows_ + "</tbody></table>") + "\n";
 }
 
 std::string html_section(const std::string& id, const std::string& title, const std::string& body) {

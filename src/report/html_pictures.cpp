@@ -3,8 +3,6 @@
 
 #include "html_parts.hpp"
 #include "html_plot.hpp"
-#include "slideway/base/error.hpp"
-#include "slideway/base/text.hpp"
 #include "slideway/report/number.hpp"
 
 namespace slideway {
@@ -12,25 +10,22 @@ namespace {
 
 using Column = HtmlTable::Column;
 
-std::string bold(const std::string& name) { return "<b>" + escaped(name) + "</b>"; }
-
 // --- straightness ---------------------------------------------------------------------------
 
-std::string straightness(const Json& report) {
-  if (!has(report, "straightness") || !has(report, "curves") ||
-      !has(report.at("curves"), "straightness"))
+std::string straightness(const Node& report) {
+  if (!report.has("straightness") || !report.has("curves") || !report["curves"].has("straightness"))
     return "";
-  const Json& errors = list_of(report.at("straightness"), "errors");
+  const std::vector<Node> errors = report["straightness"]["errors"].entries();
   if (errors.empty())
     return html_section(
         "straightness", "Straightness of the slide, ISO 230-1",
-        "<p>None is given: " + text_of(report.at("straightness"), "reason") + ".</p>\n");
-  const Json& curve = report.at("curves").at("straightness");
-  const std::vector<double> x = numbers_of(curve, "position_mm");
-  const std::vector<double> deviation = numbers_of(curve, "deviation_um");
-  const std::vector<double> U = numbers_of(curve, "expanded_uncertainty_um");
+        "<p>None is given: " + html_text(report["straightness"]["reason"]) + ".</p>\n");
+  const Node curve = report["curves"]["straightness"];
+  const std::vector<double> x = curve["position_mm"].numbers();
+  const std::vector<double> deviation = curve["deviation_um"].numbers();
+  const std::vector<double> U = curve["expanded_uncertainty_um"].numbers();
   if (x.size() != deviation.size() || x.size() != U.size() || x.size() < 2)
-    throw DataError("the curves of 'straightness' differ in length");
+    curve.fail("three curves of one length");
   std::vector<double> low = deviation, high = deviation;
   for (std::size_t i = 0; i < U.size(); ++i) {
     low[i] -= U[i];
@@ -55,15 +50,12 @@ std::string straightness(const Json& report) {
        {"at x, mm", Column::number},
        {"lowest, µm", Column::number},
        {"at x, mm", Column::number}});
-  const auto cell = [](const Json& error, const char* key, int digits) {
-    return html_number(error.at(key).get<double>(), digits);
-  };
-  for (const Json& e : errors)
-    table.add(
-        {text_of(e, "line"),
-         html_pair(e.at("error_um").get<double>(), e.at("expanded_uncertainty_um").get<double>()),
-         cell(e, "coverage_factor", 3), cell(e, "highest_um", 3), cell(e, "highest_at_mm", 4),
-         cell(e, "lowest_um", 3), cell(e, "lowest_at_mm", 4)});
+  for (const Node& e : errors)
+    table.add({html_text(e["line"]),
+               html_pair(e["error_um"].number(), e["expanded_uncertainty_um"].number()),
+               html_cell(e["coverage_factor"], 3), html_cell(e["highest_um"], 3),
+               html_cell(e["highest_at_mm"], 4), html_cell(e["lowest_um"], 3),
+               html_cell(e["lowest_at_mm"], 4)});
   const double step = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
   return html_section(
       "straightness", "Straightness of the slide, ISO 230-1",
@@ -78,7 +70,7 @@ std::string straightness(const Json& report) {
           std::to_string(x.size()) + " points over x = " + html_number(x.front(), 5) + " to " +
           html_number(x.back(), 5) + " mm, a step of " + html_number(step, 3) +
           " mm: a limited representation of the slide." +
-          (has(report, "trace") && has(report.at("trace"), "unnamed")
+          (report.has("trace") && report["trace"].has("unnamed")
                ? " U is here without what the structure without a name adds to it."
                : "") +
           "</p>\n");
@@ -94,26 +86,26 @@ std::vector<double> shares(double whole, std::size_t count) {
   return out;
 }
 
-std::string running(const Json& report, const std::string& profile, const std::string& id) {
+std::string running(const Node& report, const std::string& profile, const std::string& id) {
   Plot plot({id + "-running", "Profile " + profile + ": running correlation",
              "Correlation coefficient of each effect with the profile over the first n samples, "
              "raw and in the low band.",
              "samples n", "coefficient"});
   std::size_t style = 0;
-  for (const Json& entry : list_of(report, "ranking")) {
-    if (entry.at("profile") != profile || !has(entry, "running")) continue;
-    const Json& series = entry.at("running");
+  for (const Node& entry : report["ranking"].entries()) {
+    if (entry["profile"].verbatim() != profile || !entry.has("running")) continue;
+    const Node series = entry["running"];
     const std::string own = numbered("e", style++ % kStyles);
-    const std::string effect = entry.at("effect").get<std::string>();
-    const std::vector<double> samples = numbers_of(series, "samples");
-    const std::vector<double> low_band = numbers_of(series, "low_band");
+    const std::string& effect = entry["effect"].verbatim();
+    const std::vector<double> samples = series["samples"].numbers();
+    const std::vector<double> low_band = series["low_band"].numbers();
     if (samples.empty()) continue;
     plot.line(effect + ", low band", own, shares(samples.back(), low_band.size()), low_band);
-    plot.line(effect + ", raw", own + " thin", samples, numbers_of(series, "raw"));
+    plot.line(effect + ", raw", own + " thin", samples, series["raw"].numbers());
   }
   if (plot.empty()) return "";
   return html_figure(
-      plot.svg(), bold(profile) +
+      plot.svg(), html_bold(profile) +
                       ": correlation of each effect with the first n samples, Eqs. (6), (19), (20) "
                       "(Figs. 8 and 9 of the paper); thick: low band, thin: raw. <b>Good:</b> the "
                       "dominant effect's low-band curve settles early, near ±1, and clear of the "
@@ -128,34 +120,35 @@ std::string heat_cell(double r) {
          ")\">" + html_number(std::round(r * 1000.0) / 1000.0, 3) + "</td>";
 }
 
-std::string matrix(const Json& curves) {
-  const Json& effects = list_of(curves, "effects");
-  const Json& rows = list_of(curves, "correlation");
+std::string matrix(const Node& curves) {
+  const std::vector<std::string> effects = html_texts(curves["effects"]);
+  const std::vector<Node> rows = curves["correlation"].entries();
   if (effects.size() < 2) return "";
-  if (rows.size() != effects.size()) throw DataError("'correlation' is no square");
-  std::string out =
-      "<div class=\"scroll\" tabindex=\"0\" role=\"group\"><table class=\"heat\">"
-      "<caption>Effects among themselves on " +
-      text_of(curves, "profile") + ", low band</caption><thead><tr><td></td>";
-  for (const Json& effect : effects)
-    out += "<th scope=\"col\">" + escaped(effect.get<std::string>()) + "</th>";
+  const auto require = [&](std::size_t size) {
+    if (size != effects.size()) curves["correlation"].fail("a row and a column for each effect");
+  };
+  require(rows.size());
+  std::string out = "<table class=\"heat\"><caption>Effects among themselves on " +
+                    html_text(curves["profile"]) + ", low band</caption><thead><tr><td></td>";
+  for (const std::string& effect : effects) out += "<th scope=\"col\">" + effect + "</th>";
   out += "</tr></thead><tbody>\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].size() != effects.size()) throw DataError("'correlation' is no square");
-    out += "<tr><th scope=\"row\">" + escaped(effects[i].get<std::string>()) + "</th>";
-    for (const Json& r : rows[i]) out += heat_cell(r.get<double>());
+    const std::vector<double> row = rows[i].numbers();
+    require(row.size());
+    out += "<tr><th scope=\"row\">" + effects[i] + "</th>";
+    for (const double r : row) out += heat_cell(r);
     out += "</tr>\n";
   }
-  return out + "</tbody></table></div>\n";
+  return html_scroll(out + "</tbody></table>") + "\n";
 }
 
-std::string correlations(const Json& report) {
+std::string correlations(const Node& report) {
   std::string runs, matrices;
   std::size_t index = 0;
-  for (const Json& in : report.at("inputs"))
-    runs += running(report, in.at("name").get<std::string>(), numbered("r", index++));
-  if (has(report, "curves"))
-    for (const Json& curves : list_of(report.at("curves"), "profiles")) matrices += matrix(curves);
+  for (const Node& in : report["inputs"].entries())
+    runs += running(report, in["name"].verbatim(), numbered("r", index++));
+  if (report.has("curves"))
+    for (const Node& curves : report["curves"]["profiles"].entries()) matrices += matrix(curves);
   if (!matrices.empty())
     matrices +=
         "<p class=\"caption\">Correlation of the effects of the final model with one "
@@ -173,12 +166,11 @@ std::vector<double> multiples(double step, std::size_t count) {
   return out;
 }
 
-std::string residual(const Json& curves, const std::string& id) {
-  const std::string profile = curves.at("profile").get<std::string>();
-  const std::vector<double> before = numbers_of(curves, "autocorrelation_before");
-  const std::vector<double> after = numbers_of(curves, "autocorrelation_after");
-  const double step = curves.at("lag_mm").get<double>(),
-               limit = curves.at("white_limit").get<double>();
+std::string residual(const Node& curves, const std::string& id) {
+  const std::string& profile = curves["profile"].verbatim();
+  const std::vector<double> before = curves["autocorrelation_before"].numbers();
+  const std::vector<double> after = curves["autocorrelation_after"].numbers();
+  const double step = curves["lag_mm"].number(), limit = curves["white_limit"].number();
   const std::string first = after.empty() ? "residual" : "before";
   const std::string style = after.empty() ? "after" : "before";
   Plot lags({id + "-autocorrelation", "Profile " + profile + ": autocorrelation of the residual",
@@ -190,15 +182,13 @@ std::string residual(const Json& curves, const std::string& id) {
       .line("after", "after", multiples(step, after.size()), after)
       .level("95 % of white noise", "limit", limit)
       .level("", "limit", -limit);
-  const std::string unit = curves.at("unit") == "urad" ? "µrad" : "µm";
   Plot spectrum({id + "-spectrum", "Profile " + profile + ": spectrum of the residual",
                  "Amplitude of the residual at each spatial frequency, both axes logarithmic.",
-                 "frequency, cycles/mm", "amplitude, " + unit});
+                 "frequency, cycles/mm", "amplitude, " + html_unit(curves)});
   spectrum.size(720, 240).log_x().log_y();
   const auto add = [&](const std::string& name, const std::string& own, const char* key) {
-    const Json& numbers = curves.at(key);
-    spectrum.line(name, own, numbers_of(numbers, "cycles_per_mm"),
-                  numbers_of(numbers, "amplitude"));
+    const Node series = curves[key];
+    spectrum.line(name, own, series["cycles_per_mm"].numbers(), series["amplitude"].numbers());
   };
   add(first, style, "spectrum_before");
   add("after", "after", "spectrum_after");
@@ -206,14 +196,14 @@ std::string residual(const Json& curves, const std::string& id) {
   if (!lags.empty())
     out += html_figure(
         lags.svg(),
-        bold(profile) +
+        html_bold(profile) +
             ": autocorrelation of the residual. <b>Good:</b> it falls at once and stays "
             "between the dotted lines. A slow fall or waves mean that neighbouring "
             "values are not independent; the uncertainties here count that in.");
   if (!spectrum.empty())
     out += html_figure(
         spectrum.svg(),
-        bold(profile) +
+        html_bold(profile) +
             ": spectrum of the residual. <b>Good:</b> a level floor. A peak is something "
             "periodic (rail, spindle, drive), a rise to the left is form the model lacks.");
   return out;
@@ -221,26 +211,25 @@ std::string residual(const Json& curves, const std::string& id) {
 
 // --- wavelet bands ----------------------------------------------------------------------------
 
-std::string band_panel(const Json& curves, const Json& band, const std::string& id,
+std::string band_panel(const Node& curves, const Node& band, const std::string& id,
                        const std::string& name) {
-  const std::vector<double> low = numbers_of(band, "low"), high = numbers_of(band, "high");
-  const double first = curves.at("first_mm").get<double>(),
-               last = curves.at("last_mm").get<double>();
+  const std::vector<double> low = band["low"].numbers(), high = band["high"].numbers();
+  const double first = curves["first_mm"].number(), last = curves["last_mm"].number();
   std::vector<double> x;
   for (std::size_t i = 0; i < low.size(); ++i)
     x.push_back(first +
                 (last - first) * (static_cast<double>(i) + 0.5) / static_cast<double>(low.size()));
-  Plot plot({id, "Band " + name + " of profile " + curves.at("profile").get<std::string>(),
+  Plot plot({id, "Band " + name + " of profile " + curves["profile"].verbatim(),
              "Lowest and highest value of the band along the trace.", "", ""});
   plot.size(360, 120).band(name, "envelope", x, low, high);
   return plot.empty() ? "" : plot.svg();
 }
 
-std::string bands(const Json& curves, const std::string& id) {
-  const Json& approximations = list_of(curves, "approximations");
-  const Json& details = list_of(curves, "details");
+std::string bands(const Node& curves, const std::string& id) {
+  const std::vector<Node> approximations = curves["approximations"].entries();
+  const std::vector<Node> details = curves["details"].entries();
   if (approximations.size() != details.size())
-    throw DataError("'details' has not as many bands as 'approximations'");
+    curves["details"].fail("as many bands as 'approximations' has");
   std::string panels;
   for (std::size_t i = 0; i < details.size(); ++i) {
     const std::string level = std::to_string(i + 1);
@@ -248,33 +237,22 @@ std::string bands(const Json& curves, const std::string& id) {
     panels += band_panel(curves, details[i], id + "-d" + level, numbered("d", i + 1));
   }
   if (panels.empty()) return "";
-  const std::string unit = curves.at("unit") == "urad" ? "µrad" : "µm";
   return "<figure><div class=\"panels\">" + panels + "</div><figcaption>" +
-         bold(curves.at("profile").get<std::string>()) +
-         ": wavelet bands over the trace (Fig. 7 of the paper), " + unit +
+         html_bold(curves["profile"].verbatim()) +
+         ": wavelet bands over the trace (Fig. 7 of the paper), " + html_unit(curves) +
          ", from the lowest to the highest value of each stretch; left the approximations, right "
          "the details. <b>Good:</b> the last approximation has kept the whole form, and the "
          "details look like noise, without form and without large values at the ends.</figcaption>"
          "</figure>\n";
 }
 
-std::string each_profile(const Json& report,
-                         std::string (*picture)(const Json&, const std::string&),
-                         const std::string& prefix) {
-  if (!has(report, "curves")) return "";
-  std::string out;
-  std::size_t index = 0;
-  for (const Json& curves : list_of(report.at("curves"), "profiles"))
-    out += picture(curves, numbered(prefix, index++));
-  return out;
-}
-
 }  // namespace
 
-std::string html_pictures(const Json& report) {
+std::string html_pictures(const Node& report) {
   return html_profile_pictures(report) + straightness(report) + correlations(report) +
-         html_section("residual", "Is the residual noise?", each_profile(report, residual, "n")) +
-         html_section("bands", "Wavelet bands", each_profile(report, bands, "w"));
+         html_section("residual", "Is the residual noise?",
+                      html_each_profile(report, "n", residual)) +
+         html_section("bands", "Wavelet bands", html_each_profile(report, "w", bands));
 }
 
 }  // namespace slideway

@@ -18,10 +18,7 @@ constexpr double kLeft = 62.0, kRight = 10.0, kBottom = 40.0, kLegendRow = 16.0;
 constexpr std::size_t kPoints = 800;  // of a line: more than the picture has columns
 constexpr double kMostDecades = 5.0;  // of a logarithmic axis, below its largest
 
-std::string coordinate(double value) {
-  if (!std::isfinite(value)) throw DataError("a number is beyond all measure");
-  return fixed_point(value, 1);
-}
+std::string coordinate(double value) { return fixed_point(finite(value), 1); }
 
 std::string attribute(const char* name, double value) {
   return std::string(" ") + name + "=\"" + coordinate(value) + "\"";
@@ -47,6 +44,14 @@ std::string tick_text(double value, double step) {
   return text.front() == '-' ? "−" + text.substr(1) : text;
 }
 
+void require_one_length(const Plot::Text& plot, const std::vector<double>& positions,
+                        const std::vector<double>& values) {
+  if (positions.size() != values.size())
+    throw DataError(printable(plot.title, 80) + ": a curve has " +
+                    counted(positions.size(), "position") + " and " +
+                    counted(values.size(), "value") + "; accepted: as many of both");
+}
+
 }  // namespace
 
 struct Plot::Axis {
@@ -66,7 +71,7 @@ struct Plot::Axis {
     return from + (to - from) * at;
   }
   void settle(bool padded) {
-    if (!std::isfinite(high - low)) throw DataError("a number is beyond all measure");
+    finite(high - low);
     if (logarithmic) return settle_logarithmic();
     if (!(high > low)) {
       const double margin = std::max(std::abs(low) * 0.1, 1e-12);
@@ -118,7 +123,7 @@ Plot& Plot::log_y() {
 
 Plot& Plot::line(std::string name, std::string style, std::vector<double> x,
                  std::vector<double> y) {
-  if (x.size() != y.size()) throw DataError("a curve has not as many positions as values");
+  require_one_length(text_, x, y);
   if (x.empty()) return *this;
   Line line{std::move(name), std::move(style), {}, {}, {}};
   for (const std::size_t i : thinned({y}, kPoints)) {
@@ -131,8 +136,8 @@ Plot& Plot::line(std::string name, std::string style, std::vector<double> x,
 
 Plot& Plot::band(std::string name, std::string style, std::vector<double> x,
                  std::vector<double> low, std::vector<double> high) {
-  if (x.size() != low.size() || x.size() != high.size())
-    throw DataError("a curve has not as many positions as values");
+  require_one_length(text_, x, low);
+  require_one_length(text_, x, high);
   if (!x.empty())
     lines_.push_back(
         {std::move(name), std::move(style), std::move(x), std::move(low), std::move(high)});

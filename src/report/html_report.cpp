@@ -1,7 +1,5 @@
 #include "html_page.hpp"
 #include "html_parts.hpp"
-#include "slideway/base/error.hpp"
-#include "slideway/base/text.hpp"
 #include "slideway/report/report.hpp"
 
 namespace slideway {
@@ -46,16 +44,16 @@ std::string page_of(const std::string& title, const std::string& subtitle,
   return out + "</body>\n</html>\n";
 }
 
-std::string report_page(const Json& report) {
-  const std::string given = text_of(report, "title");
+std::string report_page(const Node& report) {
+  const std::string given = html_text(report["title"]);
   const std::string title = given.empty() ? "Carriage errors from a turned face" : given;
   return page_of(title,
                  "Carriage errors of a lathe from the flatness of a turned face · slideway " +
-                     text_of(report, "version"),
+                     html_text(report["version"]),
                  html_verdict(report) + html_pictures(report) + html_tables(report));
 }
 
-std::string columns_page(const Json& document) {
+std::string columns_page(const Node& document) {
   HtmlTable table("Largest coefficient in the low band first",
                   {{"candidate", Column::text},
                    {"raw", Column::number},
@@ -64,44 +62,23 @@ std::string columns_page(const Json& document) {
                    {"at that lag", Column::number},
                    {"effective values", Column::number},
                    {"p", Column::number}});
-  const auto cell = [](const Json& row, const char* key) {
-    return html_number(row.at(key).get<double>(), 3);
-  };
-  for (const Json& row : list_of(document, "ranking"))
-    table.add({text_of(row, "candidate"), cell(row, "raw"), cell(row, "low_band"), cell(row, "lag"),
-               cell(row, "lag_coefficient"), cell(row, "effective_observations"),
-               html_probability(row.at("p_value").get<double>())});
-  const std::string title = "Correlation with column " + text_of(document, "signal");
-  return page_of(title, text_of(document, "file") + " · slideway",
+  for (const Node& row : document["ranking"].entries())
+    table.add({html_text(row["candidate"]), html_cell(row["raw"], 3), html_cell(row["low_band"], 3),
+               html_cell(row["lag"], 3), html_cell(row["lag_coefficient"], 3),
+               html_cell(row["effective_observations"], 3),
+               html_probability(row["p_value"].number())});
+  return page_of("Correlation with column " + html_text(document["signal"]),
+                 html_text(document["file"]) + " · slideway",
                  html_section("verdict", "Ranking", table.html()));
-}
-
-std::string page_of(const Json& document) {
-  if (!document.is_object() || !has(document, "schema"))
-    throw DataError(
-        "is no report: it has no 'schema'; accepted: slideway.report/1, slideway.columns/1");
-  const Json& schema = document.at("schema");
-  if (schema == "slideway.report/1") return report_page(document);
-  if (schema == "slideway.columns/1") return columns_page(document);
-  throw DataError("schema '" +
-                  printable(schema.is_string() ? schema.get<std::string>() : schema.type_name()) +
-                  "' is not known; accepted: slideway.report/1, slideway.columns/1");
 }
 
 }  // namespace
 
-std::string html_report(std::string_view json) {
-  try {
-    return page_of(Json::parse(json));
-  } catch (const Json::parse_error& error) {
-    throw DataError("is no JSON: wrong at byte " + std::to_string(error.byte) +
-                    "; accepted: what --json writes");
-  } catch (const Json::exception& error) {
-    const std::string what = error.what();
-    throw DataError(
-        "is no report of slideway: " + printable(what.substr(what.find("] ") + 2), 120) +
-        "; accepted: what --json writes");
-  }
+std::string html_report(std::string_view json, const std::string& name) {
+  return read_document(json, name, {kReportSchema, kColumnsSchema}, [](const Node& document) {
+    return document["schema"].verbatim() == kReportSchema ? report_page(document)
+                                                          : columns_page(document);
+  });
 }
 
 }  // namespace slideway

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <map>
 
 #include "html_parts.hpp"
@@ -10,7 +9,7 @@ using Column = HtmlTable::Column;
 
 // --- what-if --------------------------------------------------------------------------------
 
-std::string what_if(const Json& report) {
+std::string what_if(const Node& report) {
   HtmlTable table("Flatness predicted if one source alone were corrected",
                   {{"profile", Column::text},
                    {"corrected", Column::text},
@@ -18,16 +17,16 @@ std::string what_if(const Json& report) {
                    {"rms", Column::number},
                    {"peak to valley, of the measured", Column::number}});
   std::map<std::string, double> measured;
-  for (const Json& each : list_of(report, "what_if")) {
-    const std::string profile = each.at("profile").get<std::string>();
-    const std::string corrected = each.at("corrected").get<std::string>();
-    const double pv = (has(each, "pv_um") ? each.at("pv_um") : each.at("pv_urad")).get<double>();
+  for (const Node& each : report["what_if"].entries()) {
+    const std::string& profile = each["profile"].verbatim();
+    const std::string& corrected = each["corrected"].verbatim();
+    const double pv = each[each.has("pv_um") ? "pv_um" : "pv_urad"].number();
     if (corrected.empty()) measured[profile] = pv;
     const double whole = measured[profile];
     table.add({escaped(profile),
                corrected.empty()    ? "nothing (as measured)"
                : corrected == "all" ? "all sources of the final model"
-                                    : "<b>" + escaped(corrected) + "</b>",
+                                    : html_bold(corrected),
                html_size(each, "pv"), html_size(each, "rms"),
                whole > 0.0 ? html_number(100.0 * pv / whole, 3) + " %" : "–"});
   }
@@ -44,7 +43,7 @@ std::string what_if(const Json& report) {
 
 // --- data ---------------------------------------------------------------------------------------
 
-std::string inputs(const Json& report) {
+std::string inputs(const Node& report) {
   HtmlTable files("Files", {{"profile", Column::text},
                             {"file", Column::text},
                             {"format", Column::text},
@@ -69,25 +68,23 @@ std::string inputs(const Json& report) {
        {"expected", Column::number},
        {"unit", Column::text}});
   std::vector<std::string> remarks;
-  for (const Json& in : report.at("inputs")) {
-    const std::string name = text_of(in, "name");
-    files.add({name, text_of(in, "file"), in.contains("format") ? text_of(in, "format") : "–",
-               "<code>" + text_of(in, "sha256") + "</code>"});
-    sizes.add({name, text_of(in, "kind") + " " + text_of(in, "quantity"), text_of(in, "role"),
-               html_cell(in, "samples", 9), html_cell(in, "position_min_mm", 6),
-               html_cell(in, "position_max_mm", 6), html_size(in, "rms"), html_size(in, "pv"),
-               html_cell(in, "missing", 9), html_cell(in, "left_out", 9)});
-    for (const Json& each : list_of(in, "outliers"))
-      outliers.add({name, html_cell(each, "row", 9), text_of(each, "kind"),
-                    html_cell(each, "value"), html_cell(each, "expected"),
-                    html_unit(each.at("unit").get<std::string>())});
-    for (const Json& note : list_of(in, "notes"))
-      remarks.push_back(name + ": " + escaped(note.get<std::string>()));
+  for (const Node& in : report["inputs"].entries()) {
+    const std::string name = html_text(in["name"]);
+    files.add({name, html_text(in["file"]), in.has("format") ? html_text(in["format"]) : "–",
+               "<code>" + html_text(in["sha256"]) + "</code>"});
+    sizes.add({name, html_text(in["kind"]) + " " + html_text(in["quantity"]), html_text(in["role"]),
+               html_cell(in["samples"], 9), html_cell(in["position_min_mm"], 6),
+               html_cell(in["position_max_mm"], 6), html_size(in, "rms"), html_size(in, "pv"),
+               html_cell(in["missing"], 9), html_cell(in["left_out"], 9)});
+    for (const Node& each : in["outliers"].entries())
+      outliers.add({name, html_cell(each["row"], 9), html_text(each["kind"]),
+                    html_cell(each["value"]), html_cell(each["expected"]), html_unit(each)});
+    for (const std::string& note : html_texts(in["notes"])) remarks.push_back(name + ": " + note);
   }
   return files.html() + sizes.html() + outliers.html() + html_list(remarks);
 }
 
-std::string setups(const Json& report) {
+std::string setups(const Node& report) {
   HtmlTable table("How each profile was cut and measured", {{"profile", Column::text},
                                                             {"Z, mm", Column::number},
                                                             {"overhang, mm", Column::number},
@@ -97,18 +94,18 @@ std::string setups(const Json& report) {
                                                             {"cut", Column::text},
                                                             {"cut radius, mm", Column::number},
                                                             {"stylus, mm/s", Column::number}});
-  for (const Json& s : list_of(report, "setups"))
-    table.add({text_of(s, "profile"), html_cell(s, "z_mm"), html_cell(s, "overhang_mm"),
-               html_cell(s, "center_mm"), html_cell(s, "feed_mm_per_min"),
-               html_cell(s, "spindle_rpm"),
-               has(s, "cut_direction") ? text_of(s, "cut_direction") : "–",
-               html_cell(s, "cut_radius_mm"), html_cell(s, "traverse_mm_per_s")});
+  for (const Node& s : report["setups"].entries())
+    table.add({html_text(s["profile"]), html_cell(s["z_mm"]), html_cell(s["overhang_mm"]),
+               html_cell(s["center_mm"]), html_cell(s["feed_mm_per_min"]),
+               html_cell(s["spindle_rpm"]),
+               s.has("cut_direction") ? html_text(s["cut_direction"]) : "–",
+               html_cell(s["cut_radius_mm"]), html_cell(s["traverse_mm_per_s"])});
   return table.html();
 }
 
 // --- model and options --------------------------------------------------------------------------
 
-std::string model(const Json& report) {
+std::string model(const Node& report) {
   HtmlTable table("height = sum of these effects + levelling of the trace + noise",
                   {{"effect", Column::text},
                    {"formula", Column::text},
@@ -117,51 +114,50 @@ std::string model(const Json& report) {
                    {"cause", Column::text},
                    {"confounded with", Column::text},
                    {"separated by", Column::text}});
-  for (const Json& e : list_of(report, "model"))
-    table.add({text_of(e, "name") + (e.at("added").get<bool>() ? " <small>(added)</small>" : ""),
-               text_of(e, "formula"), text_of(e, "source"), text_of(e, "standard_name"),
-               text_of(e, "cause"), text_of(e, "confounded_with"), text_of(e, "separated_by")});
+  for (const Node& e : report["model"].entries())
+    table.add({html_text(e["name"]) + (e["added"].truth() ? " <small>(added)</small>" : ""),
+               html_text(e["formula"]), html_text(e["source"]), html_text(e["standard_name"]),
+               html_text(e["cause"]), html_text(e["confounded_with"]),
+               html_text(e["separated_by"])});
   return table.html();
 }
 
-std::string options(const Json& report) {
+void add_options(const Node& report, HtmlTable& table) {
+  const Node given = report["options"];
+  std::vector<std::string> bodies;
+  for (const Node& body : given["bodies"].entries())
+    bodies.push_back(html_text(body["name"]) + " along " + html_text(body["axis"]) + " on body " +
+                     html_text(body["lower"]));
+  table.add({"lower-body array, Eq. (1)", "0 bed, spindle, workpiece; " + joined(bodies)});
+  table.add({"lever", html_text(given["lever"])});
+  table.add({"closed loop", report.has("trace")
+                                ? "at most " + html_text(given["max_effects"]) +
+                                      " effects, significance " + html_text(given["significance"])
+                                : "not run"});
+  table.add({"candidates of the loop", joined(html_texts(given["candidates"]))});
+  for (const Node& prior : given["priors"].entries())
+    table.add({"prior on " + html_text(prior["parameter"]),
+               html_number(prior["value"].number(), 6) + ", standard uncertainty " +
+                   html_number(prior["standard_uncertainty"].number(), 3)});
+  if (!given.has("runout")) return;
+  const Node r = given["runout"];
+  table.add({"run-out, Eq. (21)",
+             "r = " + html_cell(r["r_um"]) + " µm, p = " + html_cell(r["p_um"]) +
+                 " µm over L = " + html_cell(r["diameter_mm"]) + " mm, standard uncertainty " +
+                 html_cell(r["standard_uncertainty_um"]) + " µm"});
+}
+
+std::string options(const Node& report) {
   HtmlTable table("Software and options", {{"option", Column::text}, {"value", Column::text}});
-  table.add(
-      {"software", "slideway " + text_of(report, "version") + ", " + text_of(report, "schema")});
-  const Json& low = report.at("low_band");
-  table.add({"low band", low.at("level") == 0
+  table.add({"software",
+             "slideway " + html_text(report["version"]) + ", " + html_text(report["schema"])});
+  const Node low = report["low_band"];
+  table.add({"low band", low["level"].number() == 0.0
                              ? "none, the profiles as they are"
-                             : text_of(low, "wavelet") + ", level " + text_of(low, "level") +
-                                   ", ends " + text_of(low, "boundary") + ", " +
-                                   text_of(low, "values") + " values"});
-  if (has(report, "options")) {
-    const Json& given = report.at("options");
-    std::string bodies;
-    for (const Json& body : list_of(given, "bodies"))
-      bodies += (bodies.empty() ? "" : ", ") + text_of(body, "name") + " along " +
-                text_of(body, "axis") + " on body " + text_of(body, "lower");
-    table.add({"lower-body array, Eq. (1)", "0 bed, spindle, workpiece; " + bodies});
-    table.add({"lever", text_of(given, "lever")});
-    std::string names;
-    for (const Json& name : list_of(given, "candidates"))
-      names += (names.empty() ? "" : ", ") + escaped(name.get<std::string>());
-    table.add({"closed loop", has(report, "trace")
-                                  ? "at most " + text_of(given, "max_effects") +
-                                        " effects, significance " + text_of(given, "significance")
-                                  : "not run"});
-    table.add({"candidates of the loop", names});
-    for (const Json& prior : list_of(given, "priors"))
-      table.add({"prior on " + text_of(prior, "parameter"),
-                 html_number(prior.at("value").get<double>(), 6) + ", standard uncertainty " +
-                     html_number(prior.at("standard_uncertainty").get<double>(), 3)});
-    if (has(given, "runout")) {
-      const Json& r = given.at("runout");
-      table.add({"run-out, Eq. (21)",
-                 "r = " + html_cell(r, "r_um") + " µm, p = " + html_cell(r, "p_um") +
-                     " µm over L = " + html_cell(r, "diameter_mm") + " mm, standard uncertainty " +
-                     html_cell(r, "standard_uncertainty_um") + " µm"});
-    }
-  }
+                             : html_text(low["wavelet"]) + ", level " + html_text(low["level"]) +
+                                   ", ends " + html_text(low["boundary"]) + ", " +
+                                   html_text(low["values"]) + " values"});
+  if (report.has("options")) add_options(report, table);
   return table.html();
 }
 
@@ -187,16 +183,17 @@ std::string to_fill_in() {
         "Workpiece, clamping, tool; when measured after cutting",
         "Temperature at start and end, warm-up", "Compensation active in the control (yes/no)"})
     rows += std::string("<tr><th scope=\"row\">") + what + "</th><td></td></tr>\n";
-  return "<div class=\"scroll\" tabindex=\"0\" role=\"group\"><table class=\"fill\"><caption>Not "
-         "in the "
-         "files, to be filled in (ISO 230-1, ISO/IEC 17025)</caption><tbody>\n" +
-         rows + "</tbody></table></div>\n";
+  return html_scroll(
+             "<table class=\"fill\"><caption>Not in the files, to be filled in (ISO 230-1, ISO/IEC "
+             "17025)</caption><tbody>\n" +
+             rows + "</tbody></table>") +
+         "\n";
 }
 
 }  // namespace
 
-std::string html_tables(const Json& report) {
-  return what_if(report) + html_uncertainty(report) + html_loop_tables(report) +
+std::string html_tables(const Node& report) {
+  return what_if(report) + html_uncertainty(report) + html_loop(report) +
          html_section("data", "Data", inputs(report) + setups(report)) +
          html_section("model", "Model and options",
                       model(report) + options(report) + conventions() + to_fill_in());

@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <span>
 
 #include "html_parts.hpp"
-#include "slideway/base/error.hpp"
 
 namespace slideway {
 namespace {
@@ -10,39 +11,28 @@ namespace {
 using Column = HtmlTable::Column;
 constexpr std::size_t kLargest = 20;  // correlations listed
 
-std::string plain(const std::string& text) { return text.empty() ? "" : "<p>" + text + "</p>\n"; }
-
-std::string notes(const Json& owner, const char* key, const std::string& title) {
-  std::vector<std::string> items;
-  for (const Json& note : list_of(owner, key)) items.push_back(escaped(note.get<std::string>()));
-  return items.empty() ? "" : "<h3>" + title + "</h3>\n" + html_list(items);
-}
-
-std::string budget_heading(const Json& line) {
-  return text_of(line, "source") + " <small>(type " + text_of(line, "type") + ")</small>";
+std::string budget_heading(const Node& line) {
+  return html_text(line["source"]) + " <small>(type " + html_text(line["type"]) + ")</small>";
 }
 
 /// A parameter a row, a source a column; every parameter has the same sources.
-std::string budget(const Json& report) {
-  const Json& budgets = list_of(report, "uncertainty_budget");
+std::string budget(const Node& report) {
+  const std::vector<Node> budgets = report["uncertainty_budget"].entries();
   if (budgets.empty()) return "";
-  const Json& sources = list_of(budgets.front(), "lines");
+  const std::vector<Node> sources = budgets.front()["lines"].entries();
   std::vector<std::pair<std::string, Column>> columns{{"parameter", Column::text},
                                                       {"unit", Column::text}};
-  for (const Json& line : sources) columns.emplace_back(budget_heading(line), Column::number);
+  for (const Node& line : sources) columns.emplace_back(budget_heading(line), Column::number);
   columns.emplace_back("combined u", Column::number);
   HtmlTable table("Uncertainty budget: contribution to u, and its share of u²", columns);
-  for (const Json& each : budgets) {
-    const Json& lines = list_of(each, "lines");
-    if (lines.size() != sources.size())
-      throw DataError("the parameters of 'uncertainty_budget' differ in their sources");
+  for (const Node& each : budgets) {
+    const std::vector<Node> lines = each["lines"].entries();
+    if (lines.size() != sources.size()) each["lines"].fail("as many sources as the first has");
     double total = 0.0;
-    for (const Json& line : lines)
-      total += std::pow(line.at("standard_uncertainty").get<double>(), 2);
-    std::vector<std::string> cells{text_of(each, "parameter"),
-                                   html_unit(each.at("unit").get<std::string>())};
-    for (const Json& line : lines) {
-      const double u = line.at("standard_uncertainty").get<double>();
+    for (const Node& line : lines) total += std::pow(line["standard_uncertainty"].number(), 2);
+    std::vector<std::string> cells{html_text(each["parameter"]), html_unit(each)};
+    for (const Node& line : lines) {
+      const double u = line["standard_uncertainty"].number();
       const double share = total > 0.0 ? 100.0 * u * u / total : 0.0;
       cells.push_back(html_number(u, 2) + "<br><small>" +
                       html_number(std::round(10.0 * share) / 10.0, 3) + " %</small>");
@@ -53,7 +43,7 @@ std::string budget(const Json& report) {
   return table.html();
 }
 
-std::string noise(const Json& fit) {
+std::string noise(const Node& fit) {
   HtmlTable table(
       "How the uncertainties were scaled: noise of one low-band value, AR(p) "
       "correlation of the residual",
@@ -64,28 +54,25 @@ std::string noise(const Json& fit) {
        {"correlation length, mm", Column::number},
        {"effective values", Column::number},
        {"Ljung-Box p", Column::number}});
-  for (const Json& n : list_of(fit, "noise"))
-    table.add({text_of(n, "profile"), text_of(n, "scaling"), html_cell(n, "order"),
-               html_size(n, "standard_deviation"), html_cell(n, "correlation_mm", 3),
-               html_cell(n, "effective_observations", 3),
-               html_probability(n.at("ljung_box_p").get<double>())});
+  for (const Node& n : fit["noise"].entries())
+    table.add({html_text(n["profile"]), html_text(n["scaling"]), html_cell(n["order"]),
+               html_size(n, "standard_deviation"), html_cell(n["correlation_mm"], 3),
+               html_cell(n["effective_observations"], 3),
+               html_probability(n["ljung_box_p"].number())});
   return table.html();
 }
 
-std::string correlations(const Json& fit) {
-  std::vector<Json> pairs = list_of(fit, "correlations").get<std::vector<Json>>();
-  const auto size = [](const Json& pair) { return std::abs(pair.at(2).get<double>()); };
-  std::stable_sort(pairs.begin(), pairs.end(),
-                   [&](const Json& a, const Json& b) { return size(a) > size(b); });
+std::string correlations(const Node& fit) {
+  std::vector<Correlation> pairs = fit["correlations"].list(correlation);
+  std::ranges::stable_sort(pairs, std::greater(),
+                           [](const Correlation& pair) { return std::abs(std::get<2>(pair)); });
+  const std::size_t listed = std::min(kLargest, pairs.size());
   HtmlTable table(
-      "Correlation of the estimates (declared model), the " +
-          std::to_string(std::min(kLargest, pairs.size())) + " largest of " +
-          std::to_string(pairs.size()) + " above 0.1",
+      "Correlation of the estimates (declared model), the " + std::to_string(listed) +
+          " largest of " + std::to_string(pairs.size()) + " above 0.1",
       {{"parameter", Column::text}, {"parameter", Column::text}, {"ρ", Column::number}});
-  for (std::size_t i = 0; i < std::min(kLargest, pairs.size()); ++i)
-    table.add({escaped(pairs[i].at(0).get<std::string>()),
-               escaped(pairs[i].at(1).get<std::string>()),
-               html_number(pairs[i].at(2).get<double>(), 4)});
+  for (const auto& [a, b, coefficient] : std::span(pairs).first(listed))
+    table.add({escaped(a), escaped(b), html_number(coefficient, 4)});
   return table.html();
 }
 
@@ -97,31 +84,32 @@ std::string covered() {
          "combined uncertainty by hand (GUM 5; ISO/TR 230-9).</p>\n";
 }
 
-std::string uncertainty(const Json& report) {
+std::string levelling(const Node& fit) {
+  HtmlTable table("Levelling of the traces, found with the parameters",
+                  {{"trace", Column::text}, {"value ± U", Column::number}, {"unit", Column::text}});
+  for (const Node& p : fit["nuisances"].entries()) {
+    const auto value = p["value"].number_or_null(), U = p["expanded_uncertainty"].number_or_null();
+    if (value && U) table.add({html_text(p["name"]), html_pair(*value, *U), html_unit(p)});
+  }
+  return table.html();
+}
+
+std::string uncertainty(const Node& report) {
   std::string out = budget(report);
-  if (has(report, "fit")) {
-    const Json& fit = report.at("fit");
-    out += noise(fit) + correlations(fit);
-    HtmlTable levelling(
-        "Levelling of the traces, found with the parameters",
-        {{"trace", Column::text}, {"value ± U", Column::number}, {"unit", Column::text}});
-    for (const Json& p : list_of(fit, "nuisances")) {
-      const auto value = number_of(p, "value"), U = number_of(p, "expanded_uncertainty");
-      if (value && U)
-        levelling.add({text_of(p, "name"), html_pair(*value, *U),
-                       html_unit(p.at("unit").get<std::string>())});
-    }
-    out += levelling.html() + covered() + notes(fit, "notes", "Notes of the fit");
+  if (report.has("fit")) {
+    const Node fit = report["fit"];
+    const std::string notes = html_list(html_texts(fit["notes"]));
+    out += noise(fit) + correlations(fit) + levelling(fit) + covered() +
+           (notes.empty() ? "" : "<h3>Notes of the fit</h3>\n" + notes);
   }
   return html_section("uncertainty", "Uncertainty", out);
 }
 
 // --- what can not be determined -----------------------------------------------------------------
 
-std::string in_words(const Json& combination) {
+std::string in_words(const Node& combination) {
   std::string out;
-  for (const auto& [name, factor] : combination.items()) {
-    const double value = factor.get<double>();
+  for (const auto& [name, value] : combination.named_numbers()) {
     out += out.empty() ? (value < 0.0 ? "−" : "") : (value < 0.0 ? " − " : " + ");
     const std::string size = html_number(std::abs(value), 3);
     out += (size == "1" ? "" : size + " ") + escaped(name);
@@ -129,33 +117,32 @@ std::string in_words(const Json& combination) {
   return out;
 }
 
-std::string identifiability(const Json& report) {
-  if (!has(report, "fit")) return "";
-  const Json& what = report.at("fit").at("identifiability");
+std::string identifiability(const Node& report) {
+  if (!report.has("fit")) return "";
+  const Node what = report["fit"]["identifiability"];
   HtmlTable lost("Directions in which no prediction changes",
                  {{"combination", Column::text}, {"what would determine it", Column::text}});
-  for (const Json& direction : list_of(what, "unidentifiable"))
-    lost.add({in_words(direction.at("combination")), text_of(direction, "advice")});
+  for (const Node& direction : what["unidentifiable"].entries())
+    lost.add({in_words(direction["combination"]), html_text(direction["advice"])});
   HtmlTable found(
       "What the data determine instead",
       {{"combination", Column::text}, {"value ± U", Column::number}, {"unit", Column::text}});
-  for (const Json& sum : list_of(what, "determined"))
-    found.add(
-        {in_words(sum.at("combination")),
-         html_pair(sum.at("value").get<double>(), sum.at("expanded_uncertainty").get<double>()),
-         html_unit(sum.at("unit").get<std::string>())});
+  for (const Node& sum : what["determined"].entries())
+    found.add({in_words(sum["combination"]),
+               html_pair(sum["value"].number(), sum["expanded_uncertainty"].number()),
+               html_unit(sum)});
   return html_section(
       "identifiability", "What can not be determined",
-      plain((lost.empty() ? "All parameters of the declared model are determined: rank "
-                          : "The declared model has rank ") +
-            text_of(what, "rank") + " of " + text_of(what, "parameters") + ", condition " +
-            html_number(what.at("condition").get<double>(), 3) + ".") +
-          lost.html() + found.html());
+      "<p>" +
+          std::string(lost.empty() ? "All parameters of the declared model are determined: rank "
+                                   : "The declared model has rank ") +
+          html_text(what["rank"]) + " of " + html_text(what["parameters"]) + ", condition " +
+          html_number(what["condition"].number(), 3) + ".</p>\n" + lost.html() + found.html());
 }
 
 }  // namespace
 
-std::string html_uncertainty(const Json& report) {
+std::string html_uncertainty(const Node& report) {
   return uncertainty(report) + identifiability(report);
 }
 

@@ -67,6 +67,10 @@ std::string fixed_point(double value, int decimals) {
   return at_place(value, -decimals);
 }
 
+std::string counted(std::size_t count, const std::string& singular) {
+  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
 std::string with_uncertainty(double value, double uncertainty) {
   const RoundedPair plain = rounded(value, uncertainty);
   const double magnitude = std::max(std::abs(value), uncertainty);

@@ -40,10 +40,6 @@ std::string size_in(const std::optional<double>& um, const std::optional<double>
   return "-";
 }
 
-std::string counted(std::size_t count, const std::string& singular) {
-  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
-}
-
 /// With a capital and a full stop; REQUIRES a first letter of ASCII.
 std::string sentence(std::string text) {
   if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';

@@ -114,11 +114,26 @@ TEST(HtmlReport, IsMadeWithoutCurvesAndWithoutAFitToo) {
 }
 
 TEST(HtmlReport, RefusesWhatIsNoReportInOneLine) {
-  EXPECT_THAT(refusal("{"), HasSubstr("is no JSON: wrong at byte"));
-  EXPECT_THAT(refusal("[]"), HasSubstr("it has no 'schema'"));
+  EXPECT_THAT(refusal("{"), HasSubstr("report: is no JSON"));
+  EXPECT_EQ(refusal("[]"), "report: is array; accepted: an object");
   EXPECT_THAT(refusal(R"({"schema": "other/2"})"),
-              HasSubstr("schema 'other/2' is not known; accepted: slideway.report/1"));
-  EXPECT_THAT(refusal(R"({"schema": "slideway.report/1"})"), HasSubstr("key 'title' not found"));
+              HasSubstr("report: schema: is \"other/2\"; accepted: \"slideway.report/1\" or "
+                        "\"slideway.columns/1\""));
+  EXPECT_EQ(refusal(R"({"schema": "slideway.report/1"})"),
+            "report: title: is missing; accepted: a text");
+  EXPECT_THAT(refusal(std::string(1'000'000, '[')), HasSubstr("deep"));
+}
+
+TEST(HtmlReport, NamesThePlaceOfAWrongValue) {
+  const auto refusal_of = [](const char* place, const Json& value) {
+    Json report = Json::parse(sample_json());
+    report[Json::json_pointer(place)] = value;
+    return refusal(report.dump());
+  };
+  EXPECT_EQ(refusal_of("/fit/parameters/0/at_bound", 3),
+            "report: fit.parameters[0].at_bound: is number; accepted: true or false");
+  EXPECT_EQ(refusal_of("/curves/profiles/0/raw/1", "high"),
+            "report: curves.profiles[0].raw[1]: is string; accepted: a number");
 }
 
 /// Every value of a document replaced by one of another kind: a page or a DataError, nothing else.

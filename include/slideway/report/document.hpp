@@ -13,4 +13,8 @@ namespace slideway {
 ///                    place: "result.json: fit.parameters[0].unit: ..."
 Analysis read_report(const std::filesystem::path& path);
 
+/// The parameters an analysis ends with: those of the loop where it was closed, else of the fit,
+/// else none.
+const std::vector<FittedParameter>& final_parameters(const Analysis& analysis);
+
 }  // namespace slideway

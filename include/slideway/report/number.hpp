@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace slideway {
@@ -23,5 +24,8 @@ std::string with_uncertainty(double value, double uncertainty);
 /// `value` with that many digits behind the point (0 or more); never "-0".
 /// @throws std::logic_error  it is not finite
 std::string fixed_point(double value, int decimals);
+
+/// "1 row", "2 rows".
+std::string counted(std::size_t count, const std::string& singular);
 
 }  // namespace slideway

@@ -18,8 +18,9 @@ std::string json_report(const Result& result, const std::optional<TraceResult>& 
 
 /// A JSON report as one self-contained page; the same JSON always makes the same page. A report
 /// without curves makes a page without pictures of them.
-/// @throws DataError  it is no JSON, of another schema, or something in it is of the wrong kind
-std::string html_report(std::string_view json);
+/// @param name  what the JSON goes by in messages
+/// @throws DataError  as read_report()
+std::string html_report(std::string_view json, const std::string& name = "report");
 
 /// The same on one line, without the final newline: part of a longer JSON text.
 std::string json_line(const Result& result, const std::optional<TraceResult>& trace = {});
