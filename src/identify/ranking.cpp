@@ -193,34 +193,25 @@ Dominant dominant_effects(const RankingResult& ranking, const FitResult& fit) {
   return out;
 }
 
-std::vector<ColumnRanking> rank_columns(const std::filesystem::path& file,
-                                        const std::string& signal,
-                                        const std::vector<std::string>& candidates,
-                                        const LowBandOptions& options) {
-  std::vector<std::string> names{signal};
-  names.insert(names.end(), candidates.begin(), candidates.end());
-  const Table table = read_table(file, names);
-  std::vector<double> rows(table.columns.front().size());
+std::vector<ColumnRanking> rank_columns(
+    const std::vector<double>& signal,
+    const std::vector<std::pair<std::string, std::vector<double>>>& candidates,
+    const LowBandOptions& options) {
+  std::vector<double> rows(signal.size());
   std::iota(rows.begin(), rows.end(), 0.0);
-  const LowBand low_band = [&] {
-    try {
-      return LowBand(options, rows);
-    } catch (const DataError& error) {
-      throw DataError(file.string() + ": " + error.what());
-    }
-  }();
+  const LowBand low_band(options, rows);
   const auto filtered = [&](const std::vector<double>& column) {
     std::vector<double> out(low_band.values());
     low_band.apply(column, out);
     return out;
   };
-  const std::vector<double> measured = filtered(table.columns[0]);
+  const std::vector<double> measured = filtered(signal);
   std::vector<ColumnRanking> out;
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const std::vector<double> candidate = filtered(table.columns[c + 1]);
+  for (const auto& [name, column] : candidates) {
+    const std::vector<double> candidate = filtered(column);
     const Lag lag = best_lag(measured, candidate, most_lags(measured.size()));
-    ColumnRanking entry{candidates[c], pearson(table.columns[0], table.columns[c + 1]),
-                        pearson(measured, candidate), lag.lag, lag.coefficient};
+    ColumnRanking entry{name, pearson(signal, column), pearson(measured, candidate), lag.lag,
+                        lag.coefficient};
     entry.effective_observations = effective_observations(measured, candidate);
     entry.p_value = correlation_p_value(entry.low_band, entry.effective_observations);
     out.push_back(std::move(entry));
@@ -229,6 +220,23 @@ std::vector<ColumnRanking> rank_columns(const std::filesystem::path& file,
     return std::abs(a.low_band) > std::abs(b.low_band);
   });
   return out;
+}
+
+std::vector<ColumnRanking> rank_columns(const std::filesystem::path& file,
+                                        const std::string& signal,
+                                        const std::vector<std::string>& candidates,
+                                        const LowBandOptions& options) {
+  std::vector<std::string> names{signal};
+  names.insert(names.end(), candidates.begin(), candidates.end());
+  Table table = read_table(file, names);
+  std::vector<std::pair<std::string, std::vector<double>>> columns;
+  for (std::size_t c = 0; c < candidates.size(); ++c)
+    columns.emplace_back(candidates[c], std::move(table.columns[c + 1]));
+  try {
+    return rank_columns(table.columns[0], columns, options);
+  } catch (const DataError& error) {
+    throw DataError(file.string() + ": " + error.what());
+  }
 }
 
 }  // namespace slideway

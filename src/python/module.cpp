@@ -8,6 +8,7 @@
 
 #include "slideway/base/error.hpp"
 #include "slideway/identify/problem_tree.hpp"
+#include "slideway/identify/ranking.hpp"
 #include "slideway/identify/simulate.hpp"
 #include "slideway/report/report.hpp"
 #include "slideway/signal/dwt.hpp"
@@ -120,6 +121,13 @@ py::list simulated(const py::object& problem, std::optional<std::uint64_t> seed,
   return result;
 }
 
+void check_finite(const std::vector<double>& values, const std::string& what) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      throw DataError(what + ": sample " + std::to_string(i) +
+                      " is not finite; bands are made of whole profiles");
+}
+
 void check_signal(const std::vector<double>& signal, int level) {
   constexpr int kHighestLevel = 30;
   if (level < 1 || level > kHighestLevel)
@@ -129,10 +137,7 @@ void check_signal(const std::vector<double>& signal, int level) {
   if (signal.size() < needed)
     throw DataError("signal: " + std::to_string(signal.size()) + " samples; level " +
                     std::to_string(level) + " needs " + std::to_string(needed));
-  for (std::size_t i = 0; i < signal.size(); ++i)
-    if (!std::isfinite(signal[i]))
-      throw DataError("signal: sample " + std::to_string(i) +
-                      " is not finite; bands are made of whole profiles");
+  check_finite(signal, "signal");
 }
 
 py::array_t<double> rows(const std::vector<std::vector<double>>& bands) {
@@ -154,6 +159,32 @@ py::tuple decomposed(const Column& signal, const std::string& wavelet, int level
   return py::make_tuple(rows(bands.approximations), rows(bands.details));
 }
 
+py::list ranked(const Column& signal, const py::dict& candidates, const std::string& wavelet,
+                int level, const std::string& mode) {
+  const std::vector<double> measured = numbers(signal, "signal");
+  check_finite(measured, "signal");
+  std::vector<std::pair<std::string, std::vector<double>>> columns;
+  for (const auto& [key, value] : candidates) {
+    const auto name = py::cast<std::string>(key);
+    const std::string what = "candidate '" + name + "'";
+    columns.emplace_back(name, numbers(py::cast<Column>(value), what));
+    if (columns.back().second.size() != measured.size())
+      throw DataError(what + ": " + std::to_string(columns.back().second.size()) +
+                      " samples; accepted: as many as the signal has, " +
+                      std::to_string(measured.size()));
+    check_finite(columns.back().second, what);
+  }
+  const std::vector<ColumnRanking> ranking = [&] {
+    const py::gil_scoped_release unlocked;
+    return rank_columns(measured, columns, {wavelet, level, boundary(mode)});
+  }();
+  py::list result;
+  for (const ColumnRanking& row : ranking)
+    result.append(py::make_tuple(text(row.candidate), row.raw, row.low_band, row.lag,
+                                 row.lag_coefficient, row.effective_observations, row.p_value));
+  return result;
+}
+
 template <typename Error>
 void register_error(py::module_& module, const char* name, const char* doc) {
   auto& type = py::register_exception<Error>(module, name, PyExc_ValueError);
@@ -172,6 +203,8 @@ PYBIND11_MODULE(_slideway, module) {
   module.def("analyse", &analysed, py::arg("problem"), py::arg("profiles"), py::arg("data"),
              py::arg("ranks_only"), py::arg("closes_loop"));
   module.def("simulate", &simulated, py::arg("problem"), py::arg("seed"), py::arg("data"));
+  module.def("rank_columns", &ranked, py::arg("signal"), py::arg("candidates"), py::arg("wavelet"),
+             py::arg("level"), py::arg("boundary"));
   module.def("decompose", &decomposed, py::arg("signal"), py::arg("wavelet"), py::arg("level"),
              py::arg("boundary"));
 }

@@ -32,8 +32,15 @@ struct ColumnRanking {
   double p_value = 1.0;
 };
 
-/// Ranks columns of a table against one of them (Fig. 11), largest |low-band coefficient| first.
-/// @throws DataError, UsageError
+/// Ranks named columns against a signal of as many rows (Fig. 11), largest |low-band coefficient|
+/// first. REQUIRES finite values.
+/// @throws DataError  too few rows for the low band
+std::vector<ColumnRanking> rank_columns(
+    const std::vector<double>& signal,
+    const std::vector<std::pair<std::string, std::vector<double>>>& candidates,
+    const LowBandOptions& options);
+
+/// The same of columns of a table. @throws DataError, UsageError
 std::vector<ColumnRanking> rank_columns(const std::filesystem::path& file,
                                         const std::string& signal,
                                         const std::vector<std::string>& candidates,

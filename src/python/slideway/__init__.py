@@ -25,6 +25,7 @@ from slideway._slideway import DataError, UsageError, __version__
 from slideway.report import Report, made
 
 __all__ = [
+    "ColumnRanking",
     "DataError",
     "Decomposition",
     "Report",
@@ -34,6 +35,7 @@ __all__ = [
     "decompose",
     "identify",
     "rank",
+    "rank_columns",
     "simulate",
 ]
 
@@ -46,6 +48,25 @@ class Decomposition:
     """shape (level, n): a_1 ... a_L, in the signal's unit"""
     details: NDArray[np.float64]
     """shape (level, n): d_1 ... d_L, in the signal's unit"""
+
+
+@dataclass(frozen=True)
+class ColumnRanking:
+    """One column held against a signal."""
+
+    candidate: str
+    raw: float
+    """correlation coefficient of the columns as they are"""
+    low_band: float
+    """and of their low bands"""
+    lag: int
+    """low-band values by which a shift makes the coefficient largest"""
+    lag_coefficient: float
+    """the coefficient at that shift"""
+    effective_observations: float
+    """independent values in the low bands"""
+    p_value: float
+    """chance of as large a coefficient without a connection"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +140,32 @@ def rank(
     Arguments and errors as in `identify`.
     """
     return _analysed(problem, profiles, data, True, False)
+
+
+def rank_columns(
+    signal: ArrayLike,
+    candidates: Mapping[str, ArrayLike],
+    wavelet: str = "db1",
+    level: int = 0,
+    boundary: str = "symmetric",
+) -> list[ColumnRanking]:
+    """Correlates any columns with a signal (Fig. 11): the largest low-band coefficient first.
+
+    :param signal: shape (n,), any unit
+    :param candidates: arrays of shape (n,) by name, each in any unit
+    :param wavelet: "db1" to "db19"
+    :param level: of the low band; 0: none, the columns as they are
+    :param boundary: as in `decompose`
+    :raises UsageError: an unknown wavelet or boundary
+    :raises DataError: lengths that differ, a sample that is not finite, too few for the level
+    """
+    columns = {name: np.asarray(column, float) for name, column in candidates.items()}
+    return [
+        ColumnRanking(*row)
+        for row in _slideway.rank_columns(
+            np.asarray(signal, float), columns, wavelet, level, boundary
+        )
+    ]
 
 
 def simulate(

@@ -19,6 +19,13 @@ def analyse(
 def simulate(
     problem: str | dict[str, Any], seed: int | None, data: str | os.PathLike[str] | None
 ) -> list[tuple[str, str, str, NDArray[np.float64], NDArray[np.float64]]]: ...
+def rank_columns(
+    signal: NDArray[np.float64],
+    candidates: dict[str, NDArray[np.float64]],
+    wavelet: str,
+    level: int,
+    boundary: str,
+) -> list[tuple[str, float, float, int, float, float, float]]: ...
 def decompose(
     signal: NDArray[np.float64], wavelet: str, level: int, boundary: str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
