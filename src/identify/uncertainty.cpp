@@ -12,6 +12,7 @@ namespace slideway {
 namespace {
 
 constexpr Eigen::Index kLarge = 1 << 14;  // low-band values that are worth a second thread
+constexpr double kInfinite = 1e6;  // degrees of freedom: above it k is 2, and they are rounding
 
 Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Eigen::MatrixXd& columns) {
   constexpr double kStep = 1e-3;  // of atanh π and ln σ
@@ -64,8 +65,9 @@ Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
       gradient[j] = (c * effect.derivatives[j] * c.transpose()).value();
     spread_of_variance += gradient.dot(effect.covariance * gradient);
   }
-  if (spread_of_variance > 0.0)
-    spread.degrees_of_freedom = std::max(1.0, 2.0 * variance * variance / spread_of_variance);
+  const double freedom = 2.0 * variance * variance / spread_of_variance;
+  if (spread_of_variance > 0.0 && freedom < kInfinite)
+    spread.degrees_of_freedom = std::max(1.0, freedom);
   return spread;
 }
 
@@ -106,7 +108,7 @@ Uncertainty assess(const Linearisation& linear, const std::vector<double>& weigh
 
 double coverage_factor(const std::optional<double>& degrees_of_freedom) {
   constexpr double kOutside = 0.5 * (1.0 - 0.954499736103642);  // beyond two standard deviations
-  if (!degrees_of_freedom || *degrees_of_freedom > 1e6) return 2.0;
+  if (!degrees_of_freedom) return 2.0;
   return quantile(complement(boost::math::students_t(*degrees_of_freedom), kOutside));
 }
 

@@ -252,6 +252,23 @@ TEST(Fit, OfPositionsThatAreNotUniformIsUnbiased) {
         << k;
 }
 
+// GUM G.4.2: of a type B evaluation taken as exactly known they are infinitely many.
+TEST(Fit, OfWhatAPriorAloneTellsHasNoDegreesOfFreedom) {
+  RandomStream random(12, "prior");
+  Profile face = cases::face("face", 2.0, cases::spaced(-10.0, 10.0, 2000), {});
+  for (const double x : face.positions)
+    face.values.push_back(1e-6 * x * x + 1e-4 * random.normal());
+  face.free_tilt = true;
+  DeclaredEffect straightness = cases::effect("straightness", 2);
+  straightness.priors = {{"b0", 2.41e-4, 2.9e-7}, {"b1", -5.19e-7, 2.9e-10}};
+  const FitResult result = fitted(cases::problem(Lever::split, 0, {straightness}), {face});
+  for (const char* name : {"straightness.b0", "straightness.b1"}) {
+    EXPECT_EQ(result.find(name)->degrees_of_freedom, std::nullopt) << name;
+    EXPECT_EQ(result.find(name)->coverage_factor, 2.0) << name;
+  }
+  EXPECT_NE(result.find("straightness.b2")->degrees_of_freedom, std::nullopt);
+}
+
 TEST(Fit, FindsTheTimeConstantOfADriftFromTwoFeeds) {
   constexpr double kAmplitude = 0.4, kTimeConstant = 240.0;  // µm, s
   const auto error = [&](const turning::ToolPoint& tool) {
