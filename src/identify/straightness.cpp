@@ -121,7 +121,8 @@ std::vector<ReferenceLine> reference_lines(const Eigen::VectorXd& positions,
           least_squares(positions, heights), minimum_zone(positions, heights)};
 }
 
-std::optional<IdentifiedStraightness> identified_straightness(const Model& model, const Fit& fit) {
+std::optional<IdentifiedStraightness> identified_straightness(const Model& model, const Fit& fit,
+                                                              const MoreVariance& more) {
   const auto term = std::find_if(model.terms.begin(), model.terms.end(),
                                  [](const ModelTerm& each) { return each.name == "straightness"; });
   if (term == model.terms.end() || !(model.range.slide_max > model.range.slide_min))
@@ -139,7 +140,10 @@ std::optional<IdentifiedStraightness> identified_straightness(const Model& model
   const auto spread = [&](const Eigen::RowVectorXd& weights) {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(fit.uncertainty.basis.rows());
     row.segment(first, count) = weights * columns;
-    return fit.uncertainty.of(row);
+    Spread spread = fit.uncertainty.of(row);
+    if (more)
+      spread.standard_uncertainty = std::hypot(spread.standard_uncertainty, std::sqrt(more(row)));
+    return spread;
   };
   const Eigen::VectorXd heights = columns * fit.estimate.amplitudes.segment(first, count);
   const Eigen::VectorXd from_line = deviations * heights;

@@ -71,7 +71,7 @@ std::string straightness(const Node& report) {
           html_number(x.back(), 5) + " mm, a step of " + html_number(step, 3) +
           " mm: a limited representation of the slide." +
           (report.has("trace") && report["trace"].has("unnamed")
-               ? " U is here without what the structure without a name adds to it."
+               ? " U includes what the structure without a name adds to it."
                : "") +
           "</p>\n");
 }

@@ -36,14 +36,17 @@ Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
     const Fitted declared = fit_declared(problem, profiles);
     Analysis analysis{identify(problem, profiles, declared, options.scope), {}, {}, {}};
     if (options.with_evidence) analysis.evidence = evidence(declared.model, declared.fit);
-    std::optional<Fitted> extended;
+    ClosedLoop loop;
     if (options.closes_loop) {
-      ClosedLoop loop = close_loop(problem, profiles, declared, progress);
+      loop = close_loop(problem, profiles, declared, progress);
       analysis.trace = std::move(loop.trace);
-      extended = std::move(loop.extended);
     }
     if (options.with_details) {
-      analysis.details = make_details(problem, declared, extended ? &*extended : nullptr);
+      MoreVariance unnamed;
+      if (loop.widening)
+        unnamed = [&](const Eigen::RowVectorXd& row) { return loop.widening->variance(row); };
+      analysis.details =
+          make_details(problem, declared, loop.extended ? &*loop.extended : nullptr, unnamed);
       if (analysis.trace && analysis.trace->unnamed)
         add_widening(*analysis.trace, analysis.details->budget);
     }

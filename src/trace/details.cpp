@@ -194,7 +194,8 @@ void add_bands(const Observation& observation, double unit, ProfileCurves& out) 
 
 }  // namespace
 
-Details make_details(const Problem& problem, const Fitted& before, const Fitted* after) {
+Details make_details(const Problem& problem, const Fitted& before, const Fitted* after,
+                     const MoreVariance& more) {
   const Fitted& last = after ? *after : before;
   Details out;
   out.problem = problem;
@@ -219,7 +220,7 @@ Details make_details(const Problem& problem, const Fitted& before, const Fitted*
         {term.effect->description(),
          std::none_of(before.model.terms.begin(), before.model.terms.end(),
                       [&](const ModelTerm& each) { return each.name == term.name; })});
-  out.straightness = identified_straightness(last.model, last.fit);
+  out.straightness = identified_straightness(last.model, last.fit, more);
   out.budget = uncertainty_budget(last.model, last.fit);
   return out;
 }

@@ -2,12 +2,14 @@
 
 #include "slideway/identify/fit.hpp"
 #include "slideway/trace/trace.hpp"
+#include "widening.hpp"
 
 namespace slideway {
 
 struct ClosedLoop {
   TraceResult trace;
-  std::optional<Fitted> extended;  // with the effects that were added; none: none was
+  std::optional<Widening> widening;  // of the final fit; none: nothing is left without a name
+  std::optional<Fitted> extended;    // with the effects that were added; none: none was
 };
 
 /// @param declared  fit_declared() of the problem

@@ -58,7 +58,8 @@ class Loop {
     const bool retracted = retract(state, last->data);
     if (retracted) last = look_at(state);
     tell("describing what is left");
-    ClosedLoop out{report(state, *last, retracted), std::nullopt};
+    ClosedLoop out;
+    out.trace = report(state, *last, retracted, out.widening);
     if (!state.added.empty()) out.extended = extender_.in_declared_band(std::move(state));
     return out;
   }
@@ -249,7 +250,8 @@ class Loop {
     return drop_small(state, kLeastSize) || changed;
   }
 
-  TraceResult report(const Extended& state, const Look& last, bool retracted) {
+  TraceResult report(const Extended& state, const Look& last, bool retracted,
+                     std::optional<Widening>& widened) {
     TraceResult out;
     const FitResult& after = extender_.summary(state);
     out.before = before_->parameters;
@@ -281,7 +283,8 @@ class Loop {
       const Structure structure = find_structure(state.model, last.data, state.fit.linear);
       out.unnamed = describe(structure, last.data, state.fit.linear);
       out.unnamed->p_value = left.p_value;
-      widen(state.model, state.fit, structure, last, out.after);
+      widened = widening(state.fit, structure, last);
+      widen(state.model, state.fit, *widened, out.after);
     }
     for (const Untestable& effect : dictionary_.not_testable)
       out.not_testable.emplace_back(effect.effect, effect.needs);

@@ -9,7 +9,7 @@
 namespace slideway {
 namespace {
 
-/// Change of the parameters by a signal in the low bands: #parameters by #signals.
+/// Change of (amplitudes, shapes) by signals in the low bands, a column each.
 Eigen::MatrixXd response(const Fit& fit, const Eigen::MatrixXd& signals) {
   const Linearisation& linear = fit.linear;
   const Eigen::Index k = linear.prior_rows.cols();
@@ -33,31 +33,40 @@ Eigen::MatrixXd response(const Fit& fit, const Eigen::MatrixXd& signals) {
     targets.middleRows(row, count) /= fit.weights[i];
     row += count;
   }
-  return fit.parameters.jacobian * least_squares(design, targets).values.topRows(k);
+  return least_squares(design, targets).values.topRows(k);
 }
 
 }  // namespace
 
-void widen(const Model& model, const Fit& fit, const Structure& structure, const Look& last,
+double Widening::variance(const Eigen::RowVectorXd& row) const {
+  const double change = refused.cols() > 0 ? (row * refused).cwiseAbs().maxCoeff() : 0.0;
+  return (row * process).squaredNorm() + change * change / 3.0;
+}
+
+Widening widening(const Fit& fit, const Structure& structure, const Look& last) {
+  Widening out;
+  out.process = response(fit, stack(fit.linear, structure.columns[0].cols(),
+                                    [&](std::size_t i) { return structure.columns[i]; })) *
+                structure.sizes.asDiagonal();
+  out.refused.resize(out.process.rows(), 0);
+  for (const Seen& each : last.seen) {
+    if (each.refined.delta_bic > -kEnough || !is_possible(each)) continue;
+    out.refused.conservativeResize(Eigen::NoChange, out.refused.cols() + 1);
+    out.refused.rightCols(1) =
+        response(fit, each.refined.columns * each.refined.projection.amplitudes);
+  }
+  return out;
+}
+
+void widen(const Model& model, const Fit& fit, const Widening& by,
            std::vector<FittedParameter>& parameters) {
-  const Eigen::MatrixXd process =
-      response(fit, stack(fit.linear, structure.columns[0].cols(),
-                          [&](std::size_t i) { return structure.columns[i]; })) *
-      structure.sizes.asDiagonal();
-  Eigen::VectorXd variance = process.rowwise().squaredNorm();
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(variance.size());
-  for (const Seen& each : last.seen)
-    if (each.refined.delta_bic <= -kEnough && is_possible(each))
-      change = change.cwiseMax(
-          response(fit, each.refined.columns * each.refined.projection.amplitudes).cwiseAbs());
-  variance += change.cwiseAbs2() / 3.0;
   const std::vector<std::string> names = model.parameter_names();
   for (std::size_t p = 0; p < names.size(); ++p) {
     const auto fitted = std::find_if(parameters.begin(), parameters.end(),
                                      [&](const FittedParameter& f) { return f.name == names[p]; });
     if (fitted == parameters.end() || !fitted->standard_uncertainty) continue;
-    fitted->standard_uncertainty = std::hypot(*fitted->standard_uncertainty,
-                                              std::sqrt(variance[static_cast<Eigen::Index>(p)]));
+    const double variance = by.variance(fit.parameters.jacobian.row(static_cast<Eigen::Index>(p)));
+    fitted->standard_uncertainty = std::hypot(*fitted->standard_uncertainty, std::sqrt(variance));
     if (fitted->expanded_uncertainty)
       fitted->expanded_uncertainty = fitted->coverage_factor * *fitted->standard_uncertainty;
   }

@@ -5,11 +5,21 @@
 
 namespace slideway {
 
-/// Widens the uncertainties of the fitted parameters for what is left and has no name: by what the
-/// process that describes it could put into them unseen, and by the largest change that one of the
-/// effects refused in spite of their gain would bring (a rectangular distribution of that half
-/// width).
-void widen(const Model& model, const Fit& fit, const Structure& structure, const Look& last,
+/// What is left and has no name widens uncertainties: by what the process that describes it could
+/// put into a fit unseen, and by the largest change that one of the effects refused in spite of
+/// their gain would bring (a rectangular distribution of that half width).
+struct Widening {
+  Eigen::MatrixXd process;  // of (amplitudes, shapes), a column each standard deviation
+  Eigen::MatrixXd refused;  // the same, a column each effect
+
+  /// Of row * (amplitudes, shapes).
+  [[nodiscard]] double variance(const Eigen::RowVectorXd& row) const;
+};
+
+Widening widening(const Fit& fit, const Structure& structure, const Look& last);
+
+/// Widens the uncertainties of the fitted parameters.
+void widen(const Model& model, const Fit& fit, const Widening& by,
            std::vector<FittedParameter>& parameters);
 
 }  // namespace slideway

@@ -1,5 +1,6 @@
 // Shapes in no catalogue are described, and the least bad name is not given.
 
+#include "slideway/trace/analysis.hpp"
 #include "trace/faces.hpp"
 
 namespace slideway {
@@ -25,6 +26,30 @@ TEST(Unnamed, TwoBumpsLiveOnTheRadius) {
   // Both halves of the diameter show it alike.
   ASSERT_TRUE(result.unnamed->odd_share);
   EXPECT_LT(*result.unnamed->odd_share, 0.05);
+}
+
+// Of a straightness of degree 2 all that is not the reference line's is b_2's: curve and parameter
+// are known alike.
+TEST(Unnamed, WidensTheStraightnessAsItsParameter) {
+  RandomStream random(11, "double_bump");
+  const turning::Hidden hidden = turning::make_hidden("double_bump", 0.2e-3, random);
+  Problem problem = problem_of({"thermal_drift"});
+  problem.effects[1].options.degree = 2;
+  const Analysis analysis =
+      analyse(problem, quarter_faces(hidden, 2, kBlunt, 11), {.with_details = true});
+  SCOPED_TRACE(story(*analysis.trace));
+  ASSERT_EQ(analysis.trace->verdict, "unnamed");
+  const FittedParameter* b2 = find(analysis.trace->after, "straightness.b2");
+  ASSERT_NE(b2, nullptr);
+  const double share = *b2->expanded_uncertainty / std::abs(*b2->value);
+  const IdentifiedStraightness& found = *analysis.details->straightness;
+  ASSERT_EQ(found.reason, "");
+  const double rounding = 1e-6 * found.expanded_uncertainty_um[0];
+  for (std::size_t i = 0; i < found.position_mm.size(); ++i)
+    EXPECT_NEAR(found.expanded_uncertainty_um[i], share * std::abs(found.deviation_um[i]),
+                rounding);
+  for (const IdentifiedStraightness::Error& error : found.errors)
+    EXPECT_NEAR(error.expanded_uncertainty_um / error.error_um, share, 1e-6 * share) << error.line;
 }
 
 TEST(Unnamed, ChirpIsNoLine) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,7 +41,11 @@ struct IdentifiedStraightness {
   std::string reason;                           // why there is none; then all else is empty
 };
 
+/// Variance that row * (amplitudes, shapes) has beside what the fit knows of.
+using MoreVariance = std::function<double(const Eigen::RowVectorXd& row)>;
+
 /// None where the model has no straightness.
-std::optional<IdentifiedStraightness> identified_straightness(const Model& model, const Fit& fit);
+std::optional<IdentifiedStraightness> identified_straightness(const Model& model, const Fit& fit,
+                                                              const MoreVariance& more = {});
 
 }  // namespace slideway

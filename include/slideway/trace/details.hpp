@@ -56,6 +56,8 @@ struct Details {
 
 /// @param before  the declared model
 /// @param after   with the effects the loop has added; null: none
-Details make_details(const Problem& problem, const Fitted& before, const Fitted* after);
+/// @param more    what the structure without a name adds
+Details make_details(const Problem& problem, const Fitted& before, const Fitted* after,
+                     const MoreVariance& more = {});
 
 }  // namespace slideway
