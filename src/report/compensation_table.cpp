@@ -132,7 +132,9 @@ void check_compensation_format(const std::string& format) {
   if (format == "heidenhain")
     throw UsageError(
         "heidenhain: is not written: of a .COM file the columns are documented (AXISPOS, BACKLASH, "
-        "one per axis), the file around them is not; accepted: " +
+        "one per axis), their widths, by which the control reads its tables, and whether a value "
+        "is "
+        "the error or its correction are not; accepted: " +
         joined(names) + "; EZX of isg can be entered at the control");
   throw UsageError("unknown format '" + printable(format) + "'" + did_you_mean(format, names) +
                    "; accepted: " + joined(names));
