@@ -34,12 +34,15 @@ std::string fingerprint_text(const ManifestItem& item, const ItemOptions& option
 }
 
 /// Has the tasks done, in any order.
-void have_done(Hands& hands, char what, const std::vector<std::size_t>& items,
-               const std::function<void(std::size_t item, Answer&)>& done) {
+void have_done(
+    Hands& hands, char what, const std::vector<std::size_t>& items,
+    const std::function<void(std::size_t item, Answer&)>& done,
+    const std::function<void()>& waited = [] {}) {
   constexpr std::chrono::seconds kAwhile{1};
   for (auto next = items.begin(); next != items.end() || hands.busy() > 0;) {
     while (next != items.end() && hands.has_idle()) hands.give(task(what, *next++));
     for (Answer& answer : hands.wait(kAwhile)) done(item_of(answer.task), answer);
+    waited();
   }
 }
 
@@ -68,10 +71,13 @@ class Batch {
                        ": is there already; accepted: --resume, or another name");
     ResultsFile results(options_->out);
     if (options_->resumes) resume(results);
-    have_done(*hands_, kIdentify, items_, [&](std::size_t item, Answer& answer) {
-      results.append(line_of(item, answer));
-      report_progress();
-    });
+    const std::size_t total = summary_.present + items_.size();
+    have_done(
+        *hands_, kIdentify, items_,
+        [&](std::size_t item, Answer& answer) { results.append(line_of(item, answer)); },
+        [&] {
+          if (*progress_) (*progress_)(summary_, total);
+        });
     return std::move(summary_);
   }
 
@@ -125,13 +131,6 @@ class Batch {
     return std::move(*answer.reply);
   }
 
-  void report_progress() {
-    if (!*progress_) return;
-    std::size_t done = 0;
-    for (const auto& [status, count] : summary_.counts) done += count;
-    (*progress_)(done, summary_.present + items_.size(), summary_.failed());
-  }
-
   const Manifest* manifest_;
   const BatchOptions* options_;
   Hands* hands_;
@@ -142,13 +141,6 @@ class Batch {
 };
 
 }  // namespace
-
-std::size_t BatchSummary::failed() const {
-  std::size_t sum = 0;
-  for (const auto& [status, count] : counts)
-    if (status != status::kOk) sum += count;
-  return sum;
-}
 
 std::string do_task(const Manifest& manifest, const ItemOptions& options, const std::string& task) {
   const ManifestItem& item = manifest.items.at(item_of(task));

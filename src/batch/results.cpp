@@ -202,6 +202,17 @@ MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& in)
   return summary;
 }
 
+std::size_t all_of(const StatusCounts& counts) {
+  std::size_t sum = 0;
+  for (const auto& [status, count] : counts) sum += count;
+  return sum;
+}
+
+std::size_t failed_of(const StatusCounts& counts) {
+  const auto ok = counts.find(status::kOk);
+  return all_of(counts) - (ok == counts.end() ? 0 : ok->second);
+}
+
 StatusCounts verify_results(const Manifest& manifest, const Shard& shard, const fs::path& results) {
   std::unordered_map<std::string, std::size_t> seen;
   for (const ManifestItem& item : manifest.items)

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "output.hpp"
+#include "progress.hpp"
 #include "report_command.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
@@ -16,6 +17,7 @@
 #include "slideway/batch/pool.hpp"
 #include "slideway/batch/workers.hpp"
 #include "slideway/report/layout.hpp"
+#include "slideway/report/number.hpp"
 
 namespace slideway {
 namespace {
@@ -138,9 +140,8 @@ class BatchCommand : public ReportCommand {
       Hands& hands = crew ? static_cast<Hands&>(*crew) : own;
       const ProgressLine line(!is_quiet());
       return run_batch(manifest, {out_, checked_shard_, resume_}, hands,
-                       [&](std::size_t done, std::size_t total, std::size_t failed) {
-                         line.show(std::to_string(done) + " of " + std::to_string(total) + ", " +
-                                   std::to_string(failed) + " failed");
+                       [&](const BatchSummary& so_far, std::size_t total) {
+                         line.show(batch_progress(so_far, total, line.elapsed()));
                        });
     }();
     std::vector<PooledMachine> machines;
@@ -148,7 +149,7 @@ class BatchCommand : public ReportCommand {
     const bool are_dates = read_times(manifest).are_dates;
     report([&] { return text(summary) + pooled_text(machines, are_dates); },
            [&] { return json(summary, pooled_json(machines, are_dates)); });
-    return summary.failed() > 0 ? kFailedItems : kDone;
+    return failed_of(summary.counts) > 0 ? kFailedItems : kDone;
   }
 
   /// Before hours of work.
@@ -159,19 +160,10 @@ class BatchCommand : public ReportCommand {
     throw DataError(manifest.path.string() + ": names no machine; accepted: a column 'machine'");
   }
 
-  static std::string items(std::size_t count) {
-    return std::to_string(count) + (count == 1 ? " item" : " items");
-  }
-
-  static std::size_t total(const StatusCounts& counts) {
-    std::size_t sum = 0;
-    for (const auto& [status, count] : counts) sum += count;
-    return sum;
-  }
-
   [[nodiscard]] std::string text(const BatchSummary& summary) const {
-    const std::size_t all = total(summary.counts), failed = summary.failed();
-    std::string line = items(all) + " in " + out_ + ": " + std::to_string(all - failed) + " ok";
+    const std::size_t all = all_of(summary.counts), failed = failed_of(summary.counts);
+    std::string line =
+        counted(all, "item") + " in " + out_ + ": " + std::to_string(all - failed) + " ok";
     if (summary.present > 0) line += " (" + std::to_string(summary.present) + " from before)";
     std::string out = paragraph("", line + ", " + std::to_string(failed) + " failed");
     for (const auto& [status, first] : summary.first)
@@ -188,20 +180,20 @@ class BatchCommand : public ReportCommand {
       first[status] = {{"id", failure.id}, {"reason", failure.reason}};
     Json out = {{"schema", "slideway.batch/1"},
                 {"version", results_version()},
-                {"items", total(summary.counts)},
+                {"items", all_of(summary.counts)},
                 {"from_before", summary.present},
-                {"failed", summary.failed()},
+                {"failed", failed_of(summary.counts)},
                 {"counts", counts},
                 {"first", first}};
     if (!pool_.empty()) out["machines"] = Json::parse(machines);
-    return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return document_text(out);
   }
 
   int merge() const {
     const std::vector<std::filesystem::path> in(words_.begin() + 2, words_.end());
     for (const std::filesystem::path& path : in) keep_input(path, words_[1]);
     const MergeSummary summary = merge_results(words_[1], in);
-    std::string line = items(summary.lines) + " in " + words_[1];
+    std::string line = counted(summary.lines, "item") + " in " + words_[1];
     if (summary.repeated > 0) line += ", " + std::to_string(summary.repeated) + " repeated";
     if (summary.torn > 0) line += ", " + std::to_string(summary.torn) + " torn lines left out";
     if (!is_quiet()) print(paragraph("", line));
@@ -210,14 +202,13 @@ class BatchCommand : public ReportCommand {
 
   int verify() const {
     const StatusCounts counts = verify_results(read_manifest(words_[1]), checked_shard_, words_[2]);
-    const std::size_t all = total(counts);
-    const auto ok = counts.find(status::kOk);
-    const std::size_t good = ok == counts.end() ? 0 : ok->second;
-    std::string line = items(all) + ", each once: " + std::to_string(good) + " ok";
+    const std::size_t all = all_of(counts), failed = failed_of(counts);
+    std::string line =
+        counted(all, "item") + ", each once: " + std::to_string(all - failed) + " ok";
     for (const auto& [status, count] : counts)
       if (status != status::kOk) line += ", " + std::to_string(count) + " " + status;
     if (!is_quiet()) print(paragraph("", line));
-    return good == all ? kDone : kFailedItems;
+    return failed == 0 ? kDone : kFailedItems;
   }
 
   std::vector<std::string> words_;

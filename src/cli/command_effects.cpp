@@ -114,7 +114,7 @@ class EffectsCommand : public ReportCommand {
     for (const std::string& name : effect_names())
       if (effect_.empty() || effect_ == name) list.push_back(json_of(name));
     const nlohmann::ordered_json document = {{"schema", "slideway.effects/1"}, {"effects", list}};
-    return document.dump(2) + "\n";
+    return document_text(document);
   }
 
   std::string effect_;

@@ -167,7 +167,7 @@ class InfoCommand : public ReportCommand {
         {"pv", or_null(values, summary.high - summary.low)},
         {"outliers", outliers},
         {"decisions", trace.decisions}};
-    return document.dump(2) + "\n";
+    return document_text(document);
   }
 
   std::string input_;

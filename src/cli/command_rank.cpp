@@ -93,7 +93,7 @@ class RankCommand : public ProblemCommand {
                                                {"level", options_.level},
                                                {"boundary", slideway::name(options_.boundary)}}},
                                              {"ranking", rows}};
-    return document.dump(2) + "\n";
+    return document_text(document);
   }
 
   std::string signal_;

@@ -3,12 +3,14 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <iostream>
 #include <stdexcept>
 #include <system_error>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
+#include "slideway/report/emphasis.hpp"
 
 namespace slideway {
 
@@ -36,13 +38,16 @@ void keep_input(const std::filesystem::path& input, const std::filesystem::path&
                      ": is the input, which would be lost; accepted: another name");
 }
 
-ProgressLine::ProgressLine(bool wanted) : shown_(wanted && isatty(STDERR_FILENO) == 1) {}
+bool obeys_escapes(Stream stream) {
+  const char* const terminal = std::getenv("TERM");
+  return isatty(stream == Stream::out ? STDOUT_FILENO : STDERR_FILENO) == 1 &&
+         terminal != nullptr && std::string_view(terminal) != "dumb";
+}
 
-ProgressLine::~ProgressLine() { show(""); }
-
-void ProgressLine::show(std::string_view stage) const {
-  constexpr std::string_view kEraseLine = "\r\033[K";
-  if (shown_) std::cerr << kEraseLine << stage << std::flush;
+void print_report(const std::string& text) {
+  const char* const refused = std::getenv("NO_COLOR");
+  const bool coloured = (refused == nullptr || *refused == '\0') && obeys_escapes(Stream::out);
+  print(coloured ? with_emphasis(text) : text);
 }
 
 void say(std::string_view message) {

@@ -16,20 +16,14 @@ void write_output(const std::string& path, std::string_view text);
 /// @throws UsageError  the output would replace the input
 void keep_input(const std::filesystem::path& input, const std::filesystem::path& output);
 
-/// What the program is at, on one line of stderr that is overwritten and gone in the end; nothing
-/// where stderr is no terminal.
-class ProgressLine {
- public:
-  explicit ProgressLine(bool wanted);
-  ~ProgressLine();
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
+enum class Stream { out, err };
 
-  void show(std::string_view stage) const;
+/// Whether a stream ends in a terminal that obeys escape sequences.
+bool obeys_escapes(Stream stream);
 
- private:
-  bool shown_;
-};
+/// print() of a text whose headings and verdicts are coloured where that is seen: on a terminal,
+/// unless NO_COLOR is set (no-color.org).
+void print_report(const std::string& text);
 
 /// A message for people, one line on stderr: "slideway: ...".
 void say(std::string_view message);

@@ -1,6 +1,9 @@
 #include "report_command.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "output.hpp"
+#include "progress.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/report/report.hpp"
 #include "slideway/trace/analysis.hpp"
@@ -33,7 +36,11 @@ void ReportCommand::report(const std::function<std::string()>& text,
     if (!json_.empty()) write_output(json_, document);
     if (!html_.empty()) write_output(html_, html_report(document));
   }
-  if (!is_quiet() && json_ != "-" && html_ != "-") print(text());
+  if (!is_quiet() && json_ != "-" && html_ != "-") print_report(text());
+}
+
+std::string ReportCommand::document_text(const nlohmann::ordered_json& document) {
+  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 ProblemCommand::ProblemCommand(std::string name, std::string arguments, std::string summary)
@@ -58,9 +65,11 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
     entry.source.request.ignore_checksum = ignore_checksum_;
   }
   const Analysis analysis = [&] {
-    const ProgressLine line(closes_loop && !is_quiet());
-    return analyse(problem, read_profiles(problem),
-                   {scope, closes_loop, closes_loop || wants_json()},
+    StageLine line(!is_quiet());
+    line.show("reading");
+    const std::vector<Profile> profiles = read_profiles(problem);
+    line.show("fitting the declared model");
+    return analyse(problem, profiles, {scope, closes_loop, closes_loop || wants_json()},
                    [&](const std::string& stage) { line.show("closing the loop: " + stage); });
   }();
   report([&] { return text_report(analysis.result, analysis.trace, analysis.details); },

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -25,6 +26,9 @@ class ReportCommand : public Command {
 
   /// @throws UsageError  an output would replace the input
   void keep(const std::filesystem::path& input) const;
+
+  /// A document as --json writes it; what is no UTF-8 in it, a file's name, is replaced.
+  static std::string document_text(const nlohmann::ordered_json& document);
 
   [[nodiscard]] bool wants_json() const { return !json_.empty() || !html_.empty(); }
 

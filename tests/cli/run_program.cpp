@@ -83,7 +83,8 @@ ProgramRun run_program(const std::vector<std::string>& arguments, const ProgramS
   else
     require(::posix_spawn_file_actions_addopen(actions.get(), 1, setup.stdout_to.c_str(),
                                                O_WRONLY | O_CREAT, 0666));
-  require(::posix_spawn_file_actions_adddup2(actions.get(), err.descriptor(), 2));
+  require(::posix_spawn_file_actions_adddup2(
+      actions.get(), setup.stderr_number >= 0 ? setup.stderr_number : err.descriptor(), 2));
 
   std::vector<std::string> words{SLIDEWAY_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());

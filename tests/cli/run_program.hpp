@@ -22,6 +22,7 @@ struct ProgramSetup {
   std::filesystem::path stdout_to;                      // instead of being captured
   std::map<std::string, std::string> environment = {};  // added; SLIDEWAY_DATA is never passed on
   int stdout_number = -1;                               // a descriptor to be stdout
+  int stderr_number = -1;                               // and stderr
   int signal = 0;                                       // sent after so long
   std::chrono::microseconds signal_after{};
 };

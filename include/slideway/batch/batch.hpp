@@ -22,11 +22,10 @@ struct BatchSummary {
     std::string id, reason;
   };
   std::map<std::string, Failure> first;  // of every cause, by the manifest's order
-  [[nodiscard]] std::size_t failed() const;
 };
 
-/// Told now and then how far it is.
-using BatchProgress = std::function<void(std::size_t done, std::size_t total, std::size_t failed)>;
+/// Told how far it is, of how many items: with every answer, and every second between them.
+using BatchProgress = std::function<void(const BatchSummary& so_far, std::size_t total)>;
 
 /// What a task of run_batch() is: for those who do the work. A task is about one item of the same
 /// manifest.

@@ -71,6 +71,8 @@ MergeSummary merge_results(const std::filesystem::path& out,
 
 /// How many items ended how.
 using StatusCounts = std::map<std::string, std::size_t>;
+std::size_t all_of(const StatusCounts& counts);
+std::size_t failed_of(const StatusCounts& counts);
 
 /// Checks that every id of the manifest (in this shard) stands exactly once in the results and no
 /// other does. @throws DataError  it is not so: how many, and the first

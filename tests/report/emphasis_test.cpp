@@ -1,0 +1,39 @@
+#include "slideway/report/emphasis.hpp"
+
+#include <gmock/gmock.h>
+
+#include "report/sample_result.hpp"
+#include "slideway/report/report.hpp"
+
+namespace slideway {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Emphasis, IsOfHeadingsAlone) {
+  EXPECT_EQ(with_emphasis("Title\n=====\n\nInputs\n  feed2\n    0.5 ⠀⡄\n"),
+            "\033[1mTitle\033[22m\n\033[1m=====\033[22m\n\n\033[1mInputs\033[22m\n  feed2\n    0.5 "
+            "⠀⡄\n");
+  EXPECT_EQ(with_emphasis(""), "");
+  EXPECT_EQ(with_emphasis("  no newline"), "  no newline");
+}
+
+TEST(Emphasis, HasAColourForEveryVerdict) {
+  TraceResult trace;
+  for (const auto& [verdict, colour] : {std::pair{"nothing_missing", "\033[32m"},
+                                        {"explained", "\033[32m"},
+                                        {"ambiguous", "\033[33m"},
+                                        {"unnamed", "\033[31m"},
+                                        {"not_identifiable", "\033[31m"}}) {
+    trace.verdict = verdict;
+    EXPECT_THAT(with_emphasis(text_report(sample_result(), trace)), HasSubstr(colour)) << verdict;
+  }
+  Result result = sample_result();
+  EXPECT_THAT(with_emphasis(text_report(result)), Not(HasSubstr("\033[31m")));
+  result.fit->converged = false;
+  EXPECT_THAT(with_emphasis(text_report(result)), HasSubstr("\033[31mNOT CONVERGED\033[39m"));
+}
+
+}  // namespace
+}  // namespace slideway
