@@ -52,6 +52,14 @@ TEST_F(Rank, WithoutALowBandHasOneCoefficient) {
   EXPECT_THAT(done.out, testing::Not(HasSubstr("low band")));
 }
 
+TEST_F(Rank, OfAFileWhoseNameIsNoTextIsADocument) {
+  folder_.file("\xff.csv", contents(kColumns));
+  const ProgramRun done =
+      run({"rank", "\xff.csv", "--signal", "measured", "--candidates", "error_x", "--json", "-"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(json::parse(done.out)["file"], "\uFFFD.csv");
+}
+
 TEST_F(Rank, PrintsTheColumnsOfAFileInOrder) {
   const ProgramRun done = run({"rank", kColumns, "--level", "5", "--signal", "measured",
                                "--candidates", "error_z", "error_x", "error_y"});
