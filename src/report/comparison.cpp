@@ -126,7 +126,7 @@ std::string parameter_text(const std::vector<Pair>& pairs) {
   };
   for (const Pair& p : pairs) {
     table.add({p.name, digits(p.a, 4), digits(p.b, 4), digits(p.difference, 2), digits(p.U, 2),
-               digits(p.En, 2), p.unit == "um" ? "µm" : p.unit});
+               digits(p.En, 2), unit_text(p.unit)});
     if (p.En && *p.En > 1.0) changed.push_back(p.name);
   }
   return heading("Parameters; U: expanded uncertainty of B - A, E_n = |B - A| / U") + table.text() +

@@ -18,7 +18,7 @@ std::string typeset(const std::string& text) {
   std::string exponent = text.substr(e + 1);
   const bool negative = exponent.front() == '-';
   exponent.erase(0, std::min(exponent.find_first_not_of("+-0"), exponent.size() - 1));
-  return out + " × 10<sup>" + (negative ? "−" : "") + exponent + "</sup>";
+  return out + "&nbsp;×&nbsp;10<sup>" + (negative ? "−" : "") + exponent + "</sup>";
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ std::vector<std::string> html_texts(const Node& texts) {
 }
 
 std::string html_number(double value, int digits) {
-  return typeset(significant(finite(value), digits));
+  return typeset(to_digits(finite(value), digits));
 }
 
 std::string html_pair(double value, double uncertainty) {
@@ -81,7 +81,7 @@ std::string html_pair(double value, double uncertainty) {
 }
 
 std::string html_probability(double p) {
-  return p < 1e-4 ? "&lt; 10<sup>−4</sup>" : html_number(p, 2);
+  return p < 1e-4 ? "&lt;&nbsp;10<sup>−4</sup>" : html_number(p, 2);
 }
 
 std::string html_p_value(double p) { return (p < 1e-4 ? "p " : "p = ") + html_probability(p); }

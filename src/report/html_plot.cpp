@@ -84,7 +84,7 @@ struct Plot::Axis {
       high += margin;
     }
     const double step =
-        nice_step(high - low, std::max(2.0, std::abs(to - from) / (padded ? 40.0 : 65.0)));
+        nice_step(high - low, std::max(3.0, std::abs(to - from) / (padded ? 40.0 : 65.0)));
     for (double k = std::ceil(low / step);
          k * step <= high * (1.0 + 1e-12 * (high > 0 ? 1 : -1)) && ticks.size() < 50; ++k)
       ticks.emplace_back(k * step, tick_text(k * step, step));

@@ -67,6 +67,14 @@ std::string fixed_point(double value, int decimals) {
   return at_place(value, -decimals);
 }
 
+std::string to_digits(double value, int digits) {
+  constexpr double kMillion = 1e6;
+  if (!std::isfinite(value)) throw std::logic_error("to_digits: the value is not finite");
+  if (std::abs(value) < 1.0 || std::abs(value) >= kMillion) return significant(value, digits);
+  const int place = exponent_of(value, digits - 1) + 1 - digits;
+  return place > 0 ? at_place(value, place) : significant(value, digits);
+}
+
 std::string counted(std::size_t count, const std::string& singular) {
   return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
 }

@@ -14,6 +14,8 @@ std::string note(const std::string& text);
 /// @throws std::logic_error if it is not finite
 std::string number(double value, int digits);
 std::string probability(double p);
+/// "um" as µm.
+std::string unit_text(const std::string& unit);
 
 /// The `trace` part of the report.
 std::string trace_text(const TraceResult& trace);

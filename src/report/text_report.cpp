@@ -17,9 +17,10 @@ std::string heading(const std::string& text) { return "\n" + paragraph("", text)
 std::string item(const std::string& text) { return paragraph("  ", text); }
 std::string note(const std::string& text) { return paragraph("  - ", text); }
 
-std::string number(double value, int digits) {
-  if (!std::isfinite(value)) throw std::logic_error("report: a number is not finite");
-  return significant(value, digits);
+std::string number(double value, int digits) { return to_digits(value, digits); }
+
+std::string unit_text(const std::string& unit) {
+  return unit == "um" ? "µm" : unit == "urad" ? "µrad" : unit;
 }
 
 std::string probability(double p) { return p < 1e-4 ? "< 1e-4" : number(p, 2); }
@@ -137,7 +138,7 @@ std::string value_of(const FittedParameter& p) {
 
 void add_parameter(TextTable& table, const FittedParameter& p) {
   const bool known = p.identifiable && p.value;
-  table.add({p.symbol, p.name, value_of(p), p.unit == "um" ? "µm" : p.unit,
+  table.add({p.symbol, p.name, value_of(p), unit_text(p.unit),
              known && p.expanded_uncertainty ? fixed_point(p.coverage_factor, 2) : "",
              p.at_bound ? "at its bound" : ""});
   if (!known || !p.expanded_uncertainty || !p.name.starts_with("squareness.")) return;

@@ -78,8 +78,9 @@ std::string bent(const TraceResult& trace) {
         !after->expanded_uncertainty || !(*after->expanded_uncertainty > 0.0))
       continue;
     any = true;
+    const double shift = (*before.value - *after->value) / *after->expanded_uncertainty;
     table.add({before.name, number(*before.value, 4), number(*after->value, 4),
-               number((*before.value - *after->value) / *after->expanded_uncertainty, 2)});
+               number(std::round(1000.0 * shift) / 1000.0 + 0.0, 2)});  // no -0
   }
   return any ? item("What that had done to the declared parameters:") + table.text() : "";
 }
@@ -108,10 +109,10 @@ std::string limits(const TraceResult& trace) {
     const auto [least, most] = std::ranges::minmax(limit.by_shape | std::views::values);
     return number(least, 2) + " to " + number(most, 2);
   };
-  TextTable table({"effect", "found from", "at", "other shapes"},
-                  {Column::effect, Column::text, Column::text, Column::text});
+  TextTable table({"effect", "found from", "other shapes", "at"},
+                  {Column::effect, Column::number, Column::number, Column::name});
   for (const DetectionLimit& limit : trace.detection_limits)
-    table.add({limit.effect, number(limit.value, 2) + " " + limit.unit, limit.at, extremes(limit)});
+    table.add({limit.effect, number(limit.value, 2) + " " + limit.unit, extremes(limit), limit.at});
   return item("Sizes found with 80 % probability:") + table.text();
 }
 

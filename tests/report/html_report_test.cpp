@@ -81,7 +81,7 @@ TEST(HtmlReport, SaysWhatWasMissingAndWhatItHadBent) {
 
 TEST(HtmlReport, GivesTheSquarenessInThreeUnitsWithTwoDigitsOfUncertainty) {
   const std::string page = html_report(sample_json());
-  EXPECT_THAT(page, HasSubstr("(2.800 ± 0.020) × 10<sup>−6</sup> rad"));
+  EXPECT_THAT(page, HasSubstr("(2.800 ± 0.020)&nbsp;×&nbsp;10<sup>−6</sup> rad"));
   EXPECT_THAT(page, HasSubstr("2.800 ± 0.020 µm/m"));
   EXPECT_THAT(page, HasSubstr("0.5775 ± 0.0041 ″"));  // 2.8 µm/m * 0.206265
 }

@@ -89,5 +89,15 @@ TEST(FixedPoint, RoundsAndNeverWritesMinusZero) {
   EXPECT_EQ(fixed_point(1234.5678, 0), "1235");
 }
 
+TEST(ToDigits, CountsInPlainDecimals) {
+  EXPECT_EQ(to_digits(1888.0, 3), "1890");
+  EXPECT_EQ(to_digits(-999.6, 3), "-1000");
+  EXPECT_EQ(to_digits(0.00123456, 3), "0.00123");
+  EXPECT_EQ(to_digits(12.3456, 4), "12.35");
+  EXPECT_EQ(to_digits(5.3e6, 2), "5.3e+06");
+  EXPECT_EQ(to_digits(0.0, 3), "0");
+  EXPECT_THROW(to_digits(std::numeric_limits<double>::infinity(), 3), std::logic_error);
+}
+
 }  // namespace
 }  // namespace slideway

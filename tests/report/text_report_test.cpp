@@ -179,6 +179,27 @@ TEST(TextReport, LeavesOutWhatWasNotAskedFor) {
   EXPECT_THAT(text, HasSubstr("Ranking"));
 }
 
+TEST(TextReport, ListsDetectionLimitsInColumnsHoweverLongTheirShapes) {
+  TraceResult trace;
+  trace.detection_limits = {{"edge_roll_off",
+                             "amplitude_um",
+                             "µm",
+                             140.0,
+                             "width_mm = 0.135",
+                             {{0.1, 0.32}, {2.0, 2e10}}},
+                            {"revolution_periodic",
+                             "amplitude_um",
+                             "µm",
+                             0.0113,
+                             "cycles_per_revolution = 0.01894",
+                             {{0.1, 0.0059}, {0.5, 0.015}}}};
+  const std::string text = text_report(sample_result(), trace);
+  expect_fits(text);
+  const std::string line = line_with(text, "revolution_periodic");
+  EXPECT_THAT(line, testing::ContainsRegex("0.011 µm +0.0059 to 0.015 +cycles_.*0.01894$"));
+  EXPECT_EQ(column_of(line, "cycles_"), column_of(line_with(text, "edge_roll_off"), "width_mm"));
+}
+
 TEST(TextReport, IsTheSameTextEveryTime) {
   EXPECT_EQ(text_report(sample_result()), text_report(sample_result()));
 }

@@ -25,6 +25,10 @@ std::string with_uncertainty(double value, double uncertainty);
 /// @throws std::logic_error  it is not finite
 std::string fixed_point(double value, int decimals);
 
+/// `value` with that many significant digits, in plain decimals below a million: "1890".
+/// @throws std::logic_error  it is not finite
+std::string to_digits(double value, int digits);
+
 /// "1 row", "2 rows".
 std::string counted(std::size_t count, const std::string& singular);
 
