@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -26,17 +27,22 @@ std::string cause(int error) { return std::generic_category().message(error); }
 // A file descriptor that closes itself.
 class Descriptor {
  public:
-  explicit Descriptor(int number) : number_(number) {}
+  Descriptor() = default;
   ~Descriptor() { close(); }
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
 
   [[nodiscard]] int number() const { return number_; }
+  // 0, or what went wrong.
+  int open(const fs::path& path, int flags) {
+    number_ = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+    return number_ < 0 ? errno : 0;
+  }
   // 0, or what went wrong (a full disk may tell only here).
   int close() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0 ? 0 : errno; }
 
  private:
-  int number_;
+  int number_ = -1;
 };
 
 std::string read_all(int file, const fs::path& path) {
@@ -51,18 +57,6 @@ std::string read_all(int file, const fs::path& path) {
     else if (errno != EINTR)
       throw DataError(path.string() + ": can not be read: " + cause(errno));
   }
-}
-
-// 0, or what went wrong.
-int write_all(const Descriptor& file, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(file.number(), bytes.data(), bytes.size());
-    if (count >= 0)
-      bytes.remove_prefix(static_cast<std::size_t>(count));
-    else if (errno != EINTR)
-      return errno;
-  }
-  return 0;
 }
 
 // Signals wait as long as it lives.
@@ -81,51 +75,54 @@ class SignalsHeld {
   sigset_t before_{};
 };
 
-// Makes a temporary file beside the target by `make(name)`, 0 or an error, and gives it the
-// target's name. Both under held signals, or one could leave the temporary file behind.
+// Makes a temporary file beside the target by `make(name)`, 0 or an error.
 template <typename Make>
-int replace(const fs::path& target, const Make& make) {
-  const SignalsHeld held;
+int make_beside(const fs::path& target, const Make& make, fs::path& temporary) {
   const std::string stem = ".slideway." + std::to_string(::getpid()) + ".";
   int error = EEXIST;
   for (int attempt = 0; attempt < 100 && error == EEXIST; ++attempt) {
-    const fs::path temporary = target.parent_path() / (stem + std::to_string(attempt) + ".tmp");
+    temporary = target.parent_path() / (stem + std::to_string(attempt) + ".tmp");
     error = make(temporary);
-    if (error == 0 && ::rename(temporary.c_str(), target.c_str()) != 0) {
-      error = errno;
-      ::unlink(temporary.c_str());
-    }
   }
   return error;
 }
 
-// A name for a file that has none: at once where the name is free.
-int give_name(const Descriptor& file, const fs::path& target) {
-  const std::string nameless = "/proc/self/fd/" + std::to_string(file.number());
-  const auto link = [&](const fs::path& name) {
-    const int flags = AT_SYMLINK_FOLLOW;
-    return ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), flags) == 0 ? 0 : errno;
-  };
-  const int error = link(target);
-  return error == EEXIST ? replace(target, link) : error;
+int rename_over(const fs::path& temporary, const fs::path& target) {
+  if (::rename(temporary.c_str(), target.c_str()) == 0) return 0;
+  const int error = errno;
+  ::unlink(temporary.c_str());
+  return error;
 }
 
-// For file systems where a file needs a name from the start.
-int write_named(const fs::path& target, std::string_view contents, std::optional<mode_t> mode) {
-  return replace(target, [&](const fs::path& name) {
-    Descriptor file(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-    if (file.number() < 0) return errno;
-    if (mode) ::fchmod(file.number(), *mode & 07777U);
-    int error = write_all(file, contents);
-    if (const int at_close = file.close(); error == 0) error = at_close;
-    if (error != 0) ::unlink(name.c_str());
-    return error;
-  });
-}
+class Sha256 {
+ public:
+  Sha256() : context_(::EVP_MD_CTX_new(), &::EVP_MD_CTX_free) {
+    require(context_ != nullptr &&
+            ::EVP_DigestInit_ex(context_.get(), ::EVP_sha256(), nullptr) == 1);
+  }
+  void add(std::string_view bytes) {
+    require(::EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1);
+  }
+  std::string digits() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+    unsigned size = 0;
+    require(::EVP_DigestFinal_ex(context_.get(), digest.data(), &size) == 1);
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string text;
+    for (unsigned i = 0; i < size; ++i) {
+      text += kDigits[digest[i] >> 4U];
+      text += kDigits[digest[i] & 15U];
+    }
+    return text;
+  }
 
-[[noreturn]] void fail_to_write(const fs::path& path, int error) {
-  throw std::runtime_error(path.string() + ": can not be written: " + cause(error));
-}
+ private:
+  static void require(bool done) {
+    if (!done) throw std::runtime_error("SHA-256 is not available in this OpenSSL");
+  }
+
+  std::unique_ptr<EVP_MD_CTX, decltype(&::EVP_MD_CTX_free)> context_;
+};
 
 // A device, a pipe, or a name for something the process holds open: /dev/stdout may end at a
 // regular file, which a rename would cut off from its other writers.
@@ -135,19 +132,12 @@ bool is_stream(const fs::path& path, const struct stat& status) {
   return fs::is_symlink(path) && (whole.starts_with("/dev/") || whole.starts_with("/proc/"));
 }
 
-void write_through(const fs::path& path, std::string_view contents) {
-  Descriptor file(::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
-  int error = file.number() < 0 ? errno : write_all(file, contents);
-  if (error == 0) error = file.close();
-  if (error != 0) fail_to_write(path, error);
-}
-
 }  // namespace
 
 FileBytes::FileBytes(const fs::path& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  Descriptor file;
   struct stat status {};
-  if (file.number() < 0 || ::fstat(file.number(), &status) != 0)
+  if (file.open(path, O_RDONLY) != 0 || ::fstat(file.number(), &status) != 0)
     throw DataError(path.string() + ": can not be read: " + cause(errno));
   if (S_ISDIR(status.st_mode)) throw DataError(path.string() + ": is a directory, expected a file");
   if (S_ISREG(status.st_mode) && status.st_size > 0) {
@@ -182,18 +172,29 @@ FileBytes& FileBytes::operator=(FileBytes&& other) noexcept {
   return *this;
 }
 
+void FileBytes::forget(std::size_t first, std::size_t last) const {
+  static const auto kPage = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  first = first / kPage * kPage;
+  last = last / kPage * kPage;
+  if (mapped_ && first < last)
+    ::madvise(const_cast<char*>(data_) + first, last - first, MADV_DONTNEED);
+}
+
 std::string sha256(std::string_view bytes) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned size = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
-    throw std::runtime_error("SHA-256 is not available in this OpenSSL");
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string text;
-  for (unsigned i = 0; i < size; ++i) {
-    text += kDigits[digest[i] >> 4U];
-    text += kDigits[digest[i] & 15U];
+  Sha256 sum;
+  sum.add(bytes);
+  return sum.digits();
+}
+
+std::string sha256(const FileBytes& file) {
+  constexpr std::size_t kPart = 1 << 23;
+  Sha256 sum;
+  const std::string_view bytes = file.text();
+  for (std::size_t at = 0; at < bytes.size(); at += kPart) {
+    sum.add(bytes.substr(at, kPart));
+    if (at + kPart < bytes.size()) file.forget(at, at + kPart);
   }
-  return text;
+  return sum.digits();
 }
 
 void make_directory(const fs::path& path) {
@@ -204,24 +205,113 @@ void make_directory(const fs::path& path) {
                            (error ? error.message() : cause(ENOTDIR)));
 }
 
-void write_file(const fs::path& path, std::string_view contents) {
+// Where the bytes go until the file is whole. What can fail returns 0, or what went wrong.
+class WholeFile::Target {
+ public:
+  ~Target() {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  }
+  int open(const fs::path& path);
+  int write(std::string_view bytes) { return write_all(file_.number(), bytes); }
+  int finish();
+
+ private:
+  int give_name();
+
+  Descriptor file_;
+  fs::path target_;     // empty: written directly
+  fs::path temporary_;  // of a file that needs a name from the start
+  std::optional<SignalsHeld> held_;
+};
+
+int WholeFile::Target::open(const fs::path& path) {
   struct stat status {};
   const bool exists = ::stat(path.c_str(), &status) == 0;
-  if (exists && S_ISDIR(status.st_mode)) fail_to_write(path, EISDIR);
-  if (exists && is_stream(path, status)) return write_through(path, contents);
+  if (exists && S_ISDIR(status.st_mode)) return EISDIR;
+  if (exists && is_stream(path, status)) return file_.open(path, O_WRONLY | O_APPEND);
 
-  const fs::path target = exists ? fs::canonical(path) : path;  // a link stays a link
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
-  const Descriptor file(::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666));
-  int error = file.number() < 0 ? errno : 0;
-  if (error == 0) {
-    if (exists) ::fchmod(file.number(), status.st_mode & 07777U);
-    error = write_all(file, contents);
-    if (error == 0) error = give_name(file, target);
+  target_ = exists ? fs::canonical(path) : path;  // a link stays a link
+  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
+  int error =
+      ::access("/proc/self/fd", F_OK) == 0 ? file_.open(folder, O_WRONLY | O_TMPFILE) : EOPNOTSUPP;
+  if (error == EOPNOTSUPP || error == EISDIR) {
+    held_.emplace();
+    error = make_beside(
+        target_,
+        [this](const fs::path& name) { return file_.open(name, O_WRONLY | O_CREAT | O_EXCL); },
+        temporary_);
+    if (error != 0) temporary_.clear();
   }
-  if (error == EOPNOTSUPP || error == EISDIR || error == ENOENT)  // no O_TMPFILE, or no /proc
-    error = write_named(target, contents, exists ? std::optional(status.st_mode) : std::nullopt);
-  if (error != 0) fail_to_write(path, error);
+  if (error == 0 && exists) ::fchmod(file_.number(), status.st_mode & 07777U);
+  return error;
+}
+
+// At once where the name is free.
+int WholeFile::Target::give_name() {
+  const std::string nameless = "/proc/self/fd/" + std::to_string(file_.number());
+  const auto link = [&](const fs::path& name) {
+    const int flags = AT_SYMLINK_FOLLOW;
+    return ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name.c_str(), flags) == 0 ? 0 : errno;
+  };
+  if (const int error = link(target_); error != EEXIST) return error;
+  const SignalsHeld held;
+  fs::path temporary;
+  const int error = make_beside(target_, link, temporary);
+  return error == 0 ? rename_over(temporary, target_) : error;
+}
+
+int WholeFile::Target::finish() {
+  const bool is_nameless = !target_.empty() && temporary_.empty();
+  if (is_nameless)
+    if (const int error = give_name(); error != 0) return error;
+  const int error = file_.close();
+  if (error != 0 || temporary_.empty()) return error;
+  return rename_over(std::exchange(temporary_, {}), target_);
+}
+
+WholeFile::WholeFile(fs::path path) : path_(std::move(path)), target_(std::make_unique<Target>()) {
+  if (const int error = target_->open(path_); error != 0) fail_to_write(path_, error);
+}
+
+WholeFile::~WholeFile() = default;
+
+void WholeFile::append(std::string_view bytes) {
+  constexpr std::size_t kAtATime = 1 << 20;
+  int error = 0;
+  if (pending_.size() + bytes.size() >= kAtATime) {
+    error = target_->write(std::exchange(pending_, {}));
+    if (error == 0) error = target_->write(bytes);
+  } else {
+    pending_ += bytes;
+  }
+  if (error != 0) fail_to_write(path_, error);
+}
+
+void WholeFile::finish() {
+  int error = target_->write(std::exchange(pending_, {}));
+  if (error == 0) error = target_->finish();
+  if (error != 0) fail_to_write(path_, error);
+}
+
+void write_file(const fs::path& path, std::string_view contents) {
+  WholeFile file(path);
+  file.append(contents);
+  file.finish();
+}
+
+int write_all(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::write(file, bytes.data(), bytes.size());
+    if (count >= 0)
+      bytes.remove_prefix(static_cast<std::size_t>(count));
+    else if (errno != EINTR)
+      return errno;
+  }
+  return 0;
+}
+
+void fail_to_write(const fs::path& path, int error) {
+  throw std::runtime_error(path.string() + ": can not be written: " + cause(error));
 }
 
 }  // namespace slideway

@@ -83,7 +83,7 @@ std::string results_version() { return SLIDEWAY_VERSION; }
 Fingerprint fingerprint(const ManifestItem& item, const ItemOptions& options) {
   std::string inputs;
   for (const ProfileEntry& entry : problem_of(item, options).profiles)
-    inputs += sha256(FileBytes(entry.source.path).text()) + "\n";
+    inputs += sha256(FileBytes(entry.source.path)) + "\n";
   return {sha256(inputs), options_hash(item, options)};
 }
 

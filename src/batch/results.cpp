@@ -9,8 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <stdexcept>
-#include <system_error>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -37,62 +35,6 @@ std::optional<std::string> text(const Json& json, const char* key) {
 std::optional<ResultHead> head_of(std::string_view line) {
   return line.ends_with('\n') && Json::accept(line) ? parse_head(line) : std::nullopt;
 }
-
-/// 0, or what went wrong.
-int write_all(int file, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(file, bytes.data(), bytes.size());
-    if (count >= 0)
-      bytes.remove_prefix(static_cast<std::size_t>(count));
-    else if (errno != EINTR)
-      return errno;
-  }
-  return 0;
-}
-
-[[noreturn]] void fail_to_write(const fs::path& path, int error) {
-  throw std::runtime_error(path.string() +
-                           ": can not be written: " + std::generic_category().message(error));
-}
-
-/// A file that takes the place of another when it is whole.
-class Replacement {
- public:
-  explicit Replacement(const fs::path& path) : path_(path), temporary_(path) {
-    temporary_ += ".tmp";  // one name: what a killed run left is written over
-    file_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file_ < 0) fail_to_write(temporary_, errno);
-  }
-  ~Replacement() {
-    if (file_ >= 0) {
-      ::close(file_);
-      ::unlink(temporary_.c_str());
-    }
-  }
-  Replacement(const Replacement&) = delete;
-  Replacement& operator=(const Replacement&) = delete;
-
-  void append(std::string_view line) {
-    constexpr std::size_t kAtATime = 1 << 20;
-    pending_ += line;
-    if (pending_.size() >= kAtATime) flush();
-  }
-  void finish() {
-    flush();
-    if (::close(std::exchange(file_, -1)) != 0 || ::rename(temporary_.c_str(), path_.c_str()) != 0)
-      fail_to_write(path_, errno);
-  }
-
- private:
-  void flush() {
-    if (const int error = write_all(file_, pending_); error != 0) fail_to_write(path_, error);
-    pending_.clear();
-  }
-
-  fs::path path_, temporary_;
-  std::string pending_;
-  int file_ = -1;
-};
 
 using EachLine = std::function<void(const ResultHead&, std::string_view)>;
 
@@ -163,7 +105,7 @@ void ResultsFile::keep(const std::function<bool(const ResultHead&)>& wanted) {
   });
   if (dropped == 0) return;
   kept.clear();
-  Replacement replacement(path_);
+  WholeFile replacement(path_);
   read_results(path_, [&](const ResultHead& head, std::string_view line) {
     if (is_kept(head)) replacement.append(line);
   });
@@ -195,7 +137,7 @@ MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& in)
                             in[there.file].string() + " and another in " + in[file].string());
           if (!there.is_ok && place.is_ok) there = place;
         });
-  Replacement replacement(out);
+  WholeFile replacement(out);
   for (const auto& [id, place] : places) replacement.append(place.line);
   replacement.finish();
   summary.lines = places.size();

@@ -1,10 +1,15 @@
 #include "slideway/base/file.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdarg>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -14,6 +19,25 @@
 
 #include "base/temporary_folder.hpp"
 #include "slideway/base/error.hpp"
+
+namespace {
+
+bool knows_nameless_files = true;
+
+}  // namespace
+
+// Stands before the C library's: a file system without O_TMPFILE is not at hand everywhere.
+extern "C" int open(const char* path, int flags, ...) {
+  if (!knows_nameless_files && (flags & O_TMPFILE) == O_TMPFILE) {
+    errno = EOPNOTSUPP;
+    return -1;
+  }
+  std::va_list more;
+  va_start(more, flags);
+  const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(more, mode_t) : 0;
+  va_end(more);
+  return static_cast<int>(::syscall(SYS_openat, AT_FDCWD, path, flags, mode));
+}
 
 namespace slideway {
 namespace {
@@ -48,6 +72,16 @@ TEST(FileBytes, GivesEveryByteOfAFile) {
   const std::string bytes("a\0b\r\n\xff", 6);
   EXPECT_EQ(FileBytes(folder.file("a", bytes)).text(), bytes);
   EXPECT_EQ(FileBytes(folder.file("empty", "")).text(), "");
+}
+
+TEST(FileBytes, ReadsAgainWhatItForgot) {
+  const TemporaryFolder folder;
+  std::string bytes(20'000'000, 'x');  // several parts
+  for (std::size_t i = 0; i < bytes.size(); i += 1000) bytes[i] = static_cast<char>(i / 1000);
+  const FileBytes file(folder.file("a", bytes));
+  EXPECT_EQ(sha256(file), sha256(bytes));
+  file.forget(0, bytes.size());
+  EXPECT_EQ(file.text(), bytes);
 }
 
 TEST(FileBytes, ReadsAPipe) {
@@ -90,6 +124,36 @@ TEST(WriteFile, MakesAndReplacesAWholeFile) {
   write_file(path, "second");
   EXPECT_EQ(contents_of(path), "second");
   EXPECT_EQ(entries(folder.path()), 1U);
+}
+
+TEST(WriteFile, DoesWithoutFilesThatHaveNoName) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "out.json";
+  knows_nameless_files = false;
+  write_file(path, "first, and longer");
+  fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
+  write_file(path, "second");
+  EXPECT_EQ(contents_of(path), "second");
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  {
+    WholeFile broken_off(path);
+    broken_off.append(std::string(2'000'000, 'x'));
+    EXPECT_EQ(entries(folder.path()), 2U);
+  }
+  knows_nameless_files = true;
+  EXPECT_EQ(contents_of(path), "second");
+  EXPECT_EQ(entries(folder.path()), 1U);
+}
+
+TEST(WriteFile, IsThereOnceItIsFinished) {
+  const TemporaryFolder folder;
+  const fs::path path = folder.path() / "out.jsonl";
+  const std::string large(1'500'000, 'x');
+  WholeFile file(path);
+  for (const std::string& piece : {std::string("a"), large, std::string("b")}) file.append(piece);
+  EXPECT_EQ(entries(folder.path()), 0U);
+  file.finish();
+  EXPECT_EQ(contents_of(path), "a" + large + "b");
 }
 
 TEST(WriteFile, KeepsPermissionsAndLinks) {
