@@ -13,6 +13,7 @@
 #include "slideway/base/text.hpp"
 #include "slideway/format/table.hpp"
 #include "slideway/signal/correlation.hpp"
+#include "slideway/signal/low_band_parts.hpp"
 
 namespace slideway {
 namespace {
@@ -32,31 +33,55 @@ std::span<const double> view(const Eigen::VectorXd& values) {
 
 int most_lags(std::size_t n) { return static_cast<int>(std::min(kMostLags, n / 4)); }
 
-/// An effect's signal on one profile at full length and in the low band.
+/// An effect's signal on one profile: in the low band, and how it correlates at full length.
 struct Signal {
   const ModelTerm* term = nullptr;
-  Eigen::VectorXd raw, low_band;
+  RunningCoefficient raw;
+  Eigen::VectorXd low_band;
 };
 
+/// A part of the trace at a time: a signal of full length is as large as the profile.
 Signal signal_of(const Model& model, const Fit& fit, const ModelTerm& term,
                  const Observation& observation) {
   const auto shape = shapes_of(term, fit.estimate.shapes);
   Eigen::VectorXd amplitudes =
       fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
   const Profile& profile = *observation.profile;
-  Signal out{&term, effect_signal(model, term, profile, amplitudes, shape), {}};
-  const Eigen::Map<const Eigen::VectorXd> values(profile.values.data(), out.raw.size());
-  if (out.raw.norm() <= kNoSignal * values.norm()) {
+  const std::span<const double> positions = profile.positions;
+  const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> signal) {
+    constexpr Eigen::Index kBlock = 1024;  // samples: columns that stay in the cache
+    Eigen::MatrixXd columns;
+    for (Eigen::Index done = 0; done < signal.rows(); done += kBlock) {
+      const Eigen::Index count = std::min(kBlock, signal.rows() - done);
+      columns.resize(count, amplitudes.size());
+      term.effect->columns({positions.subspan(first + done, count), profile.setup, model.machine},
+                           shape, columns);
+      signal.col(0).segment(done, count) = columns * amplitudes;
+    }
+  };
+  double squares = 0.0;
+  const auto run = [&] {
+    return running_pearson(
+        profile.values,
+        [&](std::size_t first, std::span<double> part) {
+          Eigen::Map<Eigen::VectorXd> signal(part.data(), std::ssize(part));
+          fill(static_cast<Eigen::Index>(first), signal);
+          squares += signal.squaredNorm();
+        },
+        kRunningPoints);
+  };
+  Signal out{&term, run(), {}};
+  const auto samples = std::ssize(profile.values);
+  const Eigen::Map<const Eigen::VectorXd> values(profile.values.data(), samples);
+  if (std::sqrt(squares) <= kNoSignal * values.norm()) {
     amplitudes.setConstant(amplitudes.size() == 1 ? 1.0 : 0.0);
-    out.raw = effect_signal(model, term, profile, amplitudes, shape);
+    out.raw = run();
   }
-  out.low_band.resize(observation.low_band.values());
-  observation.low_band.apply(view(out.raw),
-                             {out.low_band.data(), static_cast<std::size_t>(out.low_band.size())});
+  out.low_band = apply_in_parts(observation.low_band, samples, 1, fill);
   return out;
 }
 
-Ranking rank_one(const Signal& signal, const Observation& observation) {
+Ranking rank_one(Signal& signal, const Observation& observation) {
   const Profile& profile = *observation.profile;
   const auto measured = view(observation.values), modelled = view(signal.low_band);
   Ranking out{signal.term->name, profile.name};
@@ -68,7 +93,7 @@ Ranking rank_one(const Signal& signal, const Observation& observation) {
   out.lag_coefficient = lag.coefficient;
   out.effective_observations = effective_observations(measured, modelled);
   out.p_value = correlation_p_value(out.low_band, out.effective_observations);
-  RunningCoefficient raw = running_pearson(profile.values, view(signal.raw), kRunningPoints);
+  RunningCoefficient raw = std::move(signal.raw);
   out.raw = raw.coefficient.back();
   // The low band has fewer values: its coefficient stands at the same share of the trace.
   const RunningCoefficient low = running_pearson(measured, modelled, kRunningPoints);
@@ -150,7 +175,6 @@ RankingResult rank_effects(const Model& model, const Fit& fit) {
     parallel_for(terms.size(), [&](std::size_t i) {
       signals[i] = signal_of(model, fit, *terms[i], observation);
       entries[i] = rank_one(signals[i], observation);
-      signals[i].raw.resize(0);
     });
     std::ranges::move(entries, std::back_inserter(out.entries));
     compare_candidates(signals, observation.profile->name, out);

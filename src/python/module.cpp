@@ -140,7 +140,7 @@ void check_signal(const std::vector<double>& signal, int level) {
   check_finite(signal, "signal");
 }
 
-py::array_t<double> rows(const std::vector<std::vector<double>>& bands) {
+py::array_t<double> rows(const std::vector<Band>& bands) {
   py::array_t<double> matrix({bands.size(), bands.front().size()});
   for (std::size_t j = 0; j < bands.size(); ++j)
     std::copy(bands[j].begin(), bands[j].end(),

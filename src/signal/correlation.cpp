@@ -2,11 +2,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <bit>
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <optional>
 #include <unsupported/Eigen/FFT>
 
 namespace slideway {
@@ -86,11 +86,21 @@ double lagged_product(const Eigen::VectorXd& d, Eigen::Index lag) {
   return d.head(d.size() - lag).dot(d.tail(d.size() - lag));
 }
 
+// The next size whose transform is quick: a product of 2, 3 and 5.
+std::size_t quick_size(std::size_t least) {
+  for (std::size_t size = least;; ++size) {
+    std::size_t rest = size;
+    for (const std::size_t factor : {2, 3, 5})
+      while (rest % factor == 0) rest /= factor;
+    if (rest == 1) return size;
+  }
+}
+
 // Σ_t d_t d_(t+k) of two series at once for every k, by the fast Fourier transform: the real part
 // of the result is of x, the imaginary part of y.
 std::vector<std::complex<double>> all_lagged_products(const Eigen::VectorXd& x,
                                                       const Eigen::VectorXd& y) {
-  const std::size_t size = std::bit_ceil(2 * static_cast<std::size_t>(x.size()));
+  const std::size_t size = quick_size(2 * static_cast<std::size_t>(x.size()));
   std::vector<std::complex<double>> signal(size);
   std::vector<std::complex<double>> spectrum(size);
   for (Eigen::Index t = 0; t < x.size(); ++t) signal[t] = {x[t], y[t]};
@@ -115,17 +125,27 @@ double pearson(std::span<const double> x, std::span<const double> y) {
 
 RunningCoefficient running_pearson(std::span<const double> x, std::span<const double> y,
                                    std::size_t points) {
+  const auto copy = [y](std::size_t first, std::span<double> part) {
+    std::ranges::copy(y.subspan(first, part.size()), part.begin());
+  };
+  return running_pearson(x, copy, points);
+}
+
+RunningCoefficient running_pearson(std::span<const double> x, const FillSeries& fill,
+                                   std::size_t points) {
   RunningCoefficient running;
   points = std::min(points, x.size());
-  if (points == 0) return running;
-  CoMoments moments(x.front(), y.front());
+  std::optional<CoMoments> moments;
+  std::vector<double> y;
   std::size_t done = 0;
   for (std::size_t k = 1; k <= points; ++k) {
-    const std::size_t count = k * x.size() / points - done;
-    moments.add(x.subspan(done, count), y.subspan(done, count));
-    done += count;
+    y.resize(k * x.size() / points - done);
+    fill(done, y);
+    if (!moments) moments.emplace(x.front(), y.front());
+    moments->add(x.subspan(done, y.size()), y);
+    done += y.size();
     running.samples.push_back(done);
-    running.coefficient.push_back(moments.coefficient());
+    running.coefficient.push_back(moments->coefficient());
   }
   return running;
 }

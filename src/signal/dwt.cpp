@@ -198,7 +198,7 @@ void add_pairs(bool fresh, std::span<const double> filter, const double* c, Inde
 // signal[m] += Σ_j filter[2 j + p] c[i - j]. The transform is orthonormal on a circle of twice as
 // many samples as coefficients under periodization, hence the indices that wrap there.
 void add_upsampled(bool fresh, std::span<const double> filter, Boundary boundary,
-                   std::span<const double> c, std::vector<double>& signal) {
+                   std::span<const double> c, std::span<double> signal) {
   if (c.empty()) return;
   const Index n = std::ssize(signal);
   const Index size = std::ssize(c);
@@ -227,10 +227,11 @@ void add_upsampled(bool fresh, std::span<const double> filter, Boundary boundary
 // coarser levels pass through the scratch buffers.
 void to_full_length(const Wavelet& wavelet, Boundary boundary, std::span<const std::size_t> lengths,
                     std::span<const double> low, std::span<const double> high,
-                    std::array<std::vector<double>, 2>& scratch, std::vector<double>& band) {
+                    std::array<Band, 2>& scratch, Band& band) {
   for (std::size_t j = lengths.size(); j > 0; --j) {
-    std::vector<double>& finer = j == 1 ? band : scratch[j % 2];
-    inverse_dwt(wavelet, boundary, low, high, lengths[j - 1], finer);
+    Band& finer = j == 1 ? band : scratch[j % 2];
+    finer.resize(lengths[j - 1]);
+    inverse_dwt(wavelet, boundary, low, high, finer);
     low = finer;
     high = {};
   }
@@ -268,8 +269,7 @@ void dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> sign
 }
 
 void inverse_dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> low,
-                 std::span<const double> high, std::size_t n, std::vector<double>& signal) {
-  signal.resize(n);
+                 std::span<const double> high, std::span<double> signal) {
   if (low.empty() && high.empty()) std::ranges::fill(signal, 0.0);
   add_upsampled(true, wavelet.reconstruct_low, boundary, low, signal);
   add_upsampled(low.empty(), wavelet.reconstruct_high, boundary, high, signal);
@@ -302,7 +302,7 @@ Bands reconstruct_bands(const Wavelet& wavelet, Boundary boundary, int levels,
   const std::span<const std::size_t> lengths(parts.lengths);
   constexpr std::size_t kPart = 1 << 16;     // samples: all bands of a part stay in the cache
   const auto restore = [&](std::size_t j) {  // a_L, then d_1 ... d_L
-    std::array<std::vector<double>, 2> scratch;
+    std::array<Band, 2> scratch;
     if (j == 0)
       to_full_length(wavelet, boundary, lengths, parts.approximation, {}, scratch,
                      bands.approximations[count - 1]);

@@ -188,7 +188,8 @@ std::vector<double> LowBand::reconstruct(std::span<const double> coefficients) c
   std::vector<double> finer;
   std::ranges::reverse(lengths);
   for (const std::size_t n : lengths) {
-    inverse_dwt(wavelet_, options_.boundary, band, {}, n, finer);
+    finer.resize(n);
+    inverse_dwt(wavelet_, options_.boundary, band, {}, finer);
     band.swap(finer);
   }
   return band;

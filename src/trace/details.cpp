@@ -186,9 +186,9 @@ void add_bands(const Observation& observation, double unit, ProfileCurves& out) 
   values /= unit;
   const Bands bands =
       reconstruct_bands(daubechies(options.wavelet), options.boundary, options.level, view(values));
-  for (const std::vector<double>& band : bands.approximations)
+  for (const Band& band : bands.approximations)
     out.approximations.push_back(envelope(band, kStretches));
-  for (const std::vector<double>& band : bands.details)
+  for (const Band& band : bands.details)
     out.details.push_back(envelope(band, kStretches));
 }
 

@@ -90,8 +90,8 @@ std::vector<double> rebuilt_with_halved_details(const Case& each, Decomposition 
   std::vector<double> signal;
   for (std::size_t j = parts.details.size(); j > 0; --j) {
     for (double& value : parts.details[j - 1]) value *= 0.5;
-    inverse_dwt(each.wavelet, each.boundary, parts.approximation, parts.details[j - 1],
-                parts.lengths[j - 1], signal);
+    signal.resize(parts.lengths[j - 1]);
+    inverse_dwt(each.wavelet, each.boundary, parts.approximation, parts.details[j - 1], signal);
     parts.approximation = signal;
   }
   return parts.approximation;

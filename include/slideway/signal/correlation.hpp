@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -16,6 +18,11 @@ struct RunningCoefficient {
   std::vector<double> coefficient;
 };
 RunningCoefficient running_pearson(std::span<const double> x, std::span<const double> y,
+                                   std::size_t points);
+
+/// The same with y made by `fill` a part at a time, from sample `first` on, in order.
+using FillSeries = std::function<void(std::size_t first, std::span<double> part)>;
+RunningCoefficient running_pearson(std::span<const double> x, const FillSeries& fill,
                                    std::size_t points);
 
 /// Lag (in samples, positive if y comes later than x) within ±max_lag at which |Pearson| over the

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "slideway/signal/daubechies.hpp"
@@ -37,10 +39,10 @@ std::size_t dwt_length(std::size_t n, int taps, Boundary boundary);
 void dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> signal,
          std::vector<double>& low, std::vector<double>* high);
 
-/// One level of the inverse transform of low and high (either may be empty: then zeros), cut to `n`
-/// samples (n as it was before that level).
+/// One level of the inverse transform of low and high (either may be empty: then zeros), cut to
+/// the size of the signal (as it was before that level).
 void inverse_dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> low,
-                 std::span<const double> high, std::size_t n, std::vector<double>& signal);
+                 std::span<const double> high, std::span<double> signal);
 
 /// All levels of a signal: approximation of the last level and the details of each.
 struct Decomposition {
@@ -52,11 +54,27 @@ struct Decomposition {
 Decomposition decompose(const Wavelet& wavelet, Boundary boundary, int levels,
                         std::span<const double> signal);
 
+/// Memory that a resize leaves as it is: setting it to zero would take as long as what is then
+/// written into it.
+template <typename Value>
+struct Unset : std::allocator<Value> {
+  template <typename Other>
+  struct rebind {
+    using other = Unset<Other>;
+  };
+  template <typename Other, typename... Arguments>
+  void construct(Other* at, Arguments&&... arguments) {
+    if constexpr (sizeof...(Arguments) > 0)
+      std::construct_at(at, std::forward<Arguments>(arguments)...);
+  }
+};
+using Band = std::vector<double, Unset<double>>;
+
 /// The bands at full length: a_1 ... a_L and d_1 ... d_L, each of N samples; a_L + Σ_j d_j is the
 /// signal to 1e-13 of its size.
 struct Bands {
-  std::vector<std::vector<double>> approximations;  // [j-1] is a_j
-  std::vector<std::vector<double>> details;         // [j-1] is d_j
+  std::vector<Band> approximations;  // [j-1] is a_j
+  std::vector<Band> details;         // [j-1] is d_j
 };
 
 Bands reconstruct_bands(const Wavelet& wavelet, Boundary boundary, int levels,
