@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kLarge = 1 << 20;  // bytes that are worth a second thread
 
 // Whether none of the numbers is NaN or infinite: their exponent is not all ones.
-bool are_finite(const std::vector<double>& values) {
+bool are_finite(std::span<const double> values) {
   constexpr std::uint64_t kExponent = 0x7ff0000000000000U, kLeast = 0x0010000000000000U;
   std::uint64_t carried = 0;
   for (const double value : values)
@@ -32,22 +32,43 @@ bool speaks_of_text(const TraceRequest& request) {
          request.value_column != nothing.value_column;
 }
 
-void check(const Trace& trace) {
-  if (trace.positions.size() != trace.values.size())
-    throw std::logic_error("a format gave " + std::to_string(trace.positions.size()) +
-                           " positions and " + std::to_string(trace.values.size()) + " values");
-  if (are_finite(trace.positions) && are_finite(trace.values)) return;
-  const auto is_number = [](double position) { return std::isfinite(position); };
-  const auto odd = std::find_if_not(trace.positions.begin(), trace.positions.end(), is_number);
-  if (odd != trace.positions.end())
-    throw DataError("point " + std::to_string(odd - trace.positions.begin() + 1) +
-                    ": the position is no finite number");
-  const auto infinite = std::find_if(trace.values.begin(), trace.values.end(),
-                                     [](double value) { return std::isinf(value); });
-  if (infinite != trace.values.end())
-    throw DataError("point " + std::to_string(infinite - trace.values.begin() + 1) +
-                    ": the value is infinite");
+// `before` points came before these.
+void check(std::span<const double> positions, std::span<const double> values, std::size_t before) {
+  if (positions.size() != values.size())
+    throw std::logic_error("a format gave " + std::to_string(positions.size()) + " positions and " +
+                           std::to_string(values.size()) + " values");
+  if (are_finite(positions) && are_finite(values)) return;
+  const auto refuse = [&](std::size_t point, const char* what) {
+    throw DataError("point " + std::to_string(before + point + 1) + what);
+  };
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (!std::isfinite(positions[i])) refuse(i, ": the position is no finite number");
+    if (std::isinf(values[i])) refuse(i, ": the value is infinite");
+  }
 }
+
+// Hands on what was read of a file, checked, and forgets the bytes it was read from.
+class Passage {
+ public:
+  Passage(const FileBytes& bytes, const TakePoints& take) : bytes_(&bytes), take_(&take) {}
+
+  void operator()(const TracePart& part) {
+    constexpr std::size_t kForgotten = 1 << 23;  // bytes at a time
+    check(part.positions, part.values, points_);
+    (*take_)(part);
+    points_ += part.positions.size();
+    const double size = static_cast<double>(bytes_->text().size());
+    const auto read = static_cast<std::size_t>(part.share * size);
+    if (read < forgotten_ + kForgotten) return;
+    bytes_->forget(forgotten_, read);
+    forgotten_ = read;
+  }
+
+ private:
+  const FileBytes* bytes_;
+  const TakePoints* take_;
+  std::size_t points_ = 0, forgotten_ = 0;
+};
 
 }  // namespace
 
@@ -73,7 +94,17 @@ const Format& format_to_write(const std::filesystem::path& path) {
                    "' is of no format that can be written; accepted: " + joined(accepted, " "));
 }
 
-TraceFile read_trace(const std::filesystem::path& path, const TraceRequest& request) {
+Trace Format::read_in_parts(std::string_view bytes, const TraceRequest& request,
+                            const TakePoints& take) const {
+  Trace trace = read(bytes, request);
+  take({trace.position_unit, trace.value_unit, states_units(), trace.positions, trace.values, 1.0});
+  trace.positions.clear();
+  trace.values.clear();
+  return trace;
+}
+
+TraceFile read_trace(const std::filesystem::path& path, const TraceRequest& request,
+                     const TakePoints& take) {
   const FileBytes bytes(path);
   try {
     if (bytes.text().empty()) throw DataError("is empty");
@@ -85,15 +116,16 @@ TraceFile read_trace(const std::filesystem::path& path, const TraceRequest& requ
     TraceFile file{std::string(format.name()), format.states_units(), {}, {}};
     const auto work = [&](std::size_t part) {
       if (part == 0)
-        file.trace = format.read(bytes.text(), request);
+        file.trace = take ? format.read_in_parts(bytes.text(), request, Passage(bytes, take))
+                          : format.read(bytes.text(), request);
       else
-        file.sha256 = sha256(bytes.text());
+        file.sha256 = sha256(bytes);
     };
     if (bytes.text().size() < kLarge)
       work(0), work(1);
     else
       parallel_for(2, work);
-    check(file.trace);
+    check(file.trace.positions, file.trace.values, 0);
     return file;
   } catch (const DataError& error) {
     throw DataError(path.string() + ": " + error.what());

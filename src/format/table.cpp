@@ -1,17 +1,18 @@
 #include "slideway/format/table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <limits>
 #include <utility>
 
+#include "append.hpp"
 #include "dialect.hpp"
 #include "encoding.hpp"
 #include "fast_number.hpp"
 #include "fields.hpp"
+#include "plain_rows.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 #include "slideway/base/parallel.hpp"
@@ -22,14 +23,27 @@ namespace slideway {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kChunk = 1 << 20;  // bytes read at a time, up to the end of a line
+constexpr std::size_t kChunk = 1 << 18;  // bytes read at a time, up to the end of a line
 constexpr std::size_t kTogether = 16;    // chunks that are read at once
+
+// The rows of a chunk. The memory serves the next one.
+struct Rows {
+  std::vector<std::vector<double>> columns;  // longer than the rows
+  std::size_t count = 0;
+
+  [[nodiscard]] std::size_t room() const { return columns[0].size(); }
+  void make_room() {
+    constexpr std::size_t kLeast = 1 << 12;
+    if (count < room()) return;
+    for (std::vector<double>& column : columns) column.resize(std::max(kLeast, 2 * count));
+  }
+};
 
 class Reader {
  public:
   Reader(std::string_view text, const std::string& encoding, const TableRequest& request);
 
-  Table read();
+  Table read(const TakeRows& take);
 
  private:
   struct Target {
@@ -41,10 +55,11 @@ class Reader {
   [[nodiscard]] std::string_view rest_of_line(const char* at) const;
   void pass_line(const char* stop);
   bool to_next_line();
-  void read_plain_rows(const char* regular_end, std::vector<std::vector<double>>& columns);
-  void read_rows(std::vector<std::vector<double>>& columns);
-  void read_all_rows(std::vector<std::vector<double>>& columns);
+  const char* after_plain_row(const char* at, double& first, double& second) const;
+  void read_plain_rows(const char* regular_end, Rows& rows);
+  void read_rows(Rows& rows);
   Reader take_chunk();
+  [[nodiscard]] std::vector<std::span<const double>> columns_of(const Rows& rows) const;
   [[nodiscard]] bool is_padding(char c) const {
     return c == ' ' || c == '\r' || (c == '\t' && dialect_.delimiter != '\t');
   }
@@ -115,6 +130,22 @@ const char* Reader::next_field(const char* at) const {
   while (*at != '\n' && !ends_field(*at, dialect_.delimiter)) ++at;
   if (*at == '\n') return nullptr;
   return after_padding(at + 1);
+}
+
+// Reads a row of two numbers; returns the next, or nullptr if it is not as plain.
+inline const char* Reader::after_plain_row(const char* at, double& first, double& second) const {
+#ifdef __SSE2__
+  if (at - first_ >= PlainRow::kBefore && end_ - at >= PlainRow::kRoom) {
+    PlainRow row(at, dialect_.decimal);
+    if (row.read(dialect_.delimiter, first) && row.read('\n', second)) return row.at();
+  }
+#endif
+  at = read_number(at, end_, dialect_.decimal, first);
+  if (!at || *at != dialect_.delimiter) return nullptr;
+  at = read_number(at + 1, end_, dialect_.decimal, second);
+  if (!at) return nullptr;
+  at += *at == '\r';
+  return *at == '\n' ? at + 1 : nullptr;
 }
 
 // Reads the row into targets_ in one go; returns a place in it after the last value, or nullptr if
@@ -189,42 +220,42 @@ void Reader::read_irregular_row() {
            ", as the rows before it have");
 }
 
-// Appends the rows from the one at hand on that are two numbers, a delimiter and nothing else: what
-// instruments write, read in half the time.
-void Reader::read_plain_rows(const char* regular_end, std::vector<std::vector<double>>& columns) {
+// Appends the rows from the one at hand on that are two numbers, a delimiter and nothing else.
+void Reader::read_plain_rows(const char* regular_end, Rows& rows) {
   const bool plain = last_is_target_ && targets_.size() == 2 && targets_[0].column == 0 &&
                      targets_[1].column == 1 && dialect_.delimiter != kBlanks;
-  std::array<std::array<double, 256>, 2> rows;
-  std::size_t count = rows[0].size();
-  while (plain && count == rows[0].size()) {
-    for (count = 0; count < rows[0].size() && at_ < regular_end; ++count) {
-      const char* at = read_number(at_, end_, dialect_.decimal, rows[0][count]);
-      if (!at || *at != dialect_.delimiter) break;
-      at = read_number(at + 1, end_, dialect_.decimal, rows[1][count]);
-      if (!at) break;
-      at += *at == '\r';
-      if (*at != '\n') break;
-      at_ = at + 1;
-    }
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      std::vector<double>& column = columns[targets_[i].slot];
-      column.insert(column.end(), rows[i].begin(), rows[i].begin() + count);
-    }
+  if (!plain) return;
+  double* const first = rows.columns[targets_[0].slot].data();
+  double* const second = rows.columns[targets_[1].slot].data();
+  const char* at = at_;
+  std::size_t i = rows.count;
+  for (; i < rows.room() && at < regular_end; ++i) {
+    const char* next = after_plain_row(at, first[i], second[i]);
+    if (!next) break;
+    at = next;
   }
+  at_ = at;
+  rows.count = i;
 }
 
-// Appends the rows of the text, or of a chunk of it, to the columns asked for.
-void Reader::read_rows(std::vector<std::vector<double>>& columns) {
+// Appends the rows of the text, or of a chunk of it.
+void Reader::read_rows(Rows& rows) {
+  rows.columns.resize(dialect_.columns.size());
+  rows.count = 0;
   const std::string_view rest(at_, static_cast<std::size_t>(end_ - at_));
   const char* const regular_end = at_ + (rest.rfind('\n') + 1);  // at_ if there is no newline
-  for (read_plain_rows(regular_end, columns); to_next_line();
-       read_plain_rows(regular_end, columns)) {
+  for (;;) {
+    rows.make_room();
+    read_plain_rows(regular_end, rows);
+    if (rows.count == rows.room()) continue;
+    if (!to_next_line()) return;
     const char* stop = at_ < regular_end ? read_row(at_) : nullptr;
     if (!stop) {
       read_irregular_row();
       stop = at_;
     }
-    for (const Target& target : targets_) columns[target.slot].push_back(target.value);
+    for (const Target& target : targets_) rows.columns[target.slot][rows.count] = target.value;
+    ++rows.count;
     pass_line(stop);
   }
 }
@@ -238,49 +269,32 @@ Reader Reader::take_chunk() {
   return chunk;
 }
 
-// Where the chunks begin and the order of what is in them do not depend on the number of threads.
-void Reader::read_all_rows(std::vector<std::vector<double>>& columns) {
-  const auto size = static_cast<double>(end_ - at_);
-  std::vector<std::vector<std::vector<double>>> read(kTogether);
-  while (at_ < end_) {
-    std::vector<Reader> chunks;
-    while (at_ < end_ && chunks.size() < kTogether) chunks.push_back(take_chunk());
-    parallel_for(chunks.size(), [&](std::size_t i) {
-      read[i].resize(columns.size());
-      for (std::vector<double>& column : read[i]) column.clear();
-      chunks[i].read_rows(read[i]);
-    });
-    for (std::size_t i = 0; i < chunks.size(); ++i) {
-      missing_ += chunks[i].missing_;
-      for (const Target& target : targets_) {
-        std::vector<double>& column = columns[target.slot];
-        const std::vector<double>& more = read[i][target.slot];
-        if (column.empty()) {  // 2 % for shorter lines to come
-          const auto bytes = static_cast<double>(chunks[i].end_ - first_);
-          column.reserve(
-              static_cast<std::size_t>(1.02 * static_cast<double>(more.size()) * (size / bytes)));
-        }
-        column.insert(column.end(), more.begin(), more.end());
-      }
-    }
+// Every column asked for; one that was asked for twice is there once.
+std::vector<std::span<const double>> Reader::columns_of(const Rows& rows) const {
+  std::vector<std::span<const double>> columns;
+  for (const std::size_t column : dialect_.columns) {
+    const auto target = std::ranges::find(targets_, column, &Target::column);
+    columns.push_back(std::span(rows.columns[target->slot]).first(rows.count));
   }
+  return columns;
 }
 
-Table Reader::read() {
+// Where the chunks begin and the order of what is in them do not depend on the number of threads.
+Table Reader::read(const TakeRows& take) {
   Table table;
   table.names = dialect_.names;
   table.units = dialect_.units;
   table.decisions.push_back(dialect_.decision);
-  table.columns.resize(dialect_.columns.size());
-  if (targets_.empty()) return table;
-  if (static_cast<std::size_t>(end_ - at_) > kChunk)
-    read_all_rows(table.columns);
-  else
-    read_rows(table.columns);
-  const std::vector<std::size_t>& columns = dialect_.columns;
-  for (std::size_t slot = 0; slot < columns.size(); ++slot) {
-    const auto first = std::find(columns.begin(), columns.end(), columns[slot]) - columns.begin();
-    if (table.columns[slot].empty()) table.columns[slot] = table.columns[first];
+  const auto size = static_cast<double>(end_ - at_);
+  std::vector<Rows> rows(kTogether);
+  while (at_ < end_ && !targets_.empty()) {
+    std::vector<Reader> chunks;
+    while (at_ < end_ && chunks.size() < kTogether) chunks.push_back(take_chunk());
+    parallel_for(chunks.size(), [&](std::size_t i) { chunks[i].read_rows(rows[i]); });
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+      missing_ += chunks[i].missing_;
+      take({table, columns_of(rows[i]), static_cast<double>(chunks[i].end_ - first_) / size});
+    }
   }
   if (missing_ > 0)
     table.decisions.push_back(std::to_string(missing_) +
@@ -291,10 +305,20 @@ Table Reader::read() {
 
 }  // namespace
 
-Table parse_table(std::string_view bytes, const TableRequest& request) {
+Table parse_table(std::string_view bytes, const TableRequest& request, const TakeRows& take) {
   if (bytes.empty()) throw DataError("is empty");
   const DecodedText text = decoded(bytes, request.encoding);
-  return Reader(text.bytes(), text.encoding, request).read();
+  return Reader(text.bytes(), text.encoding, request).read(take);
+}
+
+Table parse_table(std::string_view bytes, const TableRequest& request) {
+  std::vector<std::vector<double>> columns(request.columns.size());
+  Table table = parse_table(bytes, request, [&](const TablePart& part) {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      append(part.columns[i], part.share, columns[i]);
+  });
+  table.columns = std::move(columns);
+  return table;
 }
 
 Table read_table(const std::filesystem::path& path, std::span<const std::string> columns) {

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "append.hpp"
 #include "registry.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
@@ -27,21 +28,38 @@ class TextFormat : public Format {
   }
 
   [[nodiscard]] Trace read(std::string_view bytes, const TraceRequest& request) const override;
+  [[nodiscard]] Trace read_in_parts(std::string_view bytes, const TraceRequest& request,
+                                    const TakePoints& take) const override;
   [[nodiscard]] std::string write(const Trace& trace) const override;
 };
 
 Trace TextFormat::read(std::string_view bytes, const TraceRequest& request) const {
+  std::vector<double> positions, values;
+  Trace trace = read_in_parts(bytes, request, [&](const TracePart& part) {
+    append(part.positions, part.share, positions);
+    append(part.values, part.share, values);
+  });
+  trace.positions = std::move(positions);
+  trace.values = std::move(values);
+  return trace;
+}
+
+Trace TextFormat::read_in_parts(std::string_view bytes, const TraceRequest& request,
+                                const TakePoints& take) const {
   if (!request.line.empty())
     throw UsageError("line = \"" + printable(request.line) +
                      "\" belongs to an areal file; delimited text has columns");
-  Table table = parse_table(bytes, {.columns = {request.position_column, request.value_column},
-                                    .delimiter = request.delimiter,
-                                    .decimal = request.decimal,
-                                    .encoding = request.encoding,
-                                    .header_lines = request.header_lines,
-                                    .may_miss = true});
-  return {std::move(table.columns[0]), std::move(table.columns[1]), std::move(table.units[0]),
-          std::move(table.units[1]), std::move(table.decisions)};
+  const TableRequest columns{.columns = {request.position_column, request.value_column},
+                             .delimiter = request.delimiter,
+                             .decimal = request.decimal,
+                             .encoding = request.encoding,
+                             .header_lines = request.header_lines,
+                             .may_miss = true};
+  Table table = parse_table(bytes, columns, [&](const TablePart& part) {
+    take({part.table.units[0], part.table.units[1], false, part.columns[0], part.columns[1],
+          part.share});
+  });
+  return {{}, {}, std::move(table.units[0]), std::move(table.units[1]), std::move(table.decisions)};
 }
 
 std::string TextFormat::write(const Trace& trace) const {

@@ -100,6 +100,51 @@ TEST_F(ReadProfile, LeavesOutMissingPointsAndCountsThoseInTheWindow) {
   EXPECT_EQ(profile_.notes.back(), "1 missing point left out");
 }
 
+// Positions i and values 10 i for i = 0, 1, ...
+std::string ramp(int rows) {
+  std::string text;
+  for (int i = 0; i < rows; ++i) text += std::to_string(i) + "," + std::to_string(10 * i) + "\n";
+  return text;
+}
+
+TEST_F(ReadProfile, KeepsMeansWhereThereAreTooManySamples) {
+  source_.most_samples = 8;
+  source_.value_unit = "mm";
+  profile_.standard_uncertainty = 6.0;
+  EXPECT_EQ(read(ramp(8)).positions.size(), 8U);
+  EXPECT_EQ(profile_.standard_uncertainty, 6.0);
+  profile_ = {.standard_uncertainty = 6.0};
+  read(ramp(23));  // 9 make means of 2, 17 of 4; the last three are no whole one
+  EXPECT_THAT(profile_.positions, ElementsAre(1.5, 5.5, 9.5, 13.5, 17.5));
+  EXPECT_THAT(profile_.values, ElementsAre(15.0, 55.0, 95.0, 135.0, 175.0));
+  EXPECT_EQ(profile_.standard_uncertainty, 3.0);  // of white noise
+  EXPECT_THAT(profile_.notes, Contains("23 samples, more than 8: kept as means of 4 each"));
+}
+
+TEST_F(ReadProfile, MeansAreOfTheSamplesThatAreKept) {
+  source_.most_samples = 8;
+  source_.window = {2.0, 40.0};
+  source_.left_out_rows = {5};
+  const std::string text = "-1,0\n" + ramp(12);  // data row 5 is i = 3
+  EXPECT_THAT(read(text).positions, ElementsAre(3.0, 5.5, 7.5, 9.5));
+}
+
+TEST_F(ReadProfile, NamesTheFirstRowOfAMeanThatNeighboursContradict) {
+  source_.most_samples = 64;
+  std::string text, backwards;
+  for (int i = 0; i < 80; ++i) {
+    const std::string row =
+        std::to_string(i) + "," + std::to_string(i == 54 ? 90000 : i * 37 % 101) + "\n";
+    text += row;
+    backwards = row + backwards;
+  }
+  ASSERT_EQ(read(text).outliers.size(), 1U);
+  EXPECT_EQ(profile_.outliers[0].row, 55U);
+  profile_ = {};
+  ASSERT_EQ(read(backwards).outliers.size(), 1U);
+  EXPECT_EQ(profile_.outliers[0].row, 25U);  // rows 25 and 26 are i = 55 and 54
+}
+
 // A straight line with a bad value in data row 6, the missing one of row 3 and the window before
 // it.
 std::string line_with_a_spike() {

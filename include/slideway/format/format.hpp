@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +19,15 @@ struct Trace {
   std::string value_unit;              // the same, or one of kSlopeUnits
   std::vector<std::string> decisions;  // what the reader found or had to decide, a sentence each
 };
+
+/// Points of a trace that follow one another.
+struct TracePart {
+  const std::string &position_unit, &value_unit;  // as in Trace
+  bool states_units;                              // the format always does
+  std::span<const double> positions, values;
+  double share;  // of the file, read with this part
+};
+using TakePoints = std::function<void(const TracePart&)>;
 
 /// What a caller may say of a file; whatever is left out is found in the file.
 struct TraceRequest {
@@ -53,6 +63,11 @@ class Format {
   /// @throws UsageError  the request asks for what this file has not
   [[nodiscard]] virtual Trace read(std::string_view bytes, const TraceRequest& request) const = 0;
 
+  /// The same, a part at a time where the format can: `take` is called with all points in their
+  /// order, which the trace that comes back does without.
+  [[nodiscard]] virtual Trace read_in_parts(std::string_view bytes, const TraceRequest& request,
+                                            const TakePoints& take) const;
+
   /// Bytes from which read() gives the same trace back.
   /// @throws UsageError  if the trace holds what the format can not
   [[nodiscard]] virtual std::string write(const Trace& trace) const = 0;
@@ -76,8 +91,11 @@ const Format& recognised_format(std::string_view bytes);
 /// @throws UsageError  its ending is none of those that can be written
 const Format& format_to_write(const std::filesystem::path& path);
 
+/// A file with its points, or with none if `take` gets them: memory then does not grow with
+/// delimited text.
 /// @throws DataError   "path: place: what is wrong"
 /// @throws UsageError  "path: ..." the request asks for what this file has not
-TraceFile read_trace(const std::filesystem::path& path, const TraceRequest& request);
+TraceFile read_trace(const std::filesystem::path& path, const TraceRequest& request,
+                     const TakePoints& take = {});
 
 }  // namespace slideway

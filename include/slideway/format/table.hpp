@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,6 +29,14 @@ struct Table {
   std::string sha256;                  // of the file's bytes
 };
 
+/// Rows of a table that follow one another.
+struct TablePart {
+  const Table& table;  // its names and units
+  std::vector<std::span<const double>> columns;
+  double share;  // of the bytes, read with this part
+};
+using TakeRows = std::function<void(const TablePart&)>;
+
 /// Reads columns of delimited text. Columns stand between commas, semicolons, tabs or runs of
 /// blanks; numbers have a decimal point or comma; the text is UTF-8, UTF-16 or Latin-1, its lines
 /// end in LF or CRLF. Lines that start with '#' and empty ones are passed over, and so are header
@@ -42,6 +51,10 @@ struct Table {
 ///                     be read in two ways
 /// @throws UsageError  a delimiter, decimal mark or encoding that is none of the above
 Table parse_table(std::string_view bytes, const TableRequest& request);
+
+/// The same, a part at a time: `take` is called with all rows in their order, which the table
+/// that comes back does without.
+Table parse_table(std::string_view bytes, const TableRequest& request, const TakeRows& take);
 
 /// The same from a file, with no value missing. @throws DataError "path: ..."
 Table read_table(const std::filesystem::path& path, std::span<const std::string> columns);

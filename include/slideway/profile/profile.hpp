@@ -58,6 +58,7 @@ struct ProfileSource {
   std::optional<std::pair<double, double>> window;  // in position_unit
   std::vector<std::size_t> left_out_rows;           // data rows treated as missing, from 1
   bool leave_out_spikes = false;                    // outliers treated as missing
+  std::size_t most_samples = 10'000'000;            // more are kept as means of 2, 4, 8, ...; even
 };
 
 /// Reads, converts and sorts out one profile: window applied, missing points left out, a trace that

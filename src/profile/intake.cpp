@@ -1,0 +1,226 @@
+#include "intake.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+// mm or rad. Beyond it lie the marks some instruments write for a missing value (1e38).
+constexpr double kLargest = 1e9;
+
+// The unit of the file's numbers: as the file states, or as the source says and the file's header,
+// if it has one, agrees.
+std::string checked_unit(const std::string& in_file, const std::string& asked, bool file_states,
+                         const std::string& key) {
+  if (file_states) return in_file;
+  if (asked.empty())
+    throw UsageError(key + " is missing: only a file that states its units needs none");
+  if (!in_file.empty() && in_file != asked)
+    throw DataError("the header has the unit " + in_file + ", the problem " + key + " = \"" +
+                    asked + "\"; accepted: the same");
+  return asked;
+}
+
+UnitScale scale_of(const std::string& unit, bool slope) {
+  const auto scale = slope ? slope_unit(unit) : length_unit(unit);
+  if (!scale)
+    throw DataError(
+        "has values in '" + unit + "'; accepted for a " +
+        (slope ? "slope: " + std::string(kSlopeUnits) : "height: " + std::string(kLengthUnits)));
+  return *scale;
+}
+
+Conversion conversion(const ProfileSource& source, const TracePart& part, const Profile& profile) {
+  const Setup& setup = profile.setup;
+  const std::string unit =
+      checked_unit(part.position_unit, source.position_unit, part.states_units, "position_unit");
+  const std::string value_unit =
+      checked_unit(part.value_unit, source.value_unit, part.states_units, "value_unit");
+  Conversion out{{}, scale_of(value_unit, setup.quantity == Quantity::slope), {}, source.window};
+  if (source.position_unit == "s" && unit != "s")
+    throw DataError("states positions in " + unit +
+                    ", the problem position_unit = \"s\"; accepted: a length");
+  if (unit != "s") {
+    out.position = scale_of(unit, false);
+  } else {
+    if (!setup.feed_mm_per_min)
+      throw UsageError("profile '" + profile.name +
+                       "': positions in time need feed_mm_per_min to become mm");
+    out.to_mm = {*setup.feed_mm_per_min, kMinute};
+  }
+  if (out.window && unit != source.position_unit) {
+    const UnitScale asked = scale_of(source.position_unit, false);
+    for (double* end : {&out.window->first, &out.window->second})
+      *end = asked(*end) * out.position.divisor / out.position.factor;
+  }
+  return out;
+}
+
+std::string counted(std::size_t count, const std::string& what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+bool PlainSamples::convert(const Conversion& convert, std::span<const double> positions,
+                           std::span<const double> values, double last, bool upwards) {
+  double largest = 0.0, missing = 0.0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    positions_[i] = convert.to_mm(convert.position(positions[i]));
+    values_[i] = convert.value(values[i]);
+  }
+  for (std::size_t i = 0; i < kCount; ++i) {
+    largest = std::max({largest, std::abs(positions_[i]), std::abs(values_[i])});
+    missing += values_[i] - values_[i];  // NaN if one is
+  }
+  const double sign = upwards ? 1.0 : -1.0;
+  double least = sign * (positions_[0] - last);
+  for (std::size_t i = 1; i < kCount; ++i)
+    least = std::min(least, sign * (positions_[i] - positions_[i - 1]));
+  return largest <= kLargest && least > 0.0 && missing == 0.0;
+}
+
+Intake::Intake(const ProfileSource& source, Profile& profile)
+    : source_(&source), profile_(&profile), left_out_rows_(source.left_out_rows) {
+  std::ranges::sort(left_out_rows_);
+}
+
+void Intake::start(const TracePart& part) {
+  convert_ = conversion(*source_, part, *profile_);
+  const double expected = 1.02 * static_cast<double>(part.positions.size()) / part.share;
+  const std::size_t room = expected < static_cast<double>(source_->most_samples)
+                               ? static_cast<std::size_t>(expected) + 1
+                               : source_->most_samples;
+  profile_->positions.reserve(room);
+  profile_->values.reserve(room);
+}
+
+void Intake::take(const TracePart& part) {
+  if (!convert_) start(part);
+  const bool may_be_plain = !convert_->window && left_out_rows_.empty();
+  constexpr std::size_t kCount = PlainSamples::kCount;
+  for (std::size_t i = 0; i < part.positions.size();) {
+    if (may_be_plain && kept_ > 1 && part.positions.size() - i >= kCount &&
+        plain_.convert(*convert_, part.positions.subspan(i), part.values.subspan(i), last_mm_,
+                       upwards_)) {
+      keep(plain_.positions(), plain_.values(), rows_ + 1);
+      i += kCount;
+      rows_ += kCount;
+      last_given_ = part.positions[i - 1];
+    } else {
+      ++rows_;
+      take_one(part.positions[i], part.values[i]);
+      ++i;
+    }
+  }
+}
+
+void Intake::take_one(double given, double value_given) {
+  const auto refuse = [this](const std::string& what) {
+    throw DataError("data row " + std::to_string(rows_) + ": " + what);
+  };
+  if (convert_->window && !(given >= convert_->window->first && given <= convert_->window->second))
+    return;
+  if (std::isnan(value_given)) {
+    ++profile_->missing;
+    return;
+  }
+  if (std::ranges::binary_search(left_out_rows_, rows_)) {
+    ++profile_->left_out;
+    return;
+  }
+  const double position = convert_->to_mm(convert_->position(given));
+  const double value = convert_->value(value_given);
+  if (!(std::abs(position) <= kLargest && std::abs(value) <= kLargest))
+    refuse("too large for its unit; the largest accepted: 1e9 mm or rad");
+  if (kept_ == 1) upwards_ = position > last_mm_;
+  if (kept_ > 0 && !(upwards_ ? position > last_mm_ : position < last_mm_))
+    refuse("position " + shortest(given) + " follows " + shortest(last_given_) +
+           "; positions must strictly increase (or strictly decrease)");
+  last_given_ = given;
+  keep({&position, 1}, {&value, 1}, rows_);
+}
+
+void Intake::keep(std::span<const double> positions, std::span<const double> values,
+                  std::size_t first_row) {
+  if (runs_.empty() || runs_.back().second + (kept_ - runs_.back().first) != first_row)
+    runs_.emplace_back(kept_, first_row);
+  kept_ += positions.size();
+  last_mm_ = positions.back();
+  while (!positions.empty()) {
+    if (profile_->positions.size() == source_->most_samples) halve();
+    std::size_t count = 1;
+    if (block_ == 1) {
+      count = std::min(positions.size(), source_->most_samples - profile_->positions.size());
+      const auto mm = positions.first(count), kept = values.first(count);
+      profile_->positions.insert(profile_->positions.end(), mm.begin(), mm.end());
+      profile_->values.insert(profile_->values.end(), kept.begin(), kept.end());
+    } else {
+      keep_mean(positions[0], values[0]);
+    }
+    positions = positions.subspan(count);
+    values = values.subspan(count);
+  }
+}
+
+void Intake::keep_mean(double position, double value) {
+  position_sum_ += position;
+  value_sum_ += value;
+  if (++pending_ < block_) return;
+  profile_->positions.push_back(position_sum_ / static_cast<double>(block_));
+  profile_->values.push_back(value_sum_ / static_cast<double>(block_));
+  pending_ = 0;
+  position_sum_ = value_sum_ = 0.0;
+}
+
+void Intake::halve() {
+  for (std::vector<double>* series : {&profile_->positions, &profile_->values}) {
+    const std::size_t half = series->size() / 2;
+    for (std::size_t i = 0; i < half; ++i)
+      (*series)[i] = 0.5 * ((*series)[2 * i] + (*series)[2 * i + 1]);
+    series->resize(half);
+  }
+  block_ *= 2;
+}
+
+void Intake::check_left_out() const {
+  for (const std::size_t row : left_out_rows_)
+    if (row == 0 || row > rows_)
+      throw UsageError("profile '" + profile_->name + "': leave_out: data row " +
+                       std::to_string(row) + " is not there; accepted: 1 to " +
+                       std::to_string(rows_));
+}
+
+void Intake::finish() {
+  check_left_out();
+  std::vector<std::string>& notes = profile_->notes;
+  if (profile_->missing > 0)
+    notes.push_back(counted(profile_->missing, "missing point") + " left out");
+  if (profile_->left_out > 0)
+    notes.push_back(counted(profile_->left_out, "sample") + " left out by the problem's leave_out");
+  if (block_ > 1) {
+    notes.push_back(counted(kept_, "sample") + ", more than " +
+                    std::to_string(source_->most_samples) + ": kept as means of " +
+                    std::to_string(block_) + " each");
+    if (profile_->standard_uncertainty)
+      *profile_->standard_uncertainty /= std::sqrt(static_cast<double>(block_));
+  }
+  if (upwards_) return;
+  std::ranges::reverse(profile_->positions);
+  std::ranges::reverse(profile_->values);
+  notes.emplace_back("trace runs backwards in the file: reversed");
+}
+
+std::size_t Intake::row(std::size_t sample) const {
+  if (!upwards_) sample = profile_->positions.size() - 1 - sample;
+  const std::size_t kept = sample * block_;
+  const auto run = std::prev(std::ranges::upper_bound(runs_, kept, {}, &Run::first));
+  return run->second + (kept - run->first);
+}
+
+}  // namespace slideway
