@@ -16,6 +16,8 @@
 namespace slideway {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 /// In the file's own units.
 struct Summary {
   std::size_t missing = 0;
@@ -80,6 +82,10 @@ class InfoCommand : public ReportCommand {
   int run() override {
     keep(input_);
     TraceFile file = read_trace(input_, request_);
+    if (file.trace.areal) {
+      report([&] { return areal_text(file); }, [&] { return areal_json(file); });
+      return kDone;
+    }
     arguments_.add_units(file);
     const Summary summary = summarise(file.trace);
     outliers_ = outlier_rows(file.trace);
@@ -90,6 +96,63 @@ class InfoCommand : public ReportCommand {
  private:
   void check(const boost::program_options::variables_map& /*given*/) override {
     request_ = arguments_.checked();
+    request_.areal_without_line = true;
+  }
+
+  using Lines = std::vector<std::pair<std::string, std::string>>;
+
+  [[nodiscard]] std::string laid_out(const Lines& lines) const {
+    std::string out = printable(input_, input_.size()) + "\n";
+    for (const auto& [label, value] : lines)
+      out += paragraph("  " + label + std::string(11 - label.size(), ' '), value);
+    return out;
+  }
+
+  [[nodiscard]] std::string areal_text(const TraceFile& file) const {
+    const Areal& areal = *file.trace.areal;
+    const std::size_t rows = areal.y.size(), columns = areal.x.size();
+    const auto axis = [&](const std::vector<double>& at) {
+      std::string text = significant(at.front(), 7) + " to " + significant(at.back(), 7) + " " +
+                         file.trace.position_unit;
+      if (at.size() > 1)
+        text += ", " +
+                significant((at.back() - at.front()) / static_cast<double>(at.size() - 1), 4) +
+                " apart";
+      return text;
+    };
+    Lines lines{{"format", file.format},
+                {"sha256", file.sha256},
+                {"points", std::to_string(rows * columns) + " in " + std::to_string(rows) +
+                               " rows of " + std::to_string(columns)},
+                {"missing", std::to_string(areal.missing)},
+                {"x", axis(areal.x)},
+                {"y", axis(areal.y)}};
+    if (areal.heights)
+      lines.emplace_back("values", significant(areal.heights->first, 7) + " to " +
+                                       significant(areal.heights->second, 7) + " " +
+                                       file.trace.value_unit);
+    for (const std::string& decision : file.trace.decisions)
+      lines.emplace_back("taken as", decision);
+    lines.emplace_back("a profile",
+                       "is one line of it: --line row:1 to row:" + std::to_string(rows) +
+                           ", column:1 to column:" + std::to_string(columns) +
+                           " or diameter:DEGREES; in a problem line = \"row:1\"");
+    return laid_out(lines);
+  }
+
+  [[nodiscard]] std::string areal_json(const TraceFile& file) const {
+    const Areal& areal = *file.trace.areal;
+    Json document = head_of(file, areal.x.size() * areal.y.size(), areal.missing);
+    document["rows"] = areal.y.size();
+    document["columns"] = areal.x.size();
+    document["x_first"] = areal.x.front();
+    document["x_last"] = areal.x.back();
+    document["y_first"] = areal.y.front();
+    document["y_last"] = areal.y.back();
+    document["value_min"] = areal.heights ? Json(areal.heights->first) : Json();
+    document["value_max"] = areal.heights ? Json(areal.heights->second) : Json();
+    document["decisions"] = file.trace.decisions;
+    return document_text(document);
   }
 
   [[nodiscard]] std::string text(const TraceFile& file, const Summary& summary) const {
@@ -100,12 +163,11 @@ class InfoCommand : public ReportCommand {
     const auto range = [](double from, double to, int digits) {
       return significant(from, digits) + " to " + significant(to, digits);
     };
-    std::vector<std::pair<std::string, std::string>> lines{
-        {"format", file.format},
-        {"sha256", file.sha256},
-        {"points", std::to_string(trace.positions.size())},
-        {"missing", std::to_string(summary.missing)},
-        {"positions", range(summary.first, summary.last, 7) + unit(trace.position_unit)}};
+    Lines lines{{"format", file.format},
+                {"sha256", file.sha256},
+                {"points", std::to_string(trace.positions.size())},
+                {"missing", std::to_string(summary.missing)},
+                {"positions", range(summary.first, summary.last, 7) + unit(trace.position_unit)}};
     if (trace.positions.size() > 1)
       lines.emplace_back("step",
                          (significant(summary.step_low, 4) == significant(summary.step_high, 4)
@@ -130,14 +192,23 @@ class InfoCommand : public ReportCommand {
     if (outliers_.size() > kListed)
       lines.emplace_back("", "and " + std::to_string(outliers_.size() - kListed) + " more");
     for (const std::string& decision : trace.decisions) lines.emplace_back("taken as", decision);
-    std::string out = printable(input_, input_.size()) + "\n";
-    for (const auto& [label, value] : lines)
-      out += paragraph("  " + label + std::string(11 - label.size(), ' '), value);
+    const std::string out = laid_out(lines);
     return summary.has_values() ? out + "\n" + picture(trace.positions, trace.values) : out;
   }
 
+  [[nodiscard]] Json head_of(const TraceFile& file, std::size_t points, std::size_t missing) const {
+    const auto unit = [](const std::string& name) { return name.empty() ? Json() : Json(name); };
+    return {{"schema", "slideway.info/1"},
+            {"file", printable(input_, input_.size())},
+            {"format", file.format},
+            {"sha256", file.sha256},
+            {"points", points},
+            {"missing", missing},
+            {"position_unit", unit(file.trace.position_unit)},
+            {"value_unit", unit(file.trace.value_unit)}};
+  }
+
   [[nodiscard]] std::string json(const TraceFile& file, const Summary& summary) const {
-    using Json = nlohmann::ordered_json;
     const Trace& trace = file.trace;
     const auto or_null = [](bool known, const auto& value) { return known ? Json(value) : Json(); };
     const bool values = summary.has_values(), steps = trace.positions.size() > 1;
@@ -148,25 +219,17 @@ class InfoCommand : public ReportCommand {
                           {"expected", each.expected},
                           {"unit", or_null(!trace.value_unit.empty(), trace.value_unit)},
                           {"kind", slideway::name(each.kind)}});
-    const Json document = {
-        {"schema", "slideway.info/1"},
-        {"file", printable(input_, input_.size())},
-        {"format", file.format},
-        {"sha256", file.sha256},
-        {"points", trace.positions.size()},
-        {"missing", summary.missing},
-        {"position_unit", or_null(!trace.position_unit.empty(), trace.position_unit)},
-        {"value_unit", or_null(!trace.value_unit.empty(), trace.value_unit)},
-        {"position_first", summary.first},
-        {"position_last", summary.last},
-        {"step_min", or_null(steps, summary.step_low)},
-        {"step_max", or_null(steps, summary.step_high)},
-        {"value_min", or_null(values, summary.low)},
-        {"value_max", or_null(values, summary.high)},
-        {"rms", or_null(values, summary.rms)},
-        {"pv", or_null(values, summary.high - summary.low)},
-        {"outliers", outliers},
-        {"decisions", trace.decisions}};
+    Json document = head_of(file, trace.positions.size(), summary.missing);
+    document["position_first"] = summary.first;
+    document["position_last"] = summary.last;
+    document["step_min"] = or_null(steps, summary.step_low);
+    document["step_max"] = or_null(steps, summary.step_high);
+    document["value_min"] = or_null(values, summary.low);
+    document["value_max"] = or_null(values, summary.high);
+    document["rms"] = or_null(values, summary.rms);
+    document["pv"] = or_null(values, summary.high - summary.low);
+    document["outliers"] = outliers;
+    document["decisions"] = trace.decisions;
     return document_text(document);
   }
 

@@ -97,6 +97,19 @@ void take_diameter(const Grid& grid, double degrees, Trace& trace) {
                             significant(spacing, 6) + " " + trace.position_unit + " apart");
 }
 
+Areal areal(const Grid& grid) {
+  Areal out{grid.x, grid.y, 0, {}};
+  for (const double height : grid.heights) {
+    if (std::isnan(height)) {
+      ++out.missing;
+      continue;
+    }
+    const auto [low, high] = out.heights.value_or(std::pair(height, height));
+    out.heights = {std::min(low, height), std::max(high, height)};
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<double> even_positions(std::size_t count, double start, double step) {
@@ -120,10 +133,15 @@ Grid grid_of_points(const std::vector<double>& x, const std::vector<double>& y,
   return grid;
 }
 
-Trace line_of(const Grid& grid, std::string_view line, std::string_view unit) {
+Trace line_of(const Grid& grid, const TraceRequest& request, std::string_view unit) {
+  const std::string_view line = request.line;
   Trace trace;
   trace.position_unit = trace.value_unit = unit;
   const bool profile = grid.y.size() == 1;
+  if (!profile && line.empty() && request.areal_without_line) {
+    trace.areal = areal(grid);
+    return trace;
+  }
   const std::size_t colon = line.find(':');
   const std::string_view kind = profile && line.empty() ? "row" : line.substr(0, colon);
   double number = 1.0;

@@ -31,9 +31,9 @@ Grid grid_of_points(const std::vector<double>& x, const std::vector<double>& y,
 /// The line a request asks for: "row:2" along x, "column:3" along y (both counted from 1), or
 /// "diameter:30", the line through the centre at 30 degrees from x to y, interpolated bilinearly
 /// in the spacing of the grid, hypot(dx cos, dy sin); its positions count from the centre. A grid
-/// of one row is a profile and needs no request.
+/// of one row is a profile and needs no request. What the grid holds if that is accepted instead.
 /// @throws UsageError  no line asked for, or one that is not there
 /// @throws DataError   a diameter over positions that do not increase
-Trace line_of(const Grid& grid, std::string_view line, std::string_view unit);
+Trace line_of(const Grid& grid, const TraceRequest& request, std::string_view unit);
 
 }  // namespace slideway

@@ -219,7 +219,7 @@ Trace Sdf::read(std::string_view bytes, const TraceRequest& request) const {
   }
   const Grid grid{even_positions(header.points, 0.0, header.x_scale),
                   even_positions(header.profiles, 0.0, header.y_scale), std::move(heights)};
-  Trace trace = line_of(grid, request.line, "m");
+  Trace trace = line_of(grid, request, "m");
   trace.decisions.insert(trace.decisions.begin(),
                          "version " + printable(version_of(bytes)) + ", lengths in m");
   return trace;

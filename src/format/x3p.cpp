@@ -176,7 +176,7 @@ Trace X3p::read(std::string_view bytes, const TraceRequest& request) const {
     refuse_line(request, "an X3P file of type PRF");
     trace = profile_of(std::move(points), axes);
   } else {
-    trace = line_of(grid_of(std::move(points), axes, size), request.line, "m");
+    trace = line_of(grid_of(std::move(points), axes, size), request, "m");
   }
   // The standard gives absolute axes no increment, and the reference library passes over it.
   for (const X3pAxis* axis : {&axes.x, &axes.y, &axes.z})

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "cli/run_program.hpp"
+#include "cli/bad_input.hpp"
 #include "slideway/report/layout.hpp"
 
 namespace slideway {
@@ -138,6 +138,28 @@ TEST_F(Identify, StrictIsNegativeWhereSomethingIsNotDetermined) {
   const std::string problem = shipped("problems/three-levels/problem.toml");
   EXPECT_EQ(run({"identify", problem, "--no-trace", "--strict"}).exit_code, 4);
   EXPECT_EQ(run({"fit", problem, "--strict"}).exit_code, 4);
+}
+
+TEST_F(Identify, LeavesOutSpikesWhereItIsAsked) {
+  folder_.file("face.csv", face_csv(64, 30, "30,-9000\n"));
+  folder_.file("problem.toml", ProblemText{.profile_more = "leave_out = \"spikes\"\n"}.text());
+  const ProgramRun done = run({"identify", "problem.toml", "--no-trace", "--json", "-"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const json input = json::parse(done.out)["inputs"][0];
+  EXPECT_EQ(input["samples"], 63);
+  EXPECT_THAT(input.dump(),
+              HasSubstr("1 sample that neighbours contradict, left out: data row 31"));
+}
+
+TEST_F(Identify, NeedsNoUnitsWhereTheFileStatesThem) {
+  folder_.file("face.csv", face_csv(64));
+  ASSERT_EQ(run({"convert", "face.csv", "face.x3p"}).exit_code, 0);
+  folder_.file("problem.toml", ProblemText{.file = "face.x3p", .columns = "", .units = ""}.text());
+  const ProgramRun done = run({"identify", "problem.toml", "--no-trace", "--json", "-"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const json input = json::parse(done.out)["inputs"][0];
+  EXPECT_EQ(input["samples"], 64);
+  EXPECT_DOUBLE_EQ(input["position_max_mm"], 63.0);
 }
 
 TEST_F(Identify, DoesNotKnowTheLocale) {

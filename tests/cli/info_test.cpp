@@ -46,6 +46,33 @@ TEST_F(Info, TellsWhatAFileHolds) {
             "Latin-1, semicolons between columns, decimal comma, 1 header line");
 }
 
+// SDF as ISO 25178-71 has it: 3 points in each of 2 profiles, heights in um.
+const char* const kAreal =
+    "aISO-1.0\nManufacID = here\nCreateDate = 0\nModDate = 0\nNumPoints = 3\nNumProfiles = 2\n"
+    "Xscale = 1e-3\nYscale = 2e-3\nZscale = 1e-6\nZresolution = -1\nCompression = 0\n"
+    "DataType = 7\nCheckType = 0\n*\n1 2 3\n4 BAD 6\n*\n*";
+
+TEST_F(Info, TellsWhatAnArealFileHoldsAndHowToChooseALine) {
+  folder_.file("face.sdf", kAreal);
+  const json info = json::parse(run({"info", "face.sdf", "--json", "-"}).out);
+  EXPECT_EQ(info["format"], "SDF");
+  EXPECT_EQ(info["points"], 6);
+  EXPECT_EQ(info["rows"], 2);
+  EXPECT_EQ(info["columns"], 3);
+  EXPECT_EQ(info["missing"], 1);
+  EXPECT_EQ(info["position_unit"], "m");
+  EXPECT_DOUBLE_EQ(info["x_last"], 2e-3);
+  EXPECT_DOUBLE_EQ(info["y_last"], 2e-3);
+  EXPECT_DOUBLE_EQ(info["value_min"], 1e-6);
+  EXPECT_DOUBLE_EQ(info["value_max"], 6e-6);
+  const std::string text = run({"info", "face.sdf"}).out;
+  EXPECT_THAT(text, HasSubstr("6 in 2 rows of 3"));
+  EXPECT_THAT(text, HasSubstr("0 to 0.002 m, 0.001 apart"));
+  EXPECT_THAT(text, HasSubstr("--line row:1 to row:2"));
+  const json line = json::parse(run({"info", "face.sdf", "--line", "row:1", "--json", "-"}).out);
+  EXPECT_EQ(line["points"], 3);
+}
+
 TEST_F(Info, SaysWhereNothingIsKnown) {
   folder_.file("bare.txt", "0 1\n");
   const json info = json::parse(run({"info", "bare.txt", "--json", "-"}).out);

@@ -28,20 +28,20 @@ Grid twisted_plane(std::size_t columns, std::size_t rows) {
 
 TEST(LineOf, TakesRowsAndColumns) {
   const Grid grid{{1.0, 2.0, 3.0}, {5.0, 6.0}, {1, 2, 3, 4, 5, 6}};
-  const Trace row = line_of(grid, "row:2", "m");
+  const Trace row = line_of(grid, {.line = "row:2"}, "m");
   EXPECT_THAT(row.positions, ElementsAre(1.0, 2.0, 3.0));
   EXPECT_THAT(row.values, ElementsAre(4.0, 5.0, 6.0));
   EXPECT_EQ(row.position_unit, "m");
   EXPECT_THAT(row.decisions, ElementsAre("2 rows of 3 points; read the line row:2"));
-  const Trace column = line_of(grid, "column:3", "m");
+  const Trace column = line_of(grid, {.line = "column:3"}, "m");
   EXPECT_THAT(column.positions, ElementsAre(5.0, 6.0));
   EXPECT_THAT(column.values, ElementsAre(3.0, 6.0));
 }
 
 TEST(LineOf, NeedsNoChoiceInOneRow) {
   const Grid grid{{1.0, 2.0, 3.0}, {5.0}, {1, 2, 3}};
-  EXPECT_THAT(line_of(grid, "", "m").values, ElementsAre(1.0, 2.0, 3.0));
-  EXPECT_THAT(line_of(grid, "row:1", "m").values, ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_THAT(line_of(grid, {.line = ""}, "m").values, ElementsAre(1.0, 2.0, 3.0));
+  EXPECT_THAT(line_of(grid, {.line = "row:1"}, "m").values, ElementsAre(1.0, 2.0, 3.0));
 }
 
 TEST(LineOf, NamesTheChoicesAndTheSize) {
@@ -49,7 +49,7 @@ TEST(LineOf, NamesTheChoicesAndTheSize) {
   for (const char* line : {"", "row", "row:0", "row:4", "row:1.5", "row:x", "column:5", "column:-1",
                            "diameter:", "diameter:nan", "diagonal:1", "row:1e300", ":"})
     EXPECT_THAT(
-        [&] { (void)line_of(grid, line, "m"); },
+        [&] { (void)line_of(grid, {.line = line}, "m"); },
         ThrowsMessage<UsageError>(HasSubstr("3 rows of 4 points; accepted: \"row:1\" to \"row:3\", "
                                             "\"column:1\" to \"column:4\", \"diameter:DEGREES\"")))
         << line;
@@ -58,7 +58,7 @@ TEST(LineOf, NamesTheChoicesAndTheSize) {
 TEST(LineOf, InterpolatesAlongADiameter) {
   const Grid grid = twisted_plane(13, 9);  // x from -3 to 3, y from 10 to 26
   for (const double degrees : {0.0, 30.0, 45.0, 90.0, 135.0, 200.0, -60.0}) {
-    const Trace line = line_of(grid, "diameter:" + std::to_string(degrees), "mm");
+    const Trace line = line_of(grid, {.line = "diameter:" + std::to_string(degrees)}, "mm");
     const double c = std::cos(degrees * M_PI / 180.0);
     const double s = std::sin(degrees * M_PI / 180.0);
     ASSERT_EQ(line.positions.size() % 2, 1) << degrees;
@@ -73,26 +73,28 @@ TEST(LineOf, InterpolatesAlongADiameter) {
           << degrees;
     }
   }
-  EXPECT_THAT(line_of(grid, "diameter:0", "mm").positions, SizeIs(13));
-  EXPECT_THAT(line_of(grid, "diameter:90", "mm").positions, SizeIs(9));
-  EXPECT_THAT(line_of(grid, "diameter:180", "mm").positions, SizeIs(13));
+  EXPECT_THAT(line_of(grid, {.line = "diameter:0"}, "mm").positions, SizeIs(13));
+  EXPECT_THAT(line_of(grid, {.line = "diameter:90"}, "mm").positions, SizeIs(9));
+  EXPECT_THAT(line_of(grid, {.line = "diameter:180"}, "mm").positions, SizeIs(13));
 }
 
 TEST(LineOf, KeepsMissingPointsMissingAlongADiameter) {
   Grid grid{even_positions(5, 0.0, 1.0), even_positions(5, 0.0, 1.0), std::vector<double>(25, 1.0)};
   grid.heights[2 * 5 + 3] = std::nan("");
-  EXPECT_THAT(line_of(grid, "diameter:0", "m").values, ElementsAre(1.0, 1.0, 1.0, IsNan(), 1.0));
-  EXPECT_THAT(line_of(grid, "diameter:90", "m").values, Each(1.0));
+  EXPECT_THAT(line_of(grid, {.line = "diameter:0"}, "m").values,
+              ElementsAre(1.0, 1.0, 1.0, IsNan(), 1.0));
+  EXPECT_THAT(line_of(grid, {.line = "diameter:90"}, "m").values, Each(1.0));
 }
 
 TEST(LineOf, BoundsADiameterInAGridOfUnlikeSpacings) {
   Grid grid{even_positions(2, 0.0, 1e-9), even_positions(2, 0.0, 1e9), {1, 1, 1, 1}};
   for (const double degrees : {0.0, 1e-12, 45.0, 89.999999, 90.0})
-    EXPECT_LE(line_of(grid, "diameter:" + std::to_string(degrees), "m").values.size(), 5);
+    EXPECT_LE(line_of(grid, {.line = "diameter:" + std::to_string(degrees)}, "m").values.size(), 5);
 }
 
 TEST(LineOf, RefusesADiameterOverPositionsThatDoNotIncrease) {
-  EXPECT_THROW((void)line_of({{0.0, 0.0}, {0.0, 1.0}, {1, 2, 3, 4}}, "diameter:0", "m"), DataError);
+  EXPECT_THROW((void)line_of({{0.0, 0.0}, {0.0, 1.0}, {1, 2, 3, 4}}, {.line = "diameter:0"}, "m"),
+               DataError);
 }
 
 TEST(GridOfPoints, FindsRows) {

@@ -127,6 +127,22 @@ TEST(FindOutliers, FollowsUnevenStationsAndJudgesNothingBesideAGap) {
   EXPECT_NEAR(found[0].expected, 50.0 * positions[2000], 4.0);  // noise of two neighbours
 }
 
+// 30 samples; a step of 10 makes two second differences of 5, a spike one of its height.
+TEST(FindOutliers, TakesForASpikeOfAShortLineWhatIsTwiceAsLargeAsWhatRecurs) {
+  const auto found = [](double spike, bool with_steps) {
+    RandomStream random(9, "short");
+    std::vector<double> values = noise(30, 0.0, random);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = 0.01 * values[i] + (with_steps && i >= 8 && i < 20 ? 10.0 : 0.0);
+    values[14] += spike;
+    return outliers_of(values);
+  };
+  EXPECT_THAT(found(8.0, true), IsEmpty());
+  ASSERT_EQ(found(8.0, false).size(), 1U);
+  ASSERT_EQ(found(30.0, true).size(), 1U);
+  EXPECT_EQ(found(30.0, true)[0].index, 14U);
+}
+
 TEST(FindOutliers, FollowsTheScaleAndTheZeroOfTheValues) {
   RandomStream random(8, "scale");
   std::vector<double> values = noise(300, 0.9, random);

@@ -6,10 +6,19 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// The files profiles arrive in: one format a file under src/format/, all behind Format.
 namespace slideway {
+
+/// What an areal file holds, in its own units.
+struct Areal {
+  std::vector<double> x;  // of the columns
+  std::vector<double> y;  // of the rows
+  std::size_t missing = 0;
+  std::optional<std::pair<double, double>> heights;  // smallest and largest
+};
 
 /// One line of points out of a file, as the file has it.
 struct Trace {
@@ -18,6 +27,7 @@ struct Trace {
   std::string position_unit;           // of kLengthUnits, or "s"; empty if the file does not say
   std::string value_unit;              // the same, or one of kSlopeUnits
   std::vector<std::string> decisions;  // what the reader found or had to decide, a sentence each
+  std::optional<Areal> areal;          // of an areal file if no line is chosen; no points then
 };
 
 /// Points of a trace that follow one another.
@@ -38,6 +48,7 @@ struct TraceRequest {
   std::string encoding;             // text: "utf-8" "utf-16" "latin-1"
   std::optional<int> header_lines;  // text: lines before the first row of numbers
   std::string line;  // areal files: "row:12" "column:3" (1-based) "diameter:30" (degrees)
+  bool areal_without_line = false;  // what such a file holds, or an error
   bool ignore_checksum = false;
 };
 
