@@ -88,6 +88,8 @@ bool PlainSamples::convert(const Conversion& convert, std::span<const double> po
 Intake::Intake(const ProfileSource& source, Profile& profile)
     : source_(&source), profile_(&profile), left_out_rows_(source.left_out_rows) {
   std::ranges::sort(left_out_rows_);
+  profile.positions.clear();
+  profile.values.clear();
 }
 
 void Intake::start(const TracePart& part) {

@@ -73,7 +73,8 @@ TEST_F(ReadProfile, GivesTheSamePositionsFromMillimetresAndMicrometres) {
 TEST_F(ReadProfile, TurnsTimeIntoPositionByTheFeed) {
   source_.position_unit = "s";
   EXPECT_THAT([&] { read("0,0\n30,1\n"); },
-              ThrowsMessage<UsageError>(StartsWith("profile 'face': positions in time need feed")));
+              ThrowsMessage<UsageError>(
+                  StartsWith(file() + ": profile 'face': positions in time need feed")));
   profile_.setup.feed_mm_per_min = 2.0;
   EXPECT_THAT(read("0,0\n30,1\n").positions, ElementsAre(0.0, 1.0));
 }

@@ -117,7 +117,7 @@ TEST(RunningPearson, IsPearsonOfTheFirstSamples) {
 TEST(RunningPearson, GivesNoMorePointsThanSamples) {
   EXPECT_THAT(running_pearson(kAnscombeX, kAnscombeY, 1000).samples,
               ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11));
-  EXPECT_TRUE(running_pearson({}, {}, 5).samples.empty());
+  EXPECT_TRUE(running_pearson({}, std::span<const double>(), 5).samples.empty());
 }
 
 TEST(BestLag, FindsByHowMuchTheSecondComesLater) {
