@@ -98,7 +98,8 @@ def main():
     groups, at_limit = collections.defaultdict(list), collections.defaultdict(list)
     for case in cases:
         (at_limit if case["at_limit"] else groups)[case["cuts"], case["truth"]].append(case)
-    print(__doc__ and open("bench/quality_head.md").read())
+    print(open("bench/quality_head.md").read())
+    print(f"{len(cases)} cases in these tables; each says how many are its own.\n")
     for cuts in sorted({c["cuts"] for c in cases}, reverse=True):
         print(f"## {cuts} cut{'s' if cuts > 1 else ''}\n")
         clean = groups[cuts, "clean"]

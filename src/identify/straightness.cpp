@@ -140,10 +140,10 @@ std::optional<IdentifiedStraightness> identified_straightness(const Model& model
   const auto spread = [&](const Eigen::RowVectorXd& weights) {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(fit.uncertainty.basis.rows());
     row.segment(first, count) = weights * columns;
-    Spread spread = fit.uncertainty.of(row);
+    Spread widened = fit.uncertainty.of(row);
     if (more)
-      spread.standard_uncertainty = std::hypot(spread.standard_uncertainty, std::sqrt(more(row)));
-    return spread;
+      widened.standard_uncertainty = std::hypot(widened.standard_uncertainty, std::sqrt(more(row)));
+    return widened;
   };
   const Eigen::VectorXd heights = columns * fit.estimate.amplitudes.segment(first, count);
   const Eigen::VectorXd from_line = deviations * heights;
