@@ -83,8 +83,13 @@ struct Plot::Axis {
       low -= margin;
       high += margin;
     }
-    const double step =
-        nice_step(high - low, std::max(3.0, std::abs(to - from) / (padded ? 40.0 : 65.0)));
+    constexpr double kMost = 12.0;  // divisions: a scale needs two ticks, not all
+    double count = std::max(2.0, std::abs(to - from) / (padded ? 40.0 : 65.0));
+    do divide(nice_step(high - low, count));
+    while (ticks.size() < 2 && ++count < kMost);
+  }
+  void divide(double step) {
+    ticks.clear();
     for (double k = std::ceil(low / step);
          k * step <= high * (1.0 + 1e-12 * (high > 0 ? 1 : -1)) && ticks.size() < 50; ++k)
       ticks.emplace_back(k * step, tick_text(k * step, step));
