@@ -188,8 +188,7 @@ void add_bands(const Observation& observation, double unit, ProfileCurves& out) 
       reconstruct_bands(daubechies(options.wavelet), options.boundary, options.level, view(values));
   for (const Band& band : bands.approximations)
     out.approximations.push_back(envelope(band, kStretches));
-  for (const Band& band : bands.details)
-    out.details.push_back(envelope(band, kStretches));
+  for (const Band& band : bands.details) out.details.push_back(envelope(band, kStretches));
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ TEST(Dialect, TakesUnitsFromNamesAndUnitRows) {
   EXPECT_THAT(units("X;Z\nmm;\u00b5m"), ElementsAre("mm", "um"));
   EXPECT_THAT(units("x;drawn in"), ElementsAre("", ""));
   EXPECT_THAT(units("x_mm;Height [\u00c5]"), ElementsAre("mm", ""));  // none that is known
-  EXPECT_THAT(units("m;mm"), ElementsAre("", ""));  // names
+  EXPECT_THAT(units("m;mm"), ElementsAre("", ""));                    // names
   EXPECT_THAT(parse("a;x_mm;z_nm\n1;2;3\n", {.columns = {"z_nm", "a"}}).units,
               ElementsAre("nm", ""));
 }
