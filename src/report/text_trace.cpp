@@ -39,8 +39,8 @@ std::string residual_change(const TraceRound& round) {
 
 std::string verdict(const TraceResult& trace) {
   if (trace.verdict == "nothing_missing")
-    return "nothing is missing: the residual is no more than noise (lack of fit p = " +
-           probability(trace.lack_of_fit_p) + ").";
+    return "nothing is missing that these data tell from noise (lack of fit p = " +
+           probability(trace.lack_of_fit_p) + "; structure is what is below 0.001).";
   if (trace.verdict == "explained") return "an effect was missing and is named:";
   if (trace.verdict == "ambiguous")
     return "an effect is missing, and these data can not tell it from its rivals:";
