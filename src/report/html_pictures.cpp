@@ -12,6 +12,26 @@ using Column = HtmlTable::Column;
 
 // --- straightness ---------------------------------------------------------------------------
 
+std::string straightness_errors(const std::vector<Node>& errors) {
+  HtmlTable table(
+      "Straightness error: largest positive minus largest negative deviation from the "
+      "stated line",
+      {{"reference line", Column::text},
+       {"error ± U, µm", Column::number},
+       {"k", Column::number},
+       {"highest, µm", Column::number},
+       {"at x, mm", Column::number},
+       {"lowest, µm", Column::number},
+       {"at x, mm", Column::number}});
+  for (const Node& e : errors)
+    table.add({html_text(e["line"]),
+               html_pair(e["error_um"].number(), e["expanded_uncertainty_um"].number()),
+               html_cell(e["coverage_factor"], 3), html_cell(e["highest_um"], 3),
+               html_cell(e["highest_at_mm"], 4), html_cell(e["lowest_um"], 3),
+               html_cell(e["lowest_at_mm"], 4)});
+  return table.html();
+}
+
 std::string straightness(const Node& report) {
   if (!report.has("straightness") || !report.has("curves") || !report["curves"].has("straightness"))
     return "";
@@ -40,22 +60,6 @@ std::string straightness(const Node& report) {
       .line("end-point line", "before", {x.front(), x.back()},
             {deviation.front(), deviation.back()})
       .level("least-squares line", "limit", 0.0);
-  HtmlTable table(
-      "Straightness error: largest positive minus largest negative deviation from the "
-      "stated line",
-      {{"reference line", Column::text},
-       {"error ± U, µm", Column::number},
-       {"k", Column::number},
-       {"highest, µm", Column::number},
-       {"at x, mm", Column::number},
-       {"lowest, µm", Column::number},
-       {"at x, mm", Column::number}});
-  for (const Node& e : errors)
-    table.add({html_text(e["line"]),
-               html_pair(e["error_um"].number(), e["expanded_uncertainty_um"].number()),
-               html_cell(e["coverage_factor"], 3), html_cell(e["highest_um"], 3),
-               html_cell(e["highest_at_mm"], 4), html_cell(e["lowest_um"], 3),
-               html_cell(e["lowest_at_mm"], 4)});
   const double step = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
   return html_section(
       "straightness", "Straightness of the slide, ISO 230-1",
@@ -66,10 +70,10 @@ std::string straightness(const Node& report) {
           "band is narrow beside the curve (the form is known) and the error is within the "
           "machine's tolerance. The three reference lines give three different numbers, all "
           "of them valid: a tolerance must state its line.") +
-          table.html() + "<p class=\"hint\">Evaluated from the fitted polynomial at " +
-          std::to_string(x.size()) + " points over x = " + html_number(x.front(), 5) + " to " +
-          html_number(x.back(), 5) + " mm, a step of " + html_number(step, 3) +
-          " mm: a limited representation of the slide." +
+          straightness_errors(errors) +
+          "<p class=\"hint\">Evaluated from the fitted polynomial at " + std::to_string(x.size()) +
+          " points over x = " + html_number(x.front(), 5) + " to " + html_number(x.back(), 5) +
+          " mm, a step of " + html_number(step, 3) + " mm: a limited representation of the slide." +
           (report.has("trace") && report["trace"].has("unnamed")
                ? " U includes what the structure without a name adds to it."
                : "") +

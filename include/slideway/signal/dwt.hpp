@@ -58,10 +58,6 @@ Decomposition decompose(const Wavelet& wavelet, Boundary boundary, int levels,
 /// written into it.
 template <typename Value>
 struct Unset : std::allocator<Value> {
-  template <typename Other>
-  struct rebind {
-    using other = Unset<Other>;
-  };
   template <typename Other, typename... Arguments>
   void construct(Other* at, Arguments&&... arguments) {
     if constexpr (sizeof...(Arguments) > 0)
