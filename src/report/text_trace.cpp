@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "slideway/base/text.hpp"
 #include "slideway/report/layout.hpp"
@@ -106,8 +105,10 @@ std::string limits(const TraceResult& trace) {
   if (trace.detection_limits.empty()) return "";
   const auto extremes = [](const DetectionLimit& limit) -> std::string {
     if (limit.by_shape.empty()) return "";
-    const auto [least, most] = std::ranges::minmax(limit.by_shape | std::views::values);
-    return number(least, 2) + " to " + number(most, 2);
+    const auto by_size = [](const auto& a, const auto& b) { return a.second < b.second; };
+    const auto [least, most] =
+        std::minmax_element(limit.by_shape.begin(), limit.by_shape.end(), by_size);
+    return number(least->second, 2) + " to " + number(most->second, 2);
   };
   TextTable table({"effect", "found from", "other shapes", "at"},
                   {Column::effect, Column::number, Column::number, Column::name});
