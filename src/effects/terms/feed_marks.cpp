@@ -1,6 +1,5 @@
-#include <cmath>
-
 #include "../clock_range.hpp"
+#include "../groove.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
 
@@ -27,15 +26,9 @@ Description describe() {
               "with the square of the feed"};
 }
 
-// Parabola of the tool nose in each groove, mean zero. Groove centres lie at whole turns after the
-// start of this cut: r = R - i f inward, r = i f outward, whatever the clock showed when it
-// started; half a turn later on the far half of a diameter.
+// Parabola of the tool nose in each groove, mean zero.
 double scallop(const Stations& stations, Eigen::Index i) {
-  const Setup& setup = stations.setup();
-  const double far_half = stations.trace(i) < 0.0 ? 0.5 : 0.0;
-  const double turns =
-      stations.revolution(i) - setup.start_s * *setup.spindle_rpm / kMinute - far_half;
-  const double u = turns - std::round(turns);
+  const double u = groove_at(stations, i).across;
   return 4.0 * u * u - 1.0 / 3.0;
 }
 

@@ -1,3 +1,4 @@
+#include "../groove.hpp"
 #include "../periodic_effect.hpp"
 #include "../request.hpp"
 
@@ -34,7 +35,7 @@ std::unique_ptr<Effect> make_revolution_periodic(const Request& request) {
                           "over ν) and a change of spindle speed by 1 % (the alias jumps)"},
       .rate = {"cycles_per_revolution", "ν", "1", 0.1, 0.0, 1e4},
       .rate_is_period = false,
-      .clock = revolution_of,
+      .clock = cutting_revolution_of,
       .range = search,
       .applies_to = is_height});
 }

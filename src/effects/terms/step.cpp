@@ -1,4 +1,5 @@
 #include "../clock_range.hpp"
+#include "../groove.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
 
@@ -31,7 +32,7 @@ std::unique_ptr<Effect> make_step(const Request& request) {
                           "part does not"},
       .amplitude = {"height_um", "A", "µm", 0.1},
       .value = [](const Stations& stations, Eigen::Index i,
-                  double position) { return stations.radius(i) < position ? 1.0 : 0.0; },
+                  double position) { return tool_radius_of(stations, i) < position ? 1.0 : 0.0; },
       .applies_to = is_face_height,
       .shape = ShapeSpec{.parameter = {"position_mm", "r_c", "mm", 1.0, 0.0},
                          .shape = {.parameter = 1, .logarithmic = false, .stepwise = true},

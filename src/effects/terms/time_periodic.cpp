@@ -1,3 +1,4 @@
+#include "../groove.hpp"
 #include "../periodic_effect.hpp"
 #include "../request.hpp"
 
@@ -25,7 +26,7 @@ std::unique_ptr<Effect> make_time_periodic(const Request& request) {
                           "temperature or pressure log"},
       .rate = {"period_s", "T", "s", 60.0, 1e-2, 1e6},
       .rate_is_period = true,
-      .clock = time_of,
+      .clock = cutting_time_of,
       .range = [](const Stations& stations) { return period_range(stations, time_of); },
       .applies_to = is_height});
 }
