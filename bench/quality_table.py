@@ -26,13 +26,17 @@ def named(case):
     return [name for name in case["accepted"] if name not in SIGNATURE]
 
 
+def found(name, case):
+    return name in case["accepted"] + case["rivals"]
+
+
 def row(name, cases):
     above = [c for c in cases if c.get("limit") and c["truth_value"] >= 2 * c["limit"]]
-    in_set = [c for c in above if name in c["accepted"] + c["rivals"]]
+    in_set = [c for c in above if found(name, c)]
     alone = [c for c in above if name in c["accepted"] and not c["rivals"]]
     wrong = [c for c in cases if not c["rivals"] and set(named(c)) - {name, TWIN.get(name)}]
     near = [c for c in cases if c.get("limit") and 0.8 <= c["truth_value"] / c["limit"] < 1.25]
-    found_near = [c for c in near if name in c["accepted"] + c["rivals"]]
+    found_near = [c for c in near if found(name, c)]
     bias = [abs(c["bias_after"]) <= 1.96 * c["u_after"] for c in in_set if c["u_after"] > 0]
     z = [(c["found_um"][0] - c["truth_value"]) / c["found_um"][1] for c in above
          if "found_um" in c and c["found_um"][1] > 0]
@@ -44,10 +48,6 @@ def row(name, cases):
             f"{sum(abs(x) <= 2 for x in z)}/{len(z)}" if z else "",
             f"{sum(bias)}/{len(bias)}" if bias else "",
             f"{100 * statistics.median(fall):.0f} %" if fall else ""]
-
-
-def found(name, case):
-    return name in case["accepted"] + case["rivals"]
 
 
 def at_limit_row(name, cases):

@@ -58,8 +58,7 @@ class Loop {
     const bool retracted = retract(state, last->data);
     if (retracted) last = look_at(state);
     tell("describing what is left");
-    ClosedLoop out;
-    out.trace = report(state, *last, retracted, out.widening);
+    ClosedLoop out = report(state, *last, retracted);
     if (!state.added.empty()) out.extended = extender_.in_declared_band(std::move(state));
     return out;
   }
@@ -250,9 +249,10 @@ class Loop {
     return drop_small(state, kLeastSize) || changed;
   }
 
-  TraceResult report(const Extended& state, const Look& last, bool retracted,
-                     std::optional<Widening>& widened) {
-    TraceResult out;
+  /// All but the extended model.
+  ClosedLoop report(const Extended& state, const Look& last, bool retracted) {
+    ClosedLoop closed;
+    TraceResult& out = closed.trace;
     const FitResult& after = extender_.summary(state);
     out.before = before_->parameters;
     out.after = after.parameters;
@@ -283,8 +283,8 @@ class Loop {
       const Structure structure = find_structure(state.model, last.data, state.fit.linear);
       out.unnamed = describe(structure, last.data, state.fit.linear);
       out.unnamed->p_value = left.p_value;
-      widened = widening(state.fit, structure, last);
-      widen(state.model, state.fit, *widened, out.after);
+      closed.widening = widening(state.fit, structure, last);
+      widen(state.model, state.fit, *closed.widening, out.after);
     }
     for (const Untestable& effect : dictionary_.not_testable)
       out.not_testable.emplace_back(effect.effect, effect.needs);
@@ -302,7 +302,7 @@ class Loop {
         form_of_another_cause(out, check_squareness(state.model, problem_.runout, after), after);
     if (!other_cause.empty()) out.advice.insert(out.advice.begin(), other_cause);
     out.verdict = verdict(out, !other_cause.empty());
-    return out;
+    return closed;
   }
 
   const Problem& problem_;
