@@ -76,6 +76,7 @@ Json run_case(const std::string& name, int cuts, double size, bool at_limit, dou
             {"at_limit", at_limit},
             {"size", size},
             {"seed", seed},
+            {"shape", hidden.shape},
             {"verdict", result.verdict},
             {"lack_of_fit_p", result.lack_of_fit_p}};
   json["accepted"] = Json::array();

@@ -10,6 +10,7 @@
 #include "linear_algebra.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/base/units.hpp"
 
 namespace slideway {
 namespace {
@@ -33,16 +34,19 @@ std::span<const double> middle_shape(const Candidate& candidate) {
   return candidate.shapes[candidate.shapes.size() / 2];
 }
 
-/// Places from one end of what the search looks at to the other, evenly (in the logarithm where the
-/// shape has one); one empty shape for a candidate without.
+/// Places from one end of what the search looks at to the other (in the logarithm where the shape
+/// has one), at the nodes of Chebyshev: what lies between them can be interpolated, near the ends
+/// too. One empty shape for a candidate without.
 std::vector<std::vector<double>> spread_shapes(const Candidate& candidate) {
   if (candidate.shapes.front().empty()) return {{}};
   const Shape& kind = candidate.term.effect->shapes()[0];
   const double first = kind.inner(candidate.shapes.front()[0]);
   const double last = kind.inner(candidate.shapes.back()[0]);
   std::vector<std::vector<double>> out;
-  for (int i = 0; i < kSpreadShapes; ++i)
-    out.push_back({kind.outer(first + (i + 0.5) / kSpreadShapes * (last - first))});
+  for (int i = 0; i < kSpreadShapes; ++i) {
+    const double share = 0.5 - 0.5 * std::cos(kPi * (i + 0.5) / kSpreadShapes);
+    out.push_back({kind.outer(first + share * (last - first))});
+  }
   return out;
 }
 

@@ -7,53 +7,61 @@
 namespace slideway {
 namespace {
 
-constexpr double kTold = 5.0;        // standard uncertainties of the effect in the profiles kept
+constexpr double kCertain = 25.0;    // gain of an effect of 5 standard uncertainties
 constexpr double kLeastShare = 0.1;  // of what all profiles know of it
 
-/// White columns [model, effect, residual] of one profile, free of its nuisances.
+/// White columns [model, effect, residual] of one profile, free of its nuisances and loose values,
+/// as the triangle that has the same inner products.
 Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, std::size_t i,
                            const Eigen::MatrixXd& effect) {
   const Observation& observation = *linear.observations[i];
   const Eigen::Index k = linear.prior_rows.cols(), a = effect.cols();
-  Eigen::MatrixXd rows(observation.values.size(), k + a + 1);
-  rows << linear.columns[i], effect.middleRows(data.first_row(i), data.count(i)),
+  const Eigen::Index free = observation.nuisances.cols();
+  const auto own = [&](const Eigen::MatrixXd& stacked) {
+    return stacked.middleRows(data.first_row(i), data.count(i));
+  };
+  Eigen::MatrixXd rows(observation.values.size(), free + data.loose().cols() + k + a + 1);
+  rows << observation.nuisances, own(data.loose()), linear.columns[i], own(effect),
       linear.residuals[i];
-  Eigen::MatrixXd nuisances = observation.nuisances;
   const Noise& noise = data.noise()[i];
   noise.correlation.whiten(rows);
   rows /= noise.innovation;
-  if (nuisances.cols() > 0) {
-    noise.correlation.whiten(nuisances);
-    const Eigen::MatrixXd basis = orthonormal(std::move(nuisances));
-    rows -= basis * (basis.transpose() * rows).eval();
-  }
-  return rows;
+  const Eigen::MatrixXd basis = orthonormal(rows.leftCols(rows.cols() - k - a - 1));
+  Eigen::MatrixXd rest = rows.rightCols(k + a + 1);
+  rest -= basis * (basis.transpose() * rest).eval();
+  return upper_triangle(std::move(rest));
 }
 
-/// Model, and model with effect, fitted to the rows of all profiles but one.
-struct OtherProfiles {
+/// What some profiles say: model, and model with effect, fitted to their rows and the priors.
+struct Told {
   LeastSquares without, with;
 
-  OtherProfiles(const Linearisation& linear, const std::vector<Eigen::MatrixXd>& rows,
-                std::size_t left_out) {
+  /// @param amplitudes  of the effect as all profiles have it
+  Told(const Linearisation& linear, const std::vector<Eigen::MatrixXd>& rows, std::size_t left_out,
+       const Eigen::VectorXd& amplitudes) {
     const Eigen::Index k = linear.prior_rows.cols(), priors = linear.prior_rows.rows();
-    const Eigen::Index last = rows[0].cols() - 1;
-    Eigen::Index count = priors;
-    for (std::size_t i = 0; i < rows.size(); ++i) count += i == left_out ? 0 : rows[i].rows();
-    Eigen::MatrixXd kept = Eigen::MatrixXd::Zero(count, last + 1);
+    const Eigen::Index a = amplitudes.size();
     Eigen::Index next = 0;
+    for (std::size_t i = 0; i < rows.size(); ++i) next += i == left_out ? 0 : rows[i].rows();
+    Eigen::MatrixXd kept = Eigen::MatrixXd::Zero(next + priors, k + a + 1);
+    kept.bottomLeftCorner(priors, k) = linear.prior_rows;
+    kept.bottomRightCorner(priors, 1) = linear.prior_residuals;
+    next = 0;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (i == left_out) continue;
       kept.middleRows(next, rows[i].rows()) = rows[i];
       next += rows[i].rows();
     }
-    kept.bottomLeftCorner(priors, k) = linear.prior_rows;
-    kept.bottomRightCorner(priors, 1) = linear.prior_residuals;
-    without = least_squares(kept.leftCols(k), kept.col(last));
-    with = least_squares(kept.leftCols(last), kept.col(last));
+    Eigen::MatrixXd targets(kept.rows(), 2);
+    targets << kept.rightCols(1), kept.middleCols(k, a) * amplitudes;
+    without = least_squares(kept.leftCols(k), targets);
+    with = least_squares(kept.leftCols(k + a), kept.rightCols(1));
   }
 
-  [[nodiscard]] double gain() const { return without.square - with.square; }
+  [[nodiscard]] double gain() const { return without.squares[0] - with.squares[0]; }
+  /// Gain to expect from an effect of the given amplitudes.
+  [[nodiscard]] double expected() const { return without.squares[1]; }
+  [[nodiscard]] Eigen::VectorXd model() const { return without.values.col(0); }
 };
 
 /// A square summed over the profiles left out, as predicted without and with the effect.
@@ -64,7 +72,6 @@ struct PredictionError {
     before += without.squaredNorm();
     after += with.squaredNorm();
   }
-  [[nodiscard]] bool falls() const { return after < before; }
 };
 
 /// Prediction of a profile's low band, its own levelling allowed: what is left of the residual.
@@ -80,41 +87,42 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
                                      const Refined& candidate) {
   const std::size_t count = linear.observations.size();
   const Eigen::Index k = linear.prior_rows.cols(), a = candidate.columns.cols();
+  const Projection& whole = candidate.projection;
+  const Eigen::VectorXd& amplitudes = whole.amplitudes;
   if (count < 2) return std::nullopt;
   std::vector<Eigen::MatrixXd> rows;
   for (std::size_t i = 0; i < count; ++i)
     rows.push_back(white_rows(linear, data, i, candidate.columns));
-  PredictionError beyond_model, white, heights;
-  double samples = 0.0;
+  PredictionError beyond_model, heights;
+  double support = 0.0, shown = 0.0, samples = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     const auto model = rows[i].leftCols(k), effect = rows[i].middleCols(k, a);
     if (effect.isZero(0.0)) continue;
-    const OtherProfiles others(linear, rows, i);
-    if (others.gain() < std::max(kTold * kTold, kLeastShare * candidate.projection.gain)) continue;
-    const Eigen::VectorXd amplitudes = others.with.values.bottomRows(a);
-    const Eigen::VectorXd carried = effect * amplitudes;
-    if (carried.squaredNorm() < kTold * kTold) continue;
-    const Eigen::VectorXd residual = rows[i].col(k + a);
-    white.add(residual - model * others.without.values,
-              residual - model * others.with.values.topRows(k) - carried);
+    const Told others(linear, rows, i, amplitudes);
+    if (!(others.expected() >= kLeastShare * whole.gain)) continue;
+    const Eigen::VectorXd carried = others.with.values.bottomRows(a);
+    const Eigen::VectorXd astray = carried - amplitudes;
+    shown += whole.gain - others.expected();
+    support += whole.gain - astray.dot(whole.gram * astray) - others.gain();
     const Eigen::MatrixXd basis = orthonormal(model);
     const auto outside = [&](const Eigen::VectorXd& column) -> Eigen::VectorXd {
       return column - basis * (basis.transpose() * column);
     };
-    if (outside(carried).squaredNorm() >= kTold * kTold)
-      beyond_model.add(outside(residual), outside(residual - carried));
+    if (others.expected() >= kCertain && outside(effect * amplitudes).squaredNorm() >= kCertain) {
+      const Eigen::VectorXd residual = rows[i].col(k + a);
+      beyond_model.add(outside(residual), outside(residual - effect * carried));
+    }
     const Observation& observation = *linear.observations[i];
     if (observation.profile->setup.quantity != Quantity::height) continue;
     const auto own = candidate.columns.middleRows(data.first_row(i), data.count(i));
-    heights.add(
-        left_over(observation, linear.residuals[i] - linear.columns[i] * others.without.values),
-        left_over(observation, linear.residuals[i] -
-                                   linear.columns[i] * others.with.values.topRows(k) -
-                                   own * amplitudes));
+    heights.add(left_over(observation, linear.residuals[i] - linear.columns[i] * others.model()),
+                left_over(observation, linear.residuals[i] -
+                                           linear.columns[i] * others.with.values.topRows(k) -
+                                           own * carried));
     samples += static_cast<double>(observation.low_band.samples());
   }
-  if (white.before == 0.0) return std::nullopt;
-  HeldOut out{beyond_model.before > 0.0 ? beyond_model.falls() : white.falls(), {}, {}};
+  if (!(shown >= kCertain)) return std::nullopt;
+  HeldOut out{support > 0.0 && beyond_model.after <= beyond_model.before, {}, {}};
   if (samples > 0.0) {
     out.before_um = std::sqrt(heights.before / samples) / kMicrometre;
     out.after_um = std::sqrt(heights.after / samples) / kMicrometre;

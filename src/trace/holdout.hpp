@@ -8,17 +8,19 @@ namespace slideway {
 
 /// What a candidate does for profiles that were left out of the fit.
 struct HeldOut {
-  /// Whether it carries over: the left-out profiles' white residual outside their own model falls
-  /// by it; where it shows only inside that, whether they are predicted better.
+  /// Whether it carries over: see leave_one_out().
   bool helps = false;
   std::optional<double> before_um, after_um;  // rms error of predicting height profiles
 };
 
 /// Leaves out each fitted profile that shows the effect in turn, fits model and effect to the rest
-/// and carries the effect over by its clock; offset and tilt of the profile left out are fitted
-/// anew. Only folds are counted whose rest tells the effect (5 standard uncertainties, and a tenth
-/// of what all profiles know of it) and whose profile shows it (5 times its noise); none: no
-/// answer.
+/// and carries the effect over by its clock: amplitudes â_-i. It helps if the error of predicting
+/// the profile, in units of what the rest leaves uncertain of the model, falls in the sum over all:
+/// Σ (G - (â_-i - â)' I (â_-i - â) - G_-i) > 0 with gain G, amplitudes â and their information I of
+/// all profiles; and if, where the others tell the effect and the profile shows it beyond its own
+/// model for certain (5 standard uncertainties), that residual falls by it. Only folds are counted
+/// whose rest knows a tenth of what all profiles know; no answer where these profiles together do
+/// not show it for certain.
 std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened& data,
                                      const Refined& candidate);
 

@@ -1,6 +1,7 @@
 #include "linear_algebra.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 
 namespace slideway {
 namespace {
@@ -30,15 +31,19 @@ LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd
   LeastSquares out;
   const Eigen::MatrixXd scaled = solver.solve(targets);
   out.values = unit.asDiagonal() * scaled;
-  out.square = (targets - columns * out.values).squaredNorm();
+  out.squares = (targets - columns * out.values).colwise().squaredNorm();
   return out;
 }
 
+Eigen::MatrixXd upper_triangle(Eigen::MatrixXd columns) {
+  const Eigen::Index size = std::min(columns.rows(), columns.cols());
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(std::move(columns));
+  return qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
+}
+
 Eigen::MatrixXd amplitude_covariance(const Eigen::MatrixXd& columns) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
-  const Eigen::MatrixXd triangle =
-      qr.matrixQR().topRows(columns.cols()).triangularView<Eigen::Upper>();
-  const Eigen::MatrixXd inverse = triangle.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse =
+      upper_triangle(columns).completeOrthogonalDecomposition().pseudoInverse();
   return inverse * inverse.transpose();
 }
 

@@ -8,10 +8,13 @@ namespace slideway {
 Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns);
 
 struct LeastSquares {
-  Eigen::MatrixXd values;  // one column per target, of least size where the columns leave a choice
-  double square = 0.0;     // of what is left of the targets
+  Eigen::MatrixXd values;   // one column per target, of least size where the columns leave a choice
+  Eigen::VectorXd squares;  // of what is left of each target
 };
 LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& targets);
+
+/// Upper triangular, at most as many rows as columns, with the same inner products of its columns.
+Eigen::MatrixXd upper_triangle(Eigen::MatrixXd columns);
 
 /// (C'C)⁺: covariance of the amplitudes of the columns C, for white data of unit variance.
 Eigen::MatrixXd amplitude_covariance(const Eigen::MatrixXd& columns);

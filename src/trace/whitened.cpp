@@ -26,9 +26,8 @@ Eigen::MatrixXd model_span(const Linearisation& linear) {
 
 }  // namespace
 
-Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
-                   const Eigen::MatrixXd& loose)
-    : noise_(std::move(noise)) {
+Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, Eigen::MatrixXd loose)
+    : noise_(std::move(noise)), loose_(std::move(loose)) {
   for (const Observation* observation : linear.observations) {
     first_.push_back(values_);
     values_ += observation->values.size();
@@ -36,8 +35,8 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
   first_.push_back(values_);
   rows_ = values_ + linear.prior_rows.rows();
   const Eigen::MatrixXd model = model_span(linear);
-  Eigen::MatrixXd span(rows_, model.cols() + loose.cols());
-  span << model, loose;
+  Eigen::MatrixXd span(rows_, model.cols() + loose_.cols());
+  span << model, loose_;
   whiten(span);
   basis_ = orthonormal(std::move(span));
   residual_ = stack(linear, 1, [&](std::size_t i) { return linear.residuals[i]; });

@@ -18,7 +18,7 @@ class Whitened {
   /// @param linear  the model at its fit
   /// @param noise   per fitted observation
   /// @param loose   further stacked columns that are left free (loose_values())
-  Whitened(const Linearisation& linear, std::vector<Noise> noise, const Eigen::MatrixXd& loose);
+  Whitened(const Linearisation& linear, std::vector<Noise> noise, Eigen::MatrixXd loose);
 
   [[nodiscard]] Eigen::Index rows() const { return rows_; }
   /// Values without the priors.
@@ -41,11 +41,15 @@ class Whitened {
   /// Orthonormal, rows() by k: what the model and the nuisances span.
   [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
 
+  /// Stacked columns that are left free beside the model.
+  [[nodiscard]] const Eigen::MatrixXd& loose() const { return loose_; }
+
   /// White residual outside that span.
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
 
  private:
   std::vector<Noise> noise_;
+  Eigen::MatrixXd loose_;
   std::vector<Eigen::Index> first_;
   Eigen::Index values_ = 0;
   Eigen::Index rows_ = 0;

@@ -126,11 +126,12 @@ TEST(Named, WhatIsSteepAtTheCentreIsNoOtherAlone) {
   }
 }
 
-// One spindle speed in all cuts: time and revolutions are one clock.
+// One spindle speed in all cuts: time and revolutions are one clock. Of 0.1 um a nose of 50 mm would
+// make a second harmonic of 50 mm/4 (2π 0.1 um/0.9 mm)² = 6 nm, a line of its own.
 TEST(Named, TimeAndRevolutionsAreOneClockAtOneSpeed) {
   const TraceResult result = close_on(
       {"time_periodic",
-       [](const ToolPoint& p) { return 0.1e-3 * std::cos(2.0 * kPi * p.t / 27.18 + 0.9); }},
+       [](const ToolPoint& p) { return 0.05e-3 * std::cos(2.0 * kPi * p.t / 27.18 + 0.9); }},
       2, kBlunt, 9);
   SCOPED_TRACE(story(result));
   EXPECT_EQ(result.verdict, "ambiguous");
