@@ -37,11 +37,11 @@ CarriageReading carriage_reading(const Stations& stations, int body, double pitc
 bool sees_carriage(const Setup& setup);
 
 // Fills `out` with what every kind of reading shows of the loci `basis(x, value, slope)`, which
-// sets a column of f_j(x) and one of f_j'(x) for each column of out, at as many x as there are
-// rows.
+// sets a column of f_j(x) and one of f_j'(x) for each column of out, and for `unused` before the
+// first, at as many x as there are rows.
 template <typename Basis>
 void fill_from_locus(const Stations& stations, const CarriageReading& reading, Basis&& basis,
-                     Eigen::Ref<Eigen::MatrixXd> out) {
+                     Eigen::Ref<Eigen::MatrixXd> out, Eigen::Index unused = 0) {
   constexpr Eigen::Index kStrip = 256;  // samples: what the cache holds
   const Setup& setup = stations.setup();
   if (!sees_carriage(setup)) return void(out.setZero());
@@ -59,23 +59,25 @@ void fill_from_locus(const Stations& stations, const CarriageReading& reading, B
       x[i] = stations.slide(first + i);
       r[i] = stations.radius(first + i);
     }
-    for (Eigen::ArrayXXd* each : {&value, &slope, &behind}) each->resize(count, out.cols());
+    for (Eigen::ArrayXXd* each : {&value, &slope, &behind})
+      each->resize(count, unused + out.cols());
     auto rows = out.middleRows(first, count).array();
     if (setup.quantity == Quantity::slope && setup.base_mm) {
       basis(Eigen::ArrayXd(x - *setup.base_mm / 2.0), behind, slope);
       basis(Eigen::ArrayXd(x + *setup.base_mm / 2.0), value, slope);
-      rows = ratio / *setup.base_mm * (value - behind);
+      rows = ratio / *setup.base_mm * (value - behind).rightCols(out.cols());
       continue;
     }
     basis(x, value, slope);
     if (setup.quantity == Quantity::slope) {
-      rows = ratio * slope;
+      rows = ratio * slope.rightCols(out.cols());
     } else if (setup.kind == Kind::slide) {
-      rows = value;
+      rows = value.rightCols(out.cols());
     } else {
       const Eigen::ArrayXd height = along(reading.height, r);
       const Eigen::ArrayXd pitch = along(reading.pitch, r) * ratio;
-      rows = value.colwise() * height + slope.colwise() * pitch;
+      rows = value.rightCols(out.cols()).colwise() * height +
+             slope.rightCols(out.cols()).colwise() * pitch;
     }
   }
 }

@@ -58,7 +58,8 @@ Evidence evidence(const Model& model, const Fit& fit) {
   else
     clear_along(fit.null, rows);
   system.rightCols(1) = rows * fit.parameters.values;
-  if (has_priors) system.rightCols(1) += root.matrixL().solve(image * triangle.right_side);
+  if (has_priors)
+    system.rightCols(1) += root.matrixL().solve(rank.basis.transpose() * triangle.gradient);
 
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(system.leftCols(model.parameters()));
   system.rightCols(1).applyOnTheLeft(qr.householderQ().adjoint());

@@ -1,5 +1,6 @@
 #include "slideway/identify/identify.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -43,18 +44,15 @@ InputSummary summarise_input(const Profile& profile) {
   out.outliers = largest_outliers(profile);
   out.position_min_mm = profile.positions.front();
   out.position_max_mm = profile.positions.back();
-  double mean = 0.0, squares = 0.0;
-  for (const double value : profile.values) mean += value;
-  mean /= static_cast<double>(profile.values.size());
-  for (const double value : profile.values) squares += (value - mean) * (value - mean);
-  const auto [low, high] = std::minmax_element(profile.values.begin(), profile.values.end());
-  const double rms = std::sqrt(squares / static_cast<double>(profile.values.size()));
+  const Eigen::Map<const Eigen::ArrayXd> values(profile.values.data(), std::ssize(profile.values));
+  const double rms = std::sqrt((values - values.mean()).square().mean());
+  const double spread = values.maxCoeff() - values.minCoeff();
   if (profile.setup.quantity == Quantity::height) {
     out.rms_um = rms / kMicrometre;
-    out.pv_um = (*high - *low) / kMicrometre;
+    out.pv_um = spread / kMicrometre;
   } else {
     out.rms_urad = rms * 1e6;
-    out.pv_urad = (*high - *low) * 1e6;
+    out.pv_urad = spread * 1e6;
   }
   out.notes = profile.notes;
   return out;

@@ -14,7 +14,7 @@ class TallQr {
  public:
   explicit TallQr(Eigen::Index columns) : triangle_(Eigen::MatrixXd::Zero(columns, columns)) {}
 
-  void add(const Eigen::MatrixXd& rows) {
+  void add(const Eigen::Ref<const Eigen::MatrixXd>& rows) {
     const Eigen::Index k = triangle_.cols();
     for (Eigen::Index first = 0; first < rows.rows(); first += kBlockRows) {
       const Eigen::Index count = std::min(kBlockRows, rows.rows() - first);
@@ -30,6 +30,17 @@ class TallQr {
  private:
   Eigen::MatrixXd triangle_, work_;
 };
+
+/// The triangle of an observation's columns, nuisances projected out a block at a time.
+Eigen::MatrixXd free_triangle(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& basis) {
+  const Eigen::MatrixXd along = basis.transpose() * columns;
+  TallQr qr(columns.cols());
+  for (Eigen::Index first = 0; first < columns.rows(); first += kBlockRows) {
+    const Eigen::Index count = std::min(kBlockRows, columns.rows() - first);
+    qr.add(columns.middleRows(first, count) - basis.middleRows(first, count) * along);
+  }
+  return qr.triangle();
+}
 
 /// Rows (prior - parameter) / u of all priors, with their derivatives.
 void set_priors(const Model& model, const Estimate& estimate, Linearisation& linear) {
@@ -100,6 +111,9 @@ Linearisation linearise(const Model& model, const Estimate& estimate) {
             low_band_derivatives(model, term, *observation, shape, j) *
             estimate.amplitudes.segment(term.first_amplitude, count);
     }
+    linear.nuisance_bases.push_back(nuisance_basis(*observation));
+    linear.triangles.push_back(free_triangle(columns, linear.nuisance_bases.back()));
+    linear.squares.emplace_back(columns.colwise().squaredNorm().transpose());
     linear.columns.push_back(std::move(columns));
   }
   set_residuals(model, estimate, linear);
@@ -146,25 +160,21 @@ ParameterValues all_parameters(const Model& model, const Estimate& estimate) {
 }
 
 Triangle compress(const Linearisation& linear, const std::vector<double>& weights) {
-  const Eigen::Index k = linear.prior_rows.cols();
+  const Eigen::MatrixXd& priors = linear.prior_rows;
   Triangle out;
-  TallQr qr(k + 1);
-  Eigen::VectorXd squares = linear.prior_rows.colwise().squaredNorm().transpose();
+  TallQr qr(priors.cols());
+  qr.add(priors);
+  out.gradient = priors.transpose() * linear.prior_residuals;
+  Eigen::VectorXd squares = priors.colwise().squaredNorm().transpose();
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {
-    Eigen::MatrixXd rows(linear.columns[i].rows(), k + 1);
-    rows << linear.columns[i], linear.residuals[i];
-    rows /= weights[i];
-    squares += rows.leftCols(k).colwise().squaredNorm().transpose();
-    project_out(nuisance_basis(*linear.observations[i]), rows);
-    qr.add(rows);
+    const double weight = 1.0 / (weights[i] * weights[i]);
+    qr.add(linear.triangles[i] / weights[i]);
+    squares += weight * linear.squares[i];
+    Eigen::MatrixXd residual = linear.residuals[i];
+    project_out(linear.nuisance_bases[i], residual);
+    out.gradient += weight * (linear.columns[i].transpose() * residual);
   }
-  if (linear.prior_rows.rows() > 0) {
-    Eigen::MatrixXd rows(linear.prior_rows.rows(), k + 1);
-    rows << linear.prior_rows, linear.prior_residuals;
-    qr.add(rows);
-  }
-  out.matrix = qr.triangle().topLeftCorner(k, k);
-  out.right_side = qr.triangle().col(k).head(k);
+  out.matrix = qr.triangle();
   out.scale = squares.cwiseSqrt();
   return out;
 }

@@ -209,20 +209,24 @@ Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
   return apply_in_parts(observation.low_band, std::ssize(profile.positions), amplitudes, fill);
 }
 
+void effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,
+                   const Eigen::VectorXd& amplitudes, std::span<const double> shape,
+                   Eigen::Index first, Eigen::Ref<Eigen::VectorXd> signal) {
+  constexpr Eigen::Index kBlock = 1024;  // samples: columns that stay in the cache
+  if (!term.effect->applies_to(profile.setup)) return void(signal.setZero());
+  Eigen::MatrixXd columns;
+  for (Eigen::Index done = 0; done < signal.size(); done += kBlock) {
+    const Eigen::Index count = std::min(kBlock, signal.size() - done);
+    columns.resize(count, term.effect->amplitudes());
+    term.effect->columns(part_of(profile, model.machine, first + done, count), shape, columns);
+    signal.segment(done, count).noalias() = columns * amplitudes;
+  }
+}
+
 Eigen::VectorXd effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,
                               const Eigen::VectorXd& amplitudes, std::span<const double> shape) {
-  constexpr std::size_t kBlock = 1024;  // samples: columns that stay in the cache
-  const std::span<const double> positions = profile.positions;
-  Eigen::VectorXd signal = Eigen::VectorXd::Zero(std::ssize(positions));
-  if (!term.effect->applies_to(profile.setup)) return signal;
-  Eigen::MatrixXd columns;
-  for (std::size_t first = 0; first < positions.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, positions.size() - first);
-    columns.resize(count, term.effect->amplitudes());
-    term.effect->columns({positions.subspan(first, count), profile.setup, model.machine}, shape,
-                         columns);
-    signal.segment(first, count) = columns * amplitudes;
-  }
+  Eigen::VectorXd signal(std::ssize(profile.positions));
+  effect_signal(model, term, profile, amplitudes, shape, 0, signal);
   return signal;
 }
 

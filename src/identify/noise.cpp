@@ -361,9 +361,8 @@ std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,
   return Estimator(profiles, prior_information).run();
 }
 
-Eigen::MatrixXd coloured(const Noise& noise, Eigen::MatrixXd columns) {
-  noise.correlation.colour_transposed(columns);
-  return noise.innovation * columns;
+Eigen::MatrixXd covariance_under(const Noise& noise, const Eigen::MatrixXd& columns) {
+  return noise.innovation * noise.innovation * noise.correlation.gram(columns);
 }
 
 }  // namespace slideway

@@ -13,7 +13,6 @@
 #include "slideway/base/text.hpp"
 #include "slideway/format/table.hpp"
 #include "slideway/signal/correlation.hpp"
-#include "slideway/signal/low_band_parts.hpp"
 
 namespace slideway {
 namespace {
@@ -40,6 +39,16 @@ struct Signal {
   Eigen::VectorXd low_band;
 };
 
+Eigen::VectorXd low_band_signal(const Model& model, const Fit& fit, const ModelTerm& term,
+                                const Observation& observation, const Eigen::VectorXd& amplitudes) {
+  const auto fitted = std::ranges::find(fit.linear.observations, &observation);
+  if (fitted == fit.linear.observations.end())
+    return low_band_columns(model, term, observation, shapes_of(term, fit.estimate.shapes)) *
+           amplitudes;
+  const Eigen::MatrixXd& columns = fit.linear.columns[fitted - fit.linear.observations.begin()];
+  return columns.middleCols(term.first_amplitude, amplitudes.size()) * amplitudes;
+}
+
 /// A part of the trace at a time: a signal of full length is as large as the profile.
 Signal signal_of(const Model& model, const Fit& fit, const ModelTerm& term,
                  const Observation& observation) {
@@ -47,37 +56,24 @@ Signal signal_of(const Model& model, const Fit& fit, const ModelTerm& term,
   Eigen::VectorXd amplitudes =
       fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
   const Profile& profile = *observation.profile;
-  const std::span<const double> positions = profile.positions;
-  const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> signal) {
-    constexpr Eigen::Index kBlock = 1024;  // samples: columns that stay in the cache
-    Eigen::MatrixXd columns;
-    for (Eigen::Index done = 0; done < signal.rows(); done += kBlock) {
-      const Eigen::Index count = std::min(kBlock, signal.rows() - done);
-      columns.resize(count, amplitudes.size());
-      term.effect->columns({positions.subspan(first + done, count), profile.setup, model.machine},
-                           shape, columns);
-      signal.col(0).segment(done, count) = columns * amplitudes;
-    }
-  };
   double squares = 0.0;
   const auto run = [&] {
     return running_pearson(
         profile.values,
         [&](std::size_t first, std::span<double> part) {
           Eigen::Map<Eigen::VectorXd> signal(part.data(), std::ssize(part));
-          fill(static_cast<Eigen::Index>(first), signal);
+          effect_signal(model, term, profile, amplitudes, shape, first, signal);
           squares += signal.squaredNorm();
         },
         kRunningPoints);
   };
   Signal out{&term, run(), {}};
-  const auto samples = std::ssize(profile.values);
-  const Eigen::Map<const Eigen::VectorXd> values(profile.values.data(), samples);
+  const Eigen::Map<const Eigen::VectorXd> values(profile.values.data(), std::ssize(profile.values));
   if (std::sqrt(squares) <= kNoSignal * values.norm()) {
     amplitudes.setConstant(amplitudes.size() == 1 ? 1.0 : 0.0);
     out.raw = run();
   }
-  out.low_band = apply_in_parts(observation.low_band, samples, 1, fill);
+  out.low_band = low_band_signal(model, fit, term, observation, amplitudes);
   return out;
 }
 

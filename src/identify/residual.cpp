@@ -62,8 +62,8 @@ Residual::Residual(const Model& model, const Linearisation& linear,
 
 void Residual::set_up_rows(const Linearisation& linear) {
   observations_ = linear.observations;
+  bases_ = linear.nuisance_bases;
   for (const Observation* observation : observations_) {
-    bases_.push_back(nuisance_basis(*observation));
     first_row_.push_back(rows_);
     rows_ += observation->values.size();
   }
@@ -82,12 +82,12 @@ void Residual::set_up_fixed(const Linearisation& linear) {
     return out;
   };
   const auto k = static_cast<Eigen::Index>(fixed_.size());
-  Triangle triangle = compress(linear, weights_);
+  const Triangle triangle = compress(linear, weights_);
   const Eigen::VectorXd scale = pick(triangle.scale.transpose()).transpose();
   if (moving_.empty()) {
     const Rank rank = analyse_rank(triangle.matrix, scale);
     fixed_basis_ = rank.basis;
-    target_ = (triangle.matrix * rank.basis).transpose() * triangle.right_side;
+    target_ = rank.basis.transpose() * triangle.gradient;
     return;
   }
   Eigen::MatrixXd columns = stacked(k, [&](std::size_t i) { return pick(linear.columns[i]); });

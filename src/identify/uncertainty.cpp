@@ -14,26 +14,29 @@ namespace {
 constexpr Eigen::Index kLarge = 1 << 14;  // low-band values that are worth a second thread
 constexpr double kInfinite = 1e6;  // degrees of freedom: above it k is 2, and they are rounding
 
-Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Eigen::MatrixXd& columns) {
-  constexpr double kStep = 1e-3;  // of atanh π and ln σ
+/// @param covariance  columns' Σ columns
+Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Eigen::MatrixXd& columns,
+                                      const Eigen::MatrixXd& covariance) {
+  constexpr double kStep = 1e-3;  // of atanh π
   Uncertainty::NoiseEffect out{noise.covariance, {}};
   const Eigen::VectorXd at = noise.parameters();
   const auto gram = [&](Eigen::Index j, double step) {
     Eigen::VectorXd moved = at;
     moved[j] += step;
-    const Eigen::MatrixXd z = coloured(noise.at(moved), columns);
-    return Eigen::MatrixXd(z.transpose() * z);
+    return covariance_under(noise.at(moved), columns);
   };
   const auto differentiate = [&](std::size_t j) {
     const auto moved = static_cast<Eigen::Index>(j);
     out.derivatives[j] = (gram(moved, kStep) - gram(moved, -kStep)) / (2.0 * kStep);
   };
-  out.derivatives.resize(static_cast<std::size_t>(at.size()));
+  const auto correlations = static_cast<std::size_t>(at.size() - 1);
+  out.derivatives.resize(correlations + 1);
   if (columns.rows() < kLarge) {
-    for (std::size_t j = 0; j < out.derivatives.size(); ++j) differentiate(j);
+    for (std::size_t j = 0; j < correlations; ++j) differentiate(j);
   } else {
-    parallel_for(out.derivatives.size(), differentiate);
+    parallel_for(correlations, differentiate);
   }
+  out.derivatives.back() = 2.0 * covariance;  // by ln σ
   return out;
 }
 
@@ -81,22 +84,24 @@ Uncertainty assess(const Linearisation& linear, const std::vector<double>& weigh
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {
     const Observation& observation = *linear.observations[i];
     const Eigen::MatrixXd columns = linear.columns[i] * basis;
+    const Eigen::MatrixXd& n = observation.nuisances;
+    const Eigen::Index m = n.cols(), r = basis.cols();
     Eigen::MatrixXd z = columns / (weights[i] * weights[i]);
-    project_out(nuisance_basis(observation), z);
-    const Eigen::MatrixXd coloured_z = coloured(noise[i], z);
-    out.covariance += coloured_z.transpose() * coloured_z;
+    project_out(linear.nuisance_bases[i], z);
+    Eigen::MatrixXd k(n.rows(), m);
+    if (m > 0) k = n * (n.transpose() * n).inverse();
+    Eigen::MatrixXd both(n.rows(), m + r);
+    both << k, z;
+    const Eigen::MatrixXd together = covariance_under(noise[i], both);
+    out.covariance += together.bottomRightCorner(r, r);
     if (!noise[i].declared && noise[i].covariance.size() > 0) {
-      out.noise.push_back(noise_effect(noise[i], z));
+      out.noise.push_back(noise_effect(noise[i], z, together.bottomRightCorner(r, r)));
       const Eigen::MatrixXd share = z.transpose() * columns;
       out.covariance += 2.0 * weight_variance(noise[i]) * (share - share * share);
     }
-    const Eigen::MatrixXd& n = observation.nuisances;
-    Eigen::MatrixXd k(n.rows(), n.cols());
-    if (n.cols() > 0) k = n * (n.transpose() * n).inverse();
-    const Eigen::MatrixXd coloured_k = coloured(noise[i], k);
-    crosses.emplace_back(coloured_k.transpose() * coloured_z);
+    crosses.emplace_back(together.topRightCorner(m, r));
     gains.emplace_back(k.transpose() * columns);
-    own.emplace_back(coloured_k.transpose() * coloured_k);
+    own.emplace_back(together.topLeftCorner(m, m));
   }
   for (std::size_t i = 0; i < gains.size(); ++i) {
     const Eigen::MatrixXd cross = crosses[i] * gains[i].transpose();

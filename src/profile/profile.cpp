@@ -1,5 +1,6 @@
 #include "slideway/profile/profile.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -37,10 +38,11 @@ void complete_cut_radius(const std::string& name, Setup& setup) {
 // Sizes that nobody turns or measures with: a unit or a digit is more likely wrong.
 void note_blunders(Profile& profile) {
   const Setup& setup = profile.setup;
-  const auto [low, high] = std::ranges::minmax(profile.values);
+  const Eigen::Map<const Eigen::ArrayXd> heights(profile.values.data(), std::ssize(profile.values));
+  const double range = heights.maxCoeff() - heights.minCoeff();
   constexpr double kLargestRange = 1.0, kLargestFeed = 10000.0, kLargestSpeed = 1e5;
-  if (setup.quantity == Quantity::height && high - low > kLargestRange)
-    profile.notes.push_back("heights range over " + significant(high - low, 3) +
+  if (setup.quantity == Quantity::height && range > kLargestRange)
+    profile.notes.push_back("heights range over " + significant(range, 3) +
                             " mm, more than 1 mm: is value_unit right?");
   if (setup.feed_mm_per_min.value_or(0.0) > kLargestFeed)
     profile.notes.push_back("feed_mm_per_min = " + shortest(*setup.feed_mm_per_min) +

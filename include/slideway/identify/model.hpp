@@ -93,4 +93,9 @@ Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
 Eigen::VectorXd effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,
                               const Eigen::VectorXd& amplitudes, std::span<const double> shape);
 
+/// The same for as many samples from `first` on as `signal` has.
+void effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,
+                   const Eigen::VectorXd& amplitudes, std::span<const double> shape,
+                   Eigen::Index first, Eigen::Ref<Eigen::VectorXd> signal);
+
 }  // namespace slideway

@@ -52,8 +52,7 @@ struct LinearProfile {
 std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,
                                   const Eigen::MatrixXd& prior_information);
 
-/// Z with Z'Z = columns' Σ columns, where Σ is the noise's covariance matrix: rows by cols of
-/// columns.
-Eigen::MatrixXd coloured(const Noise& noise, Eigen::MatrixXd columns);
+/// columns' Σ columns, where Σ is the noise's covariance matrix.
+Eigen::MatrixXd covariance_under(const Noise& noise, const Eigen::MatrixXd& columns);
 
 }  // namespace slideway

@@ -21,10 +21,13 @@ struct Estimate {
 /// columns of amplitudes and of shapes, the residual, and what it takes to compress them.
 struct Linearisation {
   std::vector<const Observation*> observations;
-  std::vector<Eigen::MatrixXd> columns;    // per observation: #values by (A + S)
-  std::vector<Eigen::VectorXd> residuals;  // values - model - nuisances
-  Eigen::MatrixXd prior_rows;              // #priors by (A + S), divided by their uncertainty
-  Eigen::VectorXd prior_residuals;         // (prior - value) / uncertainty
+  std::vector<Eigen::MatrixXd> columns;         // per observation: #values by (A + S)
+  std::vector<Eigen::MatrixXd> nuisance_bases;  // per observation: orthonormal
+  std::vector<Eigen::MatrixXd> triangles;       // of the columns with the nuisances projected out
+  std::vector<Eigen::VectorXd> squares;         // sums over each column before that
+  std::vector<Eigen::VectorXd> residuals;       // values - model - nuisances
+  Eigen::MatrixXd prior_rows;                   // #priors by (A + S), divided by their uncertainty
+  Eigen::VectorXd prior_residuals;              // (prior - value) / uncertainty
 };
 
 struct SolveSummary {
@@ -69,13 +72,15 @@ SolveSummary solve(const Model& model, Linearisation& linear, const std::vector<
 /// Parameters of all terms and their Jacobian: P values, P by (A + S).
 ParameterValues all_parameters(const Model& model, const Estimate& estimate);
 
-/// Upper triangle of the weighted columns with the nuisances projected out (A + S wide, priors
-/// included), and the norm each column had before.
+/// Upper triangle R of the weighted columns C with the nuisances projected out (A + S wide, priors
+/// included), their products with the weighted residuals, and the norm each column had before.
 struct Triangle {
-  Eigen::MatrixXd matrix;
-  Eigen::VectorXd right_side;
+  Eigen::MatrixXd matrix;    // R'R = C'C
+  Eigen::VectorXd gradient;  // C' residuals
   Eigen::VectorXd scale;
 };
+
+/// Takes no longer for more values, but for the gradient.
 Triangle compress(const Linearisation& linear, const std::vector<double>& weights);
 
 }  // namespace slideway

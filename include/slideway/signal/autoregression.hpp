@@ -37,9 +37,8 @@ class Autoregression {
   /// The inverse of whiten(): independent rows become this noise. In place.
   void colour(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
-  /// The transposed inverse of whiten(): columns X become Z with Z'Z = X' R X, where R is the
-  /// covariance of the noise with unit innovations. In place.
-  void colour_transposed(Eigen::Ref<Eigen::MatrixXd> rows) const;
+  /// X' R X, where R is the covariance of the noise with unit innovations.
+  [[nodiscard]] Eigen::MatrixXd gram(const Eigen::MatrixXd& x) const;
 
   /// ln det of the correlation structure: Σ_t ln(relative_variance) over n rows.
   [[nodiscard]] double log_determinant(Eigen::Index n) const;

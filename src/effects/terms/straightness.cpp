@@ -106,11 +106,7 @@ class Straightness : public LinearEffect {
         slope.col(k + 1) = slope.col(k - 1) + rise_[k] * value.col(k);
       }
     };
-    const CarriageReading reading = carriage_reading(stations, body_, 1.0);
-    if (first_ == 0) return fill_from_locus(stations, reading, legendre, out);
-    Eigen::MatrixXd all(out.rows(), first_ + out.cols());
-    fill_from_locus(stations, reading, legendre, all);
-    out = all.rightCols(out.cols());
+    fill_from_locus(stations, carriage_reading(stations, body_, 1.0), legendre, out, first_);
   }
 
   [[nodiscard]] double size(const Eigen::VectorXd& values) const override {
