@@ -86,7 +86,9 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
     const std::vector<Profile> profiles = read_profiles(problem);
     line.show("fitting the declared model");
     return analyse(problem, profiles, {scope, closes_loop, closes_loop || wants_json()},
-                   [&](const std::string& stage) { line.show("closing the loop: " + stage); });
+                   [&](const std::string& stage, double done) {
+                     line.show("closing the loop: " + stage, done);
+                   });
   }();
   report([&] { return text_report(analysis.result, analysis.trace, analysis.details); },
          [&] { return json_report(analysis.result, analysis.trace, analysis.details); });
