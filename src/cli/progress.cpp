@@ -50,13 +50,25 @@ StageLine::StageLine(bool wanted) : line_(wanted) {
   });
 }
 
-void StageLine::show(std::string stage) {
+void StageLine::show(std::string stage, double done) {
   const std::lock_guard lock(mutex_);
+  const bool is_new = stage != stage_;
   stage_ = std::move(stage);
+  told_ = line_.elapsed();
+  done_ = done;
+  if (!is_new) return;
+  began_ = told_;
   draw();
 }
 
-void StageLine::draw() const { line_.show(stage_ + ", " + in_words(line_.elapsed())); }
+void StageLine::draw() const {
+  std::string text = stage_ + ", " + in_words(line_.elapsed());
+  const Seconds taken = told_ - began_;
+  const Seconds left = taken * ((1.0 - done_) / done_) - (line_.elapsed() - told_);
+  if (done_ > 0.0 && taken >= kAwhile && left > Seconds(0.0))
+    text += ", this step about " + in_words(left) + " more";
+  line_.show(text);
+}
 
 std::string batch_progress(const BatchSummary& so_far, std::size_t total,
                            std::chrono::duration<double> elapsed) {

@@ -30,20 +30,24 @@ class ProgressLine {
   Clock::time_point start_ = Clock::now();
 };
 
-/// The stages of one job, each with the time since its beginning, which goes on by itself.
+/// The stages of one job, each with the time since the job's beginning, which goes on by itself,
+/// and from its second second on with what is left of the stage, where it says which part is done.
 class StageLine {
  public:
   explicit StageLine(bool wanted);
 
-  void show(std::string stage);
+  void show(std::string stage, double done = 0.0);
 
  private:
+  using Seconds = std::chrono::duration<double>;
   void draw() const;
 
   ProgressLine line_;
   std::mutex mutex_;
   std::condition_variable_any never_;
   std::string stage_;
+  Seconds began_{0.0}, told_{0.0};  // when the stage, and when the part of it that is done
+  double done_ = 0.0;
   std::jthread clock_;  // the last: ends before the others do
 };
 

@@ -10,6 +10,21 @@
 
 namespace slideway {
 namespace po = boost::program_options;
+namespace {
+
+void require_simulated(const Problem& problem) {
+  if (!problem.truth) return;
+  std::error_code ignored;
+  for (const ProfileEntry& entry : problem.profiles)
+    if (std::filesystem::status(entry.source.path, ignored).type() ==
+        std::filesystem::file_type::not_found)
+      throw DataError(
+          "profile '" + entry.profile.name + "': " + entry.source.path.string() +
+          ": is not there; the problem has a [truth] that makes it: slideway simulate " +
+          problem.path.string() + " --out DIR, then take DIR/problem.toml");
+}
+
+}  // namespace
 
 ReportCommand::ReportCommand(std::string name, std::string arguments, std::string summary)
     : Command(std::move(name), std::move(arguments), std::move(summary)) {
@@ -67,10 +82,13 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
   const Analysis analysis = [&] {
     StageLine line(!is_quiet());
     line.show("reading");
+    require_simulated(problem);
     const std::vector<Profile> profiles = read_profiles(problem);
     line.show("fitting the declared model");
     return analyse(problem, profiles, {scope, closes_loop, closes_loop || wants_json()},
-                   [&](const std::string& stage) { line.show("closing the loop: " + stage); });
+                   [&](const std::string& stage, double done) {
+                     line.show("closing the loop: " + stage, done);
+                   });
   }();
   report([&] { return text_report(analysis.result, analysis.trace, analysis.details); },
          [&] { return json_report(analysis.result, analysis.trace, analysis.details); });

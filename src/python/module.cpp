@@ -74,7 +74,7 @@ py::str text(const std::string& utf8) {  // a file's name in it need not be UTF-
       PyUnicode_DecodeUTF8(utf8.data(), static_cast<py::ssize_t>(utf8.size()), "replace"));
 }
 
-void let_interrupt(const std::string& /*stage*/) {
+void let_interrupt(const std::string& /*stage*/, double /*done*/) {
   const py::gil_scoped_acquire lock;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }

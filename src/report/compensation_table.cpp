@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
@@ -11,6 +12,12 @@
 // measure", "List of parameters supported".
 // etalon: the same, "Etalon Exchange Format".
 // cec: SINUMERIK 840D sl/828D, Function Manual Extended Functions (6FC5397-1BP40-3BA1), K3, 4.4.
+// heidenhain: columns and assignment: MANUALplus 620, Technical Manual (January 2012), 6.10.3,
+// pp. 713, 716, 718; layout, where the header line states the widths: github.com/drunsinn/pyLSV2,
+// table_reader.py and tests/test_files; TNC 407/415/425, Technical Manual (01.98): an error is
+// positive where the travel is too long (1.6.3, p. 151), the break points of the error curve are
+// entered (1.6.4, p. 152), 256 at most (4.7.3, p. 622). None of them shows a .COM file byte by
+// byte.
 
 namespace slideway {
 namespace {
@@ -83,6 +90,13 @@ std::string etalon(const Compensation& table, const std::string& source) {
   return text + "}\n";
 }
 
+/// Of the tool tip, from the first position on, mm.
+double error_in_z(const Compensation& table, std::size_t i) {
+  const std::vector<double>& x = table.positions_mm;
+  return (table.straightness_mm.empty() ? 0.0 : table.straightness_mm[i]) -
+         table.squareness_rad.value_or(0.0) * (x[i] - x.front());
+}
+
 std::string cec(const Compensation& table, const std::string& source) {
   const std::vector<double>& x = table.positions_mm;
   auto lines = common_lines(table, source, true);
@@ -99,11 +113,8 @@ std::string cec(const Compensation& table, const std::string& source) {
         std::string("second face; SD41310 $SN_CEC_TABLE_WEIGHT[0] = -1 turns all values round.")})
     lines.push_back(line);
   std::string text = "%_N_NC_CEC_INI\nCHANDATA(1)\n" + commented("; ", lines);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    double error = table.straightness_mm.empty() ? 0.0 : table.straightness_mm[i];
-    if (table.squareness_rad) error -= *table.squareness_rad * (x[i] - x.front());
-    text += "$AN_CEC[0," + std::to_string(i) + "]=" + fine(-error) + "\n";
-  }
+  for (std::size_t i = 0; i < x.size(); ++i)
+    text += "$AN_CEC[0," + std::to_string(i) + "]=" + fine(-error_in_z(table, i)) + "\n";
   return text + "$AN_CEC_INPUT_AXIS[0]=(AX1)\n$AN_CEC_OUTPUT_AXIS[0]=(AX2)\n$AN_CEC_STEP[0]=" +
          fine((x.back() - x.front()) / static_cast<double>(x.size() - 1)) +
          "\n$AN_CEC_MIN[0]=" + millimetres(x.front()) +
@@ -111,41 +122,84 @@ std::string cec(const Compensation& table, const std::string& source) {
          "\n$AN_CEC_DIRECTION[0]=0\n$AN_CEC_MULT_BY_TABLE[0]=0\n$AN_CEC_IS_MODULO[0]=0\nM17\n";
 }
 
-using Writer = std::string (*)(const Compensation&, const std::string&);
-constexpr std::array<std::pair<std::string_view, Writer>, 3> kWriters{
-    {{"isg", isg}, {"etalon", etalon}, {"cec", cec}}};
+std::string heidenhain(const Compensation& table, const std::string&) {
+  constexpr std::size_t kMostRows = 256, kWidth = 16;
+  const std::vector<double>& x = table.positions_mm;
+  if (x.size() > kMostRows) {
+    const double least = std::ceil((x.back() - x.front()) / (kMostRows - 1.0) * 1e3) / 1e3;
+    throw UsageError("step: makes " + std::to_string(x.size()) + " positions, a .COM table takes " +
+                     std::to_string(kMostRows) + "; accepted: " + significant(least, 6) +
+                     " mm or more");
+  }
+  const auto row = [](const std::array<std::string, 3>& cells) {
+    std::string line;
+    for (std::string cell : cells) {
+      cell.resize(kWidth, ' ');
+      line += cell;
+    }
+    return line + "\n";
+  };
+  std::string text = "BEGIN SLIDEWAY.COM MM\n" + row({"AXISPOS", "BACKLASH", "Z"});
+  for (std::size_t i = 0; i < x.size(); ++i)
+    text += row({millimetres(x[i]), "", fixed_point(error_in_z(table, i), 9)});
+  return text + "[END]\n";
+}
+
+std::vector<std::string> beside_heidenhain(const Compensation& table, const std::string& source) {
+  auto lines = common_lines(table, source, false);
+  for (const char* line :
+       {"Column Z: error of Z over X, of all that is named above, mm, 0 at the first position.",
+        "AXISPOS: X from the machine datum, mm. BACKLASH: empty, one curve for both directions.",
+        "Layout: MANUALplus 620; a .COM table with DATUM and DIST in its head is another one.",
+        "To set: keep the name SLIDEWAY.COM of the first line; enter it in column X of the .CMA",
+        "table, so that Z = F(X); write your key of the axis (CfgAxes/axisList) for Z.",
+        "The sign is that of an error: manuals of the maker have the error curve entered, positive",
+        "where the travel is too long. Check it with a second face before use: if its form has",
+        "doubled, turn the signs of column Z round."})
+    lines.emplace_back(line);
+  return lines;
+}
+
+struct Control {
+  std::string_view name;
+  std::string (*table)(const Compensation&, const std::string& source);
+  std::vector<std::string> (*beside)(const Compensation&, const std::string& source) = nullptr;
+};
+constexpr std::array<Control, 4> kControls{{{"isg", isg},
+                                            {"etalon", etalon},
+                                            {"cec", cec},
+                                            {"heidenhain", heidenhain, beside_heidenhain}}};
+
+const Control& control_named(const std::string& name) {
+  const auto* const found = std::ranges::find(kControls, name, &Control::name);
+  if (found != kControls.end()) return *found;
+  const std::vector<std::string>& names = compensation_formats();
+  throw UsageError("unknown format '" + printable(name) + "'" + did_you_mean(name, names) +
+                   "; accepted: " + joined(names));
+}
 
 }  // namespace
 
 const std::vector<std::string>& compensation_formats() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> names;
-    for (const auto& [name, write] : kWriters) names.emplace_back(name);
+    for (const Control& control : kControls) names.emplace_back(control.name);
     return names;
   }();
   return kNames;
 }
 
-void check_compensation_format(const std::string& format) {
-  const std::vector<std::string>& names = compensation_formats();
-  if (std::ranges::find(names, format) != names.end()) return;
-  if (format == "heidenhain")
-    throw UsageError(
-        "heidenhain: is not written: of a .COM file the columns are documented (AXISPOS, BACKLASH, "
-        "one per axis), their widths, by which the control reads its tables, and whether a value "
-        "is "
-        "the error or its correction are not; accepted: " +
-        joined(names) + "; EZX of isg can be entered at the control");
-  throw UsageError("unknown format '" + printable(format) + "'" + did_you_mean(format, names) +
-                   "; accepted: " + joined(names));
-}
+void check_compensation_format(const std::string& format) { control_named(format); }
 
 std::string compensation_table(const Compensation& table, const std::string& format,
                                const std::string& source) {
-  check_compensation_format(format);
-  const auto writer =
-      std::ranges::find(kWriters, format, &std::pair<std::string_view, Writer>::first);
-  return writer->second(table, printable(source, 200));
+  return control_named(format).table(table, printable(source, 200));
+}
+
+std::vector<std::string> compensation_notes(const Compensation& table, const std::string& format,
+                                            const std::string& source) {
+  const Control& control = control_named(format);
+  return control.beside != nullptr ? control.beside(table, printable(source, 200)) : table.left_out;
 }
 
 }  // namespace slideway

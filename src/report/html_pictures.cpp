@@ -224,7 +224,7 @@ std::string band_panel(const Node& curves, const Node& band, const std::string& 
     x.push_back(first +
                 (last - first) * (static_cast<double>(i) + 0.5) / static_cast<double>(low.size()));
   Plot plot({id, "Band " + name + " of profile " + curves["profile"].verbatim(),
-             "Lowest and highest value of the band along the trace.", "", ""});
+             "Lowest and highest value of the band along the trace.", "mm", html_unit(curves)});
   plot.size(360, 120).band(name, "envelope", x, low, high);
   return plot.empty() ? "" : plot.svg();
 }
@@ -243,8 +243,8 @@ std::string bands(const Node& curves, const std::string& id) {
   if (panels.empty()) return "";
   return "<figure><div class=\"panels\">" + panels + "</div><figcaption>" +
          html_bold(curves["profile"].verbatim()) +
-         ": wavelet bands over the trace (Fig. 7 of the paper), " + html_unit(curves) +
-         ", from the lowest to the highest value of each stretch; left the approximations, right "
+         ": wavelet bands over the trace (Fig. 7 of the paper), from the lowest to the highest "
+         "value of each stretch; left the approximations, right "
          "the details. <b>Good:</b> the last approximation has kept the whole form, and the "
          "details look like noise, without form and without large values at the ends.</figcaption>"
          "</figure>\n";

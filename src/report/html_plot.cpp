@@ -14,7 +14,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kLeft = 62.0, kRight = 10.0, kBottom = 40.0, kLegendRow = 16.0;
+constexpr double kLeft = 62.0, kRight = 22.0, kBottom = 40.0, kLegendRow = 16.0;
 constexpr std::size_t kPoints = 800;  // of a line: more than the picture has columns
 constexpr double kMostDecades = 5.0;  // of a logarithmic axis, below its largest
 

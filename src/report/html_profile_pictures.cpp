@@ -115,9 +115,9 @@ std::string html_profile_pictures(const Node& report) {
       });
   if (out.empty()) return "";
   return html_section("profiles", "Profiles, model and residual",
-                      "<p class=\"hint\">Drag to zoom along the trace, double-click or the button "
-                      "for the whole; the pointer shows the numbers. Of long profiles every "
-                      "extreme is drawn.</p>\n" +
+                      "<p class=\"hint\"><span class=\"zoom\">Drag to zoom along the trace, "
+                      "double-click or the button for the whole; the pointer shows the numbers. "
+                      "</span>Of long profiles every extreme is drawn.</p>\n" +
                           out);
 }
 

@@ -49,8 +49,10 @@ Eigen::MatrixXd null_residuals(const Whitened& data, Eigen::Index count) {
   return data.outside(std::move(out));
 }
 
-Calibration calibrate(const Whitened& data, const Candidates& candidates) {
-  const Eigen::VectorXd gains = largest_gains(data, candidates, null_residuals(data, kResamples));
+Calibration calibrate(const Whitened& data, const Candidates& candidates,
+                      const std::function<void(double)>& told) {
+  const Eigen::VectorXd gains =
+      largest_gains(data, candidates, null_residuals(data, kResamples), told);
   constexpr double kEuler = 0.5772156649015329;
   const double mean = gains.mean();
   const double variance =

@@ -18,6 +18,8 @@ struct Calibration {
 /// is drawn from what its estimate leaves open, and made white with the estimate itself.
 Eigen::MatrixXd null_residuals(const Whitened& data, Eigen::Index count);
 
-Calibration calibrate(const Whitened& data, const Candidates& candidates);
+/// @param told  as largest_gains()
+Calibration calibrate(const Whitened& data, const Candidates& candidates,
+                      const std::function<void(double)>& told = {});
 
 }  // namespace slideway

@@ -162,12 +162,12 @@ std::vector<const Seen*> Look::rivals(const Seen& chosen) const {
 }
 
 Look look(const Model& model, const Fit& fit, const Candidates& candidates, double significance,
-          std::optional<Calibration>& calibration) {
+          std::optional<Calibration>& calibration, const std::function<void(double)>& told) {
   const Eigen::MatrixXd loose = loose_values(model, fit, fit.noise);
   auto [data, findings] = whiten_beside(fit, loose, candidates);
   Look out{std::move(data), {}};
   if (candidates.empty()) return out;
-  if (!calibration) calibration = calibrate(out.data, candidates);
+  if (!calibration) calibration = calibrate(out.data, candidates, told);
   out.seen = look_closer(model, fit, out.data, findings, significance, *calibration);
   if (!out.seen.empty() && is_centred(*out.seen.front().refined.candidate->term.effect)) {
     const Refined& best = out.seen.front().refined;

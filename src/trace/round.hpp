@@ -37,7 +37,8 @@ struct Look {
 };
 
 /// @param calibration  null distribution of the search; made here if it is not there yet
+/// @param told         which part of that is done
 Look look(const Model& model, const Fit& fit, const Candidates& candidates, double significance,
-          std::optional<Calibration>& calibration);
+          std::optional<Calibration>& calibration, const std::function<void(double)>& told = {});
 
 }  // namespace slideway

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "slideway/base/parallel.hpp"
 
@@ -115,10 +116,14 @@ Projection project(const Whitened& data, const Eigen::MatrixXd& columns) {
 }
 
 Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates,
-                              const Eigen::MatrixXd& residuals) {
+                              const Eigen::MatrixXd& residuals,
+                              const std::function<void(double)>& told) {
   const std::vector<Block> blocks = blocks_of(candidates);
+  const std::thread::id caller = std::this_thread::get_id();
   Eigen::MatrixXd best = Eigen::MatrixXd::Constant(residuals.cols(), blocks.size(), -INFINITY);
   parallel_for(blocks.size(), [&](std::size_t b) {
+    if (told && std::this_thread::get_id() == caller)
+      told(static_cast<double>(b) / static_cast<double>(blocks.size()));
     const Candidate& candidate = *candidates[blocks[b].candidate];
     for_block(
         data, candidate, blocks[b].first, blocks[b].count, residuals,
@@ -129,6 +134,7 @@ Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates
               ((root.root * products).colwise().squaredNorm().array() - cost).matrix().transpose());
         });
   });
+  if (told) told(1.0);
   return best.rowwise().maxCoeff();
 }
 

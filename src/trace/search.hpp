@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "dictionary.hpp"
 #include "whitened.hpp"
 
@@ -33,8 +35,10 @@ struct Projection {
 Projection project(const Whitened& data, const Eigen::MatrixXd& columns);
 
 /// Largest penalised gain (gain - unknowns ln n) of any atom, for every column of `residuals`
-/// (white, in the layout of the data, outside the model's span).
+/// (white, in the layout of the data, outside the model's span). `told` hears, in the thread of the
+/// caller, which part of the work is done.
 Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates,
-                              const Eigen::MatrixXd& residuals);
+                              const Eigen::MatrixXd& residuals,
+                              const std::function<void(double)>& told = {});
 
 }  // namespace slideway

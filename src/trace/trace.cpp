@@ -40,7 +40,7 @@ class Loop {
     before_ = extender_.summary(state);
     std::optional<Look> last;
     while (true) {
-      tell("searching round " + std::to_string(state.added.size() + 1));
+      tell_round(state);
       last = look_at(state);
       if (!first_look_) first_look_ = last;
       if (is_full(state)) break;
@@ -52,7 +52,6 @@ class Loop {
         ruled_out_.push_back(choice->name());
       }
     }
-    tell("holding every effect against its rivals");
     const bool exchanged = exchange(state);
     if (drop_small(state, kLeastJointSize) || exchanged) last = look_at(state);
     const bool retracted = retract(state, last->data);
@@ -64,8 +63,8 @@ class Loop {
   }
 
  private:
-  void tell(const std::string& stage) const {
-    if (progress_) progress_(stage);
+  void tell(const std::string& stage, double done = 0.0) const {
+    if (progress_) progress_(stage, done);
   }
 
   [[nodiscard]] bool is_full(const Extended& state) const {
@@ -87,9 +86,16 @@ class Loop {
     return out;
   }
 
+  void tell_round(const Extended& state) const {
+    tell("searching round " + std::to_string(state.added.size() + 1));
+  }
+
   Look look_at(const Extended& state) {
     return look(state.model, state.fit, candidates_without(taken(state.added)),
-                problem_.trace.significance, calibration_);
+                problem_.trace.significance, calibration_, [&](double done) {
+                  if (done < 1.0) return tell("bootstrap", done);
+                  tell_round(state);
+                });
   }
 
   /// The data made white for a model, with the noise of another look at them.
@@ -181,6 +187,7 @@ class Loop {
   bool exchange(Extended& state) {
     bool changed = false;
     for (std::size_t i = 0; i < state.added.size(); ++i) {
+      tell("comparing rivals", static_cast<double>(i) / static_cast<double>(state.added.size()));
       const Extended without = extender_.extend(all_but(state.added, i));
       // The others' names are no choice, but rivals they can be: two lines of one clock.
       const bool as_first = without.added.empty() && ruled_out_.empty();

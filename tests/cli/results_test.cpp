@@ -40,9 +40,22 @@ TEST_F(Results, ExportWritesFilesAndKeepsItsInput) {
   EXPECT_TRUE(is_refused(run({"export", "way.json", "--to", "cec", "--out", "way.json"}), 2));
 }
 
+TEST_F(Results, ExportSaysOnStderrWhatATableWithoutCommentsCanNot) {
+  const ProgramRun done = run({"export", "way.json", "--to", "heidenhain"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  const std::vector<std::string> lines = lines_of(done.out);
+  EXPECT_EQ(lines.front(), "BEGIN SLIDEWAY.COM MM");
+  EXPECT_EQ(lines.back(), "[END]");
+  EXPECT_EQ(lines.size(), 54U);  // fifty pieces of the travel
+  EXPECT_THAT(done.err, HasSubstr("slideway: Values are errors: actual minus nominal"));
+  EXPECT_THAT(done.err, HasSubstr("second face"));
+  EXPECT_THAT(done.err, HasSubstr("B0X is left out: the model has no squareness"));
+}
+
 TEST_F(Results, ExportRefusesInOneLine) {
   EXPECT_TRUE(is_refused(run({"export", "way.json"}), 2));
-  EXPECT_TRUE(is_refused(run({"export", "way.json", "--to", "heidenhain"}), 2));
+  EXPECT_TRUE(
+      is_refused(run({"export", "way.json", "--to", "heidenhain", "--step", "0.5", "-q"}), 2));
   EXPECT_TRUE(is_refused(run({"export", "way.json", "--to", "isg", "--step", "0"}), 2));
   EXPECT_TRUE(is_refused(run({"export", "way.json", "--to", "isg", "--step", "1e-9"}), 2));
   EXPECT_THAT(run({"export", "way.json", "--to", "etalno"}).err,

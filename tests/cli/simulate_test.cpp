@@ -109,6 +109,15 @@ TEST_F(Simulate, NeverReplacesTheProblemNorItsData) {
   EXPECT_EQ(contents(path("slow.csv")), face_csv(51));
 }
 
+TEST_F(Simulate, IsAskedForWhereAPlannedCutIsIdentifiedBeforeItIsMade) {
+  const std::string planned = shipped("problems/planned-cuts/problem.toml");
+  for (const char* command : {"identify", "fit", "rank"}) {
+    const ProgramRun refused = run({command, planned});
+    EXPECT_TRUE(is_refused(refused, 3));
+    EXPECT_THAT(refused.err, HasSubstr("slideway simulate " + planned + " --out DIR"));
+  }
+}
+
 TEST_F(Simulate, NeedsATruth) {
   folder_.file("plain.toml", kProblem);
   const ProgramRun refused = run({"simulate", "plain.toml", "--out", "made"});

@@ -49,6 +49,20 @@ run(${OUT}/prefix/bin/slideway --version)
 if(NOT out STREQUAL "slideway ${VERSION}\n")
   message(FATAL_ERROR "--version: ${out}")
 endif()
+
+# The Debian package of the same tree; ./dev package tries one in a Debian of its own.
+find_program(shlibdeps dpkg-shlibdeps)
+if(shlibdeps)
+  run(${CPACK} --config ${BUILD}/CPackConfig.cmake -B ${OUT}/package
+      -D CPACK_PACKAGING_INSTALL_PREFIX=/usr)
+  file(GLOB package ${OUT}/package/slideway_${VERSION}*.deb)
+  run(dpkg-deb -x ${package} ${OUT}/root)
+  run(${OUT}/root/usr/bin/slideway --version)
+  if(NOT out STREQUAL "slideway ${VERSION}\n")
+    message(FATAL_ERROR "--version of the package: ${out}")
+  endif()
+endif()
+
 file(STRINGS ${SOURCE}/CHANGELOG.md versions REGEX "^## \\[")
 list(GET versions 0 newest)
 if(NOT newest MATCHES "^## \\[${VERSION}\\]")

@@ -197,6 +197,29 @@ class Page(unittest.TestCase):
             self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"),
                                  width)
 
+    def test_no_label_of_a_picture_is_cut(self):
+        cut = self.browser.run("""
+          return [...document.querySelectorAll('svg')].flatMap(picture => {
+            const frame = picture.getBoundingClientRect();
+            return [...picture.querySelectorAll('text')].filter(text => {
+              const box = text.getBoundingClientRect();
+              return box.width && (box.left < frame.left - 1 || box.right > frame.right + 1 ||
+                                   box.top < frame.top - 1 || box.bottom > frame.bottom + 1);
+            }).map(text => text.textContent);
+          });""")
+        self.assertEqual([], cut)
+
+    def test_every_parameter_stands_beside_its_value_on_a_small_screen(self):
+        self.browser.resize(400, 800)
+        self.browser.open(self.page)
+        ends = self.browser.run("""
+          const table = [...document.querySelectorAll('table')].find(
+            t => t.caption.textContent.startsWith('Parameters'));
+          return [...table.querySelectorAll('caption, tbody td:nth-child(2)')].map(
+            e => e.getBoundingClientRect().right);""")
+        self.assertGreater(len(ends), 4)
+        self.assertLessEqual(max(ends), 400)
+
     def test_dark_mode_is_dark_and_readable(self):
         luminance = ("const of = c => c.match(/[\\d.]+/g).slice(0, 3).map(v => { v /= 255; return v"
                      " <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; });"

@@ -117,17 +117,49 @@ Read read_cec(const std::string& text) {
   return out;
 }
 
+/// As pyLSV2 reads the tables of these controls (its table_reader.py): "BEGIN NAME.SUFFIX MM", then
+/// the names of the columns, each as wide as its name and the blanks behind it, rows, "[END]".
+Read read_heidenhain(const std::string& text) {
+  Read out;
+  std::istringstream stream(text);
+  std::string line;
+  std::getline(stream, line);
+  EXPECT_EQ(line, "BEGIN SLIDEWAY.COM MM");
+  std::getline(stream, line);
+  std::map<std::string, std::pair<std::size_t, std::size_t>> columns;  // from, width
+  for (std::size_t from = 0, next = 0; from < line.size(); from = next) {
+    const std::size_t blank = line.find(' ', from);
+    next = std::min(line.find_first_not_of(' ', blank), line.size());
+    columns[line.substr(from, blank - from)] = {from, next - from};
+  }
+  EXPECT_THAT(columns, testing::SizeIs(3));
+  while (std::getline(stream, line) && line != "[END]") {
+    const auto cell = [&](const std::string& name) {
+      const auto [from, width] = columns.at(name);
+      std::string text_of_cell = line.substr(from, width);
+      EXPECT_EQ(text_of_cell.back(), ' ') << "runs into the next column: " << line;
+      text_of_cell.erase(text_of_cell.find_last_not_of(' ') + 1);
+      return text_of_cell;
+    };
+    EXPECT_EQ(cell("BACKLASH"), "");
+    out.points[std::stod(cell("AXISPOS"))] = std::stod(cell("Z"));
+  }
+  EXPECT_EQ(line, "[END]");
+  EXPECT_FALSE(std::getline(stream, line));
+  return out;
+}
+
 /// The table is the model's height of the tool tip up to a constant; lever is p_x at a slide x.
 template <typename LeverAt>
 void expect_model(const std::map<double, double>& points, double squareness, double sign,
-                  LeverAt&& lever) {
+                  LeverAt&& lever, double written = kWritten) {
   ASSERT_EQ(points.size(), 51U);
   const auto error = [&](const auto& point) {
     return sign * point.second - squareness * point.first - height(point.first, lever(point.first));
   };
   const double constant = error(*points.begin());
   for (const auto& point : points)
-    EXPECT_NEAR(error(point), constant, kWritten * (1.0 + std::abs(point.first))) << point.first;
+    EXPECT_NEAR(error(point), constant, written * (1.0 + std::abs(point.first))) << point.first;
 }
 
 TEST(Compensation, TablesAddUpToTheModelsHeightOfTheToolTip) {
@@ -143,6 +175,9 @@ TEST(Compensation, TablesAddUpToTheModelsHeightOfTheToolTip) {
     expect_model(etalon.points, etalon.values.at("B0X"), 1.0, at);
     // A correction is minus the error, squareness included.
     expect_model(read_cec(compensation_table(table, "cec", "test")).points, 0.0, -1.0, at);
+    // An error, with nine decimals of a millimetre.
+    expect_model(read_heidenhain(compensation_table(table, "heidenhain", "test")).points, 0.0, 1.0,
+                 at, 1e-9);
   }
 }
 
@@ -197,6 +232,31 @@ TEST(Compensation, TablesAreAscii) {
   }
 }
 
+TEST(Compensation, SaysBesideATableWithoutCommentsWhatItsValuesAre) {
+  const Compensation table = compensation(analysis("split"));
+  EXPECT_EQ(compensation_notes(table, "isg", "test"), table.left_out);
+  const std::vector<std::string> notes = compensation_notes(table, "heidenhain", "test");
+  EXPECT_EQ(notes.front(), "test");
+  for (const char* said : {"Values are errors: actual minus nominal", "AXISPOS: X from the machine",
+                           "Z = F(X)", "second face", "B0X: squareness", "mm"})
+    EXPECT_THAT(notes, Contains(HasSubstr(said)));
+}
+
+TEST(Compensation, RefusesMoreRowsThanAComTableTakes) {
+  // 256 entries: TNC 407/415/425, Technical Manual, error 3 of module 9095.
+  const std::string full =
+      compensation_table(compensation(analysis("split"), 600.0 / 255.0), "heidenhain", "test");
+  EXPECT_THAT(read_heidenhain(full).points, testing::SizeIs(256));
+  const Compensation fine = compensation(analysis("split"), 600.0 / 256.0);
+  try {
+    compensation_table(fine, "heidenhain", "test");
+    ADD_FAILURE() << "written with 257 rows";
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("257 positions, a .COM table takes 256; accepted: 2.353 mm"));
+  }
+}
+
 TEST(Compensation, LeavesOutASquarenessTheRunOutContradicts) {
   Analysis given = analysis("split");
   given.result.squareness.emplace();
@@ -239,12 +299,6 @@ TEST(Compensation, RefusesWhatItCanNotTable) {
   Analysis point = analysis("split");
   point.result.travel->slide_max_mm = point.result.travel->slide_min_mm;
   EXPECT_THROW(compensation(point), DataError);
-  try {
-    check_compensation_format("heidenhain");
-    ADD_FAILURE() << "written from what is not documented";
-  } catch (const UsageError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("their widths"));
-  }
   EXPECT_THROW(check_compensation_format("isgg"), UsageError);
 }
 

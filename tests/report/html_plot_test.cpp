@@ -20,10 +20,10 @@ TEST(Plot, IsNamedAndDescribedForAScreenReader) {
 }
 
 TEST(Plot, DrawsALineFromCornerToCorner) {
-  // 720 by 300: the frame goes from 62 to 710; 4 % of margin above and below.
+  // 720 by 300: the frame goes from 62 to 698; 4 % of margin above and below.
   const std::string svg = plot().line("one", "after", {0, 10}, {0, 1}).svg();
   EXPECT_THAT(svg, HasSubstr("<polyline class=\"after\" points=\"62.0,"));
-  EXPECT_THAT(svg, HasSubstr(" 710.0,"));
+  EXPECT_THAT(svg, HasSubstr(" 698.0,"));
 }
 
 TEST(Plot, KeepsTheExtremesOfALongLine) {

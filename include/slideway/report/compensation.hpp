@@ -30,12 +30,18 @@ Compensation compensation(const Analysis& analysis, double step_mm = 0.0);
 /// What the table can be written for.
 const std::vector<std::string>& compensation_formats();
 
-/// @throws UsageError  none of compensation_formats(), saying why
+/// @throws UsageError  none of compensation_formats()
 void check_compensation_format(const std::string& format);
 
 /// The table in the format of a control, with units, signs and what its operator has to set as
 /// comments. `source` is named in the first comment.
+/// @throws UsageError  heidenhain: more than its 256 positions
 std::string compensation_table(const Compensation& table, const std::string& format,
                                const std::string& source);
+
+/// What is to be said beside the table: what is left out or in doubt and, for a format without
+/// comments (heidenhain), all that others hold as comments. One line each.
+std::vector<std::string> compensation_notes(const Compensation& table, const std::string& format,
+                                            const std::string& source);
 
 }  // namespace slideway

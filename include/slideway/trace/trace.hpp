@@ -76,8 +76,9 @@ struct TraceResult {
   std::vector<std::string> notes;
 };
 
-/// Told what the loop turns to next, for who waits: "searching round 2".
-using Progress = std::function<void(const std::string& stage)>;
+/// Told what the loop is at, for who waits, and which part of that is done, 0 to 1: "searching
+/// round 2", 0. In the thread that closes the loop.
+using Progress = std::function<void(const std::string& stage, double done)>;
 
 /// Closes the loop on a problem whose declared model has been identified.
 /// @throws UsageError, DataError  as identify()
