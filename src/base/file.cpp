@@ -11,11 +11,13 @@
 #include <csignal>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
 
 #include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
 
 namespace slideway {
 namespace {
@@ -107,13 +109,7 @@ class Sha256 {
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned size = 0;
     require(::EVP_DigestFinal_ex(context_.get(), digest.data(), &size) == 1);
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string text;
-    for (unsigned i = 0; i < size; ++i) {
-      text += kDigits[digest[i] >> 4U];
-      text += kDigits[digest[i] & 15U];
-    }
-    return text;
+    return hexadecimal(std::span(digest).first(size));
   }
 
  private:

@@ -95,6 +95,20 @@ std::string joined(std::span<const std::string> words, std::string_view separato
   return text;
 }
 
+std::string counted(std::size_t count, const std::string& singular) {
+  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+std::string hexadecimal(std::span<const unsigned char> bytes) {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string out;
+  for (const unsigned char byte : bytes) {
+    out += kDigits[byte >> 4U];
+    out += kDigits[byte & 15U];
+  }
+  return out;
+}
+
 std::string printable(std::string_view text, std::size_t limit) {
   std::string shown;
   for (; !text.empty() && limit > 0; --limit) {

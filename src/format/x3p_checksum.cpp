@@ -3,6 +3,7 @@
 #include <openssl/evp.h>
 
 #include <array>
+#include <span>
 #include <stdexcept>
 
 #include "slideway/base/error.hpp"
@@ -15,13 +16,7 @@ std::string md5(std::string_view bytes) {
   unsigned size = 0;
   if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_md5(), nullptr) != 1)
     throw std::runtime_error("MD5, the checksum of X3P, is not available in this OpenSSL");
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string text;
-  for (unsigned i = 0; i < size; ++i) {
-    text += kDigits[digest[i] >> 4U];
-    text += kDigits[digest[i] & 15U];
-  }
-  return text;
+  return hexadecimal(std::span(digest).first(size));
 }
 
 void ChecksumGate::check(std::string_view bytes, std::string_view digits, const std::string& part) {

@@ -61,10 +61,6 @@ Conversion conversion(const ProfileSource& source, const TracePart& part, const 
   return out;
 }
 
-std::string counted(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 }  // namespace
 
 bool PlainSamples::convert(const Conversion& convert, std::span<const double> positions,

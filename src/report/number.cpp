@@ -75,10 +75,6 @@ std::string to_digits(double value, int digits) {
   return place > 0 ? at_place(value, place) : significant(value, digits);
 }
 
-std::string counted(std::size_t count, const std::string& singular) {
-  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
-}
-
 std::string with_uncertainty(double value, double uncertainty) {
   const RoundedPair plain = rounded(value, uncertainty);
   const double magnitude = std::max(std::abs(value), uncertainty);

@@ -26,6 +26,12 @@ std::string_view trimmed(std::string_view text);
 /// "a, b, c"
 std::string joined(std::span<const std::string> words, std::string_view separator = ", ");
 
+/// "1 row", "2 rows".
+std::string counted(std::size_t count, const std::string& singular);
+
+/// Two lower-case digits a byte: "0fbf".
+std::string hexadecimal(std::span<const unsigned char> bytes);
+
 /// Foreign text fit for a one-line message: its first `limit` characters, "..." if that cut it,
 /// and '?' for control characters and for bytes that are no UTF-8.
 std::string printable(std::string_view text, std::size_t limit = 24);

@@ -29,7 +29,4 @@ std::string fixed_point(double value, int decimals);
 /// @throws std::logic_error  it is not finite
 std::string to_digits(double value, int digits);
 
-/// "1 row", "2 rows".
-std::string counted(std::size_t count, const std::string& singular);
-
 }  // namespace slideway
