@@ -11,6 +11,7 @@
 #include "slideway/profile/outliers.hpp"
 #include "slideway/report/layout.hpp"
 #include "slideway/report/picture.hpp"
+#include "slideway/report/report.hpp"
 #include "trace_arguments.hpp"
 
 namespace slideway {
@@ -74,13 +75,18 @@ std::vector<Outlier> outlier_rows(const Trace& trace) {
 
 class InfoCommand : public ReportCommand {
  public:
-  InfoCommand() : ReportCommand("info", "FILE [options]", "Shows what a profile file holds") {
+  InfoCommand()
+      : ReportCommand("info", "FILE | PROBLEM.toml [options]",
+                      "Shows what a profile file holds, or all of a problem") {
     add_input("FILE", &input_);
     arguments_.add_to(add_options());
+    add_options()("data", boost::program_options::value(&data_)->value_name("DIR"),
+                  "PROBLEM.toml: what ${SLIDEWAY_DATA} in it stands for");
   }
 
   int run() override {
     keep(input_);
+    if (is_problem()) return run_problem();
     TraceFile file = read_trace(input_, request_);
     if (file.trace.areal) {
       report([&] { return areal_text(file); }, [&] { return areal_json(file); });
@@ -94,9 +100,29 @@ class InfoCommand : public ReportCommand {
   }
 
  private:
-  void check(const boost::program_options::variables_map& /*given*/) override {
+  [[nodiscard]] bool is_problem() const {
+    return std::filesystem::path(input_).extension() == ".toml";
+  }
+
+  void check(const boost::program_options::variables_map& given) override {
+    if (given.count("data") != 0 && !is_problem()) fail("--data belongs to a PROBLEM.toml");
+    for (const char* option : {"position", "value", "position-unit", "value-unit", "delimiter",
+                               "decimal", "encoding", "header-lines", "line"})
+      if (is_problem() && given.count(option) != 0)
+        fail(std::string("--") + option + " belongs to a FILE; a problem file has keys for it");
     request_ = arguments_.checked();
     request_.areal_without_line = true;
+  }
+
+  [[nodiscard]] int run_problem() const {
+    Problem problem = read_profiles_of_problem(input_, data_directory(data_));
+    for (ProfileEntry& entry : problem.profiles) {
+      keep(entry.source.path);
+      entry.source.request.ignore_checksum = request_.ignore_checksum;
+    }
+    const Result result = summarise_data(problem, read_profiles(problem));
+    report([&] { return data_text(result); }, [&] { return data_json(result); });
+    return kDone;
   }
 
   using Lines = std::vector<std::pair<std::string, std::string>>;
@@ -233,7 +259,7 @@ class InfoCommand : public ReportCommand {
     return document_text(document);
   }
 
-  std::string input_;
+  std::string input_, data_;
   TraceArguments arguments_;
   TraceRequest request_;
   std::vector<Outlier> outliers_;

@@ -63,6 +63,10 @@ const std::vector<Section>& sections() {
         {"base_mm", "slope: foot spacing of the mirror or level; none: the local slope"},
         {"window", "[from, to] in position_unit: keep only this part"},
         {"leave_out", "\"spikes\", or data rows, the first one 1: [120, 121]"},
+        {"from_mm",
+         "where the line lies on the surface: [x, y] of its smallest position; slope with base_mm: "
+         "of the foot there. With to_mm, for the closure between lines"},
+        {"to_mm", "[x, y] of its largest position"},
         {"center_mm", "face: where the spindle axis lies in the trace; r = |s - center_mm|"},
         {"z_mm", "Z coordinate of this face"},
         {"overhang_mm", "instead of that of [machine]: another tool, another holder"},

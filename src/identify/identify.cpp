@@ -81,16 +81,22 @@ TravelSummary summarise_travel(Lever lever, const std::vector<const Observation*
 
 }  // namespace
 
+Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles) {
+  Result result;
+  result.title = problem.title;
+  result.version = SLIDEWAY_VERSION;
+  for (const Profile& profile : profiles) result.inputs.push_back(summarise_input(profile));
+  result.closure = summarise_closure(profiles);
+  return result;
+}
+
 Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope) {
   return identify(problem, profiles, fit_declared(problem, profiles), scope);
 }
 
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
                 const Fitted& declared, Scope scope) {
-  Result result;
-  result.title = problem.title;
-  result.version = SLIDEWAY_VERSION;
-  for (const Profile& profile : profiles) result.inputs.push_back(summarise_input(profile));
+  Result result = summarise_data(problem, profiles);
   result.wavelet = problem.low_band.wavelet;
   result.level = problem.low_band.level;
   result.boundary = name(problem.low_band.boundary);

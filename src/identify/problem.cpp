@@ -88,10 +88,10 @@ LowBandOptions read_low_band(const Section& root) {
 }
 
 void read_profile_entries(const Section& root, const MachineDefaults& machine,
-                          const PathRules& paths, Problem& problem) {
+                          const ProblemRules& rules, Problem& problem) {
   std::set<std::string> names;
   for (const Section& section : root.tables("profile")) {
-    problem.profiles.push_back(read_profile_entry(section, machine, paths));
+    problem.profiles.push_back(read_profile_entry(section, machine, rules));
     const std::string& name = problem.profiles.back().profile.name;
     if (!names.insert(name).second)
       section.fail("name", "'" + name + "' is used twice; accepted: a name of its own");
@@ -158,7 +158,6 @@ void read_effects(const Section& root, Problem& problem) {
         section.fail("name", "'" + effect.name + "' is declared twice for the same body");
     problem.effects.push_back(effect);
   }
-  if (problem.effects.empty()) root.fail("effect", "missing; accepted: at least one [[effect]]");
 }
 
 std::optional<Runout> read_runout(const Section& root) {
@@ -258,7 +257,7 @@ std::optional<Truth> read_truth(const Section& root, const Problem& problem) {
 }
 
 Problem problem_of(const TomlValue& tree, const std::filesystem::path& path,
-                   const PathRules& paths) {
+                   const ProblemRules& rules) {
   const std::string file = path.string();
   const Section root(file, "", tree);
   root.accept("title machine low_band profile effect runout trace truth");
@@ -267,9 +266,11 @@ Problem problem_of(const TomlValue& tree, const std::filesystem::path& path,
   problem.title = root.text("title").value_or("");
   const MachineDefaults machine = read_machine(root, problem);
   problem.low_band = read_low_band(root);
-  read_profile_entries(root, machine, paths, problem);
+  read_profile_entries(root, machine, rules, problem);
   check_lever_is_given(root, problem);
   read_effects(root, problem);
+  if (problem.effects.empty() && rules.effect_is_needed)
+    root.fail("effect", "missing; accepted: at least one [[effect]]");
   problem.runout = read_runout(root);
   problem.trace = read_trace(root);
   problem.truth = read_truth(root, problem);
@@ -307,6 +308,11 @@ Problem read_problem(const std::filesystem::path& path,
   TomlValue tree = read_toml(path);
   for (const Override& override : overrides) put(override, path.string(), tree);
   return problem_of(tree, path, {path.parent_path(), data_dir, true});
+}
+
+Problem read_profiles_of_problem(const std::filesystem::path& path,
+                                 const std::optional<std::filesystem::path>& data_dir) {
+  return problem_of(read_toml(path), path, {path.parent_path(), data_dir, true, false});
 }
 
 Problem read_problem(const TomlValue& tree, const std::optional<std::filesystem::path>& data_dir) {

@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::string_view kKeys =
     "name file kind quantity position_column value_column position_unit value_unit delimiter "
-    "decimal encoding header_lines line base_mm window leave_out "
+    "decimal encoding header_lines line base_mm window leave_out from_mm to_mm "
     "center_mm z_mm overhang_mm feed_mm_per_min spindle_rpm cut_direction cut_radius_mm start_s "
     "traverse_mm_per_s free standard_uncertainty role";
 
-std::filesystem::path data_directory(const Section& section, const PathRules& paths) {
-  if (paths.data_dir) return std::filesystem::absolute(*paths.data_dir);
+std::filesystem::path data_directory(const Section& section, const ProblemRules& rules) {
+  if (rules.data_dir) return std::filesystem::absolute(*rules.data_dir);
   const char* variable = std::getenv("SLIDEWAY_DATA");
   if (variable == nullptr || *variable == '\0')
     section.fail("file",
@@ -26,13 +26,14 @@ std::filesystem::path data_directory(const Section& section, const PathRules& pa
   return std::filesystem::absolute(variable);
 }
 
-std::filesystem::path resolved(const Section& section, std::string file, const PathRules& paths) {
+std::filesystem::path resolved(const Section& section, std::string file,
+                               const ProblemRules& rules) {
   constexpr std::string_view kVariable = "${SLIDEWAY_DATA}";
   if (const std::size_t at = file.find(kVariable); at != std::string::npos)
-    file.replace(at, kVariable.size(), data_directory(section, paths).string());
+    file.replace(at, kVariable.size(), data_directory(section, rules).string());
   else if (file.find("${") != std::string::npos)
     section.fail("file", "unknown variable in '" + file + "'; accepted: ${SLIDEWAY_DATA}");
-  return paths.base / file;
+  return rules.base / file;
 }
 
 std::string checked_name(const Section& section) {
@@ -77,11 +78,11 @@ TraceRequest read_request(const Section& section) {
   return request;
 }
 
-void read_source(const Section& section, const PathRules& paths, ProfileEntry& entry) {
+void read_source(const Section& section, const ProblemRules& rules, ProfileEntry& entry) {
   ProfileSource& source = entry.source;
-  if (paths.file_is_needed || section.has("file")) {
+  if (rules.file_is_needed || section.has("file")) {
     entry.profile.file = section.required("file", section.text("file"), "path of a data file");
-    source.path = resolved(section, entry.profile.file, paths);
+    source.path = resolved(section, entry.profile.file, rules);
   }
   source.request = read_request(section);
   source.window = section.range("window");
@@ -123,6 +124,15 @@ void read_cut(const Section& section, bool position_is_time, Setup& setup) {
   setup.traverse_mm_per_s = section.positive("traverse_mm_per_s");
 }
 
+std::optional<Line> read_line(const Section& section) {
+  const auto from = section.point("from_mm"), to = section.point("to_mm");
+  if (!from && !to) return std::nullopt;
+  if (!from || !to)
+    section.missing(from ? "to_mm" : "from_mm", "[x, y] of both ends of the line, or of none");
+  if (*from == *to) section.fail("to_mm", "is from_mm; accepted: the other end of the line");
+  return Line{*from, *to};
+}
+
 void read_treatment(const Section& section, ProfileEntry& entry) {
   Profile& profile = entry.profile;
   if (const auto free = section.some_of("free", words("offset tilt"))) {
@@ -146,13 +156,14 @@ void check_overhang(const Section& section, double overhang_mm, Lever lever) {
 }
 
 ProfileEntry read_profile_entry(const Section& section, const MachineDefaults& machine,
-                                const PathRules& paths) {
+                                const ProblemRules& rules) {
   section.accept(kKeys);
   ProfileEntry entry;
   entry.profile.name = checked_name(section);
   read_geometry(section, machine, entry.profile.setup);
-  read_source(section, paths, entry);
+  read_source(section, rules, entry);
   read_cut(section, entry.source.position_unit == "s", entry.profile.setup);
+  entry.profile.line = read_line(section);
   read_treatment(section, entry);
   return entry;
 }

@@ -16,16 +16,17 @@ struct MachineDefaults {
 };
 
 /// Paths of the problem file: relative to `base`, ${SLIDEWAY_DATA} replaced by `data_dir` or else
-/// by the environment variable.
-struct PathRules {
+/// by the environment variable; and what it may do without.
+struct ProblemRules {
   std::filesystem::path base;
   std::optional<std::filesystem::path> data_dir;
   bool file_is_needed = true;
+  bool effect_is_needed = true;
 };
 
 /// One [[profile]]. @throws UsageError
 ProfileEntry read_profile_entry(const Section& section, const MachineDefaults& machine,
-                                const PathRules& paths);
+                                const ProblemRules& rules);
 
 /// Refuses an overhang that the lever gives nothing to do.
 void check_overhang(const Section& section, double overhang_mm, Lever lever);

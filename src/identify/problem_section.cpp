@@ -106,16 +106,29 @@ std::optional<std::string> Section::column(std::string_view key) const {
   return text(key);
 }
 
+std::optional<std::array<double, 2>> Section::pair_of_numbers(std::string_view key) const {
+  const auto* array = std::get_if<TomlValue::Array>(&find(key)->value.data);
+  if (array == nullptr || array->size() != 2) return std::nullopt;
+  const std::optional<double> first = as_number((*array)[0]), second = as_number((*array)[1]);
+  if (!first || !second || !std::isfinite(*first) || !std::isfinite(*second)) return std::nullopt;
+  return std::array{*first, *second};
+}
+
 std::optional<std::pair<double, double>> Section::range(std::string_view key) const {
-  const TomlEntry* entry = find(key);
-  if (entry == nullptr) return std::nullopt;
-  const auto* array = std::get_if<TomlValue::Array>(&entry->value.data);
-  const bool two = array != nullptr && array->size() == 2;
-  const std::optional<double> low = two ? as_number((*array)[0]) : std::nullopt;
-  const std::optional<double> high = two ? as_number((*array)[1]) : std::nullopt;
-  if (!low || !high || !std::isfinite(*low) || !std::isfinite(*high) || !(*low < *high))
+  if (!has(key)) return std::nullopt;
+  const auto pair = pair_of_numbers(key);
+  if (!pair || !((*pair)[0] < (*pair)[1]))
     fail(key, "must be two finite numbers, the smaller one first: [0.0, 10.0]");
-  return std::pair(*low, *high);
+  return std::pair((*pair)[0], (*pair)[1]);
+}
+
+std::optional<std::array<double, 2>> Section::point(std::string_view key) const {
+  if (!has(key)) return std::nullopt;
+  const auto pair = pair_of_numbers(key);
+  constexpr double kLargest = 1e9;
+  if (!pair || std::abs((*pair)[0]) > kLargest || std::abs((*pair)[1]) > kLargest)
+    fail(key, "must be a place [x, y]: two numbers, 1e9 mm at most");
+  return pair;
 }
 
 bool Section::is_text(std::string_view key) const {

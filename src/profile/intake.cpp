@@ -126,11 +126,11 @@ void Intake::take_one(double given, double value_given) {
     return;
   if (std::isnan(value_given)) {
     ++profile_->missing;
-    return;
+    return pass_over(given);
   }
   if (std::ranges::binary_search(left_out_rows_, rows_)) {
     ++profile_->left_out;
-    return;
+    return pass_over(given);
   }
   const double position = convert_->to_mm(convert_->position(given));
   const double value = convert_->value(value_given);
@@ -142,6 +142,18 @@ void Intake::take_one(double given, double value_given) {
            "; positions must strictly increase (or strictly decrease)");
   last_given_ = given;
   keep({&position, 1}, {&value, 1}, rows_);
+}
+
+void Intake::pass_over(double given) {
+  const double position = convert_->to_mm(convert_->position(given));
+  if (!(std::abs(position) <= kLargest)) return;
+  passed_over_.first = std::min(passed_over_.first, position);
+  passed_over_.second = std::max(passed_over_.second, position);
+}
+
+std::pair<double, double> Intake::reach() const {
+  return {std::min(passed_over_.first, profile_->positions.front()),
+          std::max(passed_over_.second, profile_->positions.back())};
 }
 
 void Intake::keep(std::span<const double> positions, std::span<const double> values,

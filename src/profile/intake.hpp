@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -48,12 +49,15 @@ class Intake {
   void finish();
   // Data row of a sample of the profile, the first of those it is the mean of.
   [[nodiscard]] std::size_t row(std::size_t sample) const;
+  // Smallest and largest position, of points without a value and left out too, mm.
+  [[nodiscard]] std::pair<double, double> reach() const;
 
  private:
   using Run = std::pair<std::size_t, std::size_t>;  // its first sample and that one's row
 
   void start(const TracePart& part);
   void take_one(double given, double value);
+  void pass_over(double given);
   void keep(std::span<const double> positions, std::span<const double> values,
             std::size_t first_row);
   void keep_mean(double position, double value);
@@ -68,6 +72,7 @@ class Intake {
   std::size_t rows_ = 0, kept_ = 0;          // of the file; before means were taken
   std::vector<Run> runs_;                    // kept samples whose rows follow one another
   double last_given_ = 0.0, last_mm_ = 0.0;  // positions
+  std::pair<double, double> passed_over_{INFINITY, -INFINITY};  // smallest and largest of them, mm
   bool upwards_ = true;
   std::size_t block_ = 1, pending_ = 0;          // samples of a mean; of the one at hand
   double position_sum_ = 0.0, value_sum_ = 0.0;  // of that

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "intake.hpp"
@@ -126,6 +127,7 @@ void complete(const ProfileSource& source, TraceFile file, Intake& intake, Profi
     profile.notes.push_back(profile.format + ": " + joined(file.trace.decisions, "; "));
   intake.finish();
   require_two_samples(source, profile.positions.size());
+  if (profile.line) std::tie(profile.line->first_mm, profile.line->last_mm) = intake.reach();
   list_outliers(source, intake, profile);
   Setup& setup = profile.setup;
   setup.first_mm = profile.positions.front();

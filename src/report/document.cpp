@@ -63,6 +63,36 @@ InputSummary input(const Node& node) {
   return in;
 }
 
+MisclosureSummary misclosure(const Node& node) {
+  return {node["profile"].text(),
+          node["x_mm"].number(),
+          node["y_mm"].number(),
+          node["difference_um"].number_or_null(),
+          node["closure_um"].number_or_null(),
+          node["standard_uncertainty_um"].number_or_null()};
+}
+
+RepeatSummary repeat(const Node& node) {
+  return {node["a"].text(),
+          node["b"].text(),
+          node["stations"].count(),
+          node["x_mm"].number(),
+          node["y_mm"].number(),
+          node["difference_um"].number(),
+          node["standard_uncertainty_um"].number(),
+          node["limit"].number(),
+          node["verdict"].text()};
+}
+
+ClosureSummary closure(const Node& node) {
+  return {node["lines"].count(),        node["places"].count(),
+          node["redundancy"].count(),   node["verdict"].text(),
+          node["false_alarm"].number(), node["limit"].number_or_null(),
+          node["tied"].truth(),         node["readings"].list(misclosure),
+          node["repeats"].list(repeat), node["suspects"].texts(),
+          node["notes"].texts()};
+}
+
 TravelSummary travel(const Node& node) {
   return {node["lever"].text(), node["slide_min_mm"].number(), node["slide_max_mm"].number(),
           node["spindle_position_mm"].number_or_null(), node["overhang_mm"].number_or_null()};
@@ -180,6 +210,7 @@ Result result(const Node& node) {
   out.title = node["title"].text();
   out.version = node["version"].text();
   out.inputs = node["inputs"].list(input);
+  if (node.has("closure")) out.closure = closure(node["closure"]);
   if (node.has("travel")) out.travel = travel(node["travel"]);
   const Node band = node["low_band"];
   out.wavelet = band["wavelet"].text();

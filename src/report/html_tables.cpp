@@ -43,6 +43,25 @@ std::string what_if(const Node& report) {
 
 // --- data ---------------------------------------------------------------------------------------
 
+std::string closure(const Node& report) {
+  if (!report.has("closure")) return "";
+  const Node what = report["closure"];
+  HtmlTable table(
+      "Closure between lines: what each reads where it meets others, against what they "
+      "say; offsets and tilts are free",
+      {{"profile", Column::text},
+       {"x, mm", Column::number},
+       {"y, mm", Column::number},
+       {"as the data stand, µm", Column::number},
+       {"closure, µm", Column::number},
+       {"standard uncertainty, µm", Column::number}});
+  for (const Node& each : what["readings"].entries())
+    table.add({html_text(each["profile"]), html_cell(each["x_mm"]), html_cell(each["y_mm"]),
+               html_cell(each["difference_um"]), html_cell(each["closure_um"]),
+               html_cell(each["standard_uncertainty_um"])});
+  return table.html() + html_list(html_texts(what["notes"]));
+}
+
 std::string inputs(const Node& report) {
   HtmlTable files("Files", {{"profile", Column::text},
                             {"file", Column::text},
@@ -81,7 +100,7 @@ std::string inputs(const Node& report) {
                     html_cell(each["value"]), html_cell(each["expected"]), html_unit(each)});
     for (const std::string& note : html_texts(in["notes"])) remarks.push_back(name + ": " + note);
   }
-  return files.html() + sizes.html() + outliers.html() + html_list(remarks);
+  return files.html() + sizes.html() + outliers.html() + html_list(remarks) + closure(report);
 }
 
 std::string setups(const Node& report) {

@@ -63,6 +63,49 @@ Json input(const InputSummary& in) {
   return json;
 }
 
+Json misclosure(const MisclosureSummary& each) {
+  return {{"profile", each.profile},
+          {"x_mm", each.x_mm},
+          {"y_mm", each.y_mm},
+          {"difference_um", or_null(each.difference_um)},
+          {"closure_um", or_null(each.closure_um)},
+          {"standard_uncertainty_um", or_null(each.standard_uncertainty_um)}};
+}
+
+Json repeat(const RepeatSummary& each) {
+  return {{"a", each.a},
+          {"b", each.b},
+          {"stations", each.stations},
+          {"x_mm", each.x_mm},
+          {"y_mm", each.y_mm},
+          {"difference_um", each.difference_um},
+          {"standard_uncertainty_um", each.standard_uncertainty_um},
+          {"limit", each.limit},
+          {"verdict", each.verdict}};
+}
+
+Json closure(const ClosureSummary& what) {
+  return {{"verdict", what.verdict},
+          {"lines", what.lines},
+          {"places", what.places},
+          {"redundancy", what.redundancy},
+          {"false_alarm", what.false_alarm},
+          {"limit", or_null(what.limit)},
+          {"tied", what.tied},
+          {"readings", array_of(what.readings, misclosure)},
+          {"repeats", array_of(what.repeats, repeat)},
+          {"suspects", what.suspects},
+          {"notes", what.notes}};
+}
+
+Json head(const Result& result, std::string_view schema) {
+  return {{"schema", schema},
+          {"version", result.version},
+          {"title", result.title},
+          {"inputs", array_of(result.inputs, input)},
+          {"closure", result.closure ? closure(*result.closure) : Json(nullptr)}};
+}
+
 Json travel(const TravelSummary& t) {
   return {{"lever", t.lever},
           {"slide_min_mm", t.slide_min_mm},
@@ -201,10 +244,7 @@ std::string one_line(const Json& json) {
 Json report_json(const Result& result, const std::optional<TraceResult>& trace,
                  const std::optional<Details>& details) {
   const RankingResult ranking = result.ranking.value_or(RankingResult{});
-  Json report = {{"schema", "slideway.report/1"},
-                 {"version", result.version},
-                 {"title", result.title},
-                 {"inputs", array_of(result.inputs, input)}};
+  Json report = head(result, "slideway.report/1");
   report["travel"] = result.travel ? travel(*result.travel) : Json(nullptr);
   report["low_band"] = {{"wavelet", result.wavelet},
                         {"level", result.level},
@@ -234,6 +274,12 @@ Json report_json(const Result& result, const std::optional<TraceResult>& trace,
 }
 
 }  // namespace
+
+std::string data_json(const Result& result) {
+  const Json document = head(result, "slideway.data/1");
+  require_finite(document, "");
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 std::string json_report(const Result& result, const std::optional<TraceResult>& trace,
                         const std::optional<Details>& details) {

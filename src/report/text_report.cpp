@@ -71,6 +71,12 @@ std::string inputs(const Result& result) {
   return heading("Inputs") + table.text() + notes;
 }
 
+std::string closure(const ClosureSummary& closure) {
+  std::string text = heading("Closure between lines: " + closure.verdict);
+  for (const std::string& line : closure.notes) text += note(line);
+  return text;
+}
+
 std::string low_band(const Result& result) {
   const std::string values = counted(result.low_band_values, "value");
   if (result.level == 0)
@@ -334,9 +340,13 @@ std::string notes(const FitResult& fit) {
 
 }  // namespace
 
+std::string data_text(const Result& result) {
+  return title(result) + inputs(result) + (result.closure ? closure(*result.closure) : "");
+}
+
 std::string text_report(const Result& result, const std::optional<TraceResult>& trace,
                         const std::optional<Details>& details) {
-  std::string text = title(result) + inputs(result) + low_band(result);
+  std::string text = data_text(result) + low_band(result);
   if (result.ranking) text += ranking(*result.ranking);
   text += dominant(result.dominant);
   if (result.fit)

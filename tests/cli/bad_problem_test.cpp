@@ -54,6 +54,12 @@ const BadInput kKeys[] = {
         {"problem.toml:12: profile.feed_mm_per_min: must be greater than 0, not -2"}),
     bad("WindowUpsideDown", {.profile_more = "window = [10.0, 2.0]\n"},
         {"problem.toml:12: profile.window: must be two finite numbers, the smaller one first"}),
+    bad("LineWithOneEnd", {.profile_more = "from_mm = [0, 0]\n"},
+        {"problem.toml:5: profile.to_mm: missing", "accepted: [x, y] of both ends"}),
+    bad("LineWithoutLength", {.profile_more = "from_mm = [0, 5]\nto_mm = [0, 5]\n"},
+        {"problem.toml:13: profile.to_mm: is from_mm", "accepted: the other end"}),
+    bad("PlaceOfThreeNumbers", {.profile_more = "from_mm = [0, 0, 0]\nto_mm = [1, 0]\n"},
+        {"problem.toml:12: profile.from_mm: must be a place [x, y]"}),
     bad("LevelOutOfRange", {.low_band = "[low_band]\nlevel = 31\n"},
         {"problem.toml:4: low_band.level", "from 0 to 30, not 31"}),
 };

@@ -55,6 +55,25 @@ TEST_F(ProblemFile, TakesTimeForAPositionOnlyWithAFeed) {
   EXPECT_EQ(problem.profiles[0].source.position_unit, "s");
 }
 
+TEST_F(ProblemFile, TakesALineByBothEnds) {
+  EXPECT_THAT(profile_refusal("from_mm = [0, 0]"), HasSubstr(":3: profile.to_mm: missing"));
+  EXPECT_THAT(profile_refusal("to_mm = [0, 0]"), HasSubstr(":3: profile.from_mm: missing"));
+  for (const char* bad : {"[0]", "[0, nan]", "[0, \"a\"]", "7", "[2e9, 0]"})
+    EXPECT_THAT(profile_refusal(std::string("to_mm = [0, 0]\nfrom_mm = ") + bad),
+                HasSubstr(":10: profile.from_mm: must be a place [x, y]"))
+        << bad;
+  const Problem problem =
+      read(kMachine + profile("from_mm = [0, 5.5]\nto_mm = [100, 5.5]") + kEffect);
+  EXPECT_THAT(problem.profiles[0].profile.line->from_mm, ElementsAre(0.0, 5.5));
+  EXPECT_THAT(problem.profiles[0].profile.line->to_mm, ElementsAre(100.0, 5.5));
+}
+
+TEST_F(ProblemFile, NeedsNoEffectForItsProfilesAlone) {
+  const std::filesystem::path path = write(kMachine + profile());
+  EXPECT_THROW(read_problem(path), UsageError);
+  EXPECT_EQ(read_profiles_of_problem(path).profiles.size(), 1U);
+}
+
 TEST_F(ProblemFile, LeavesOutSpikesOrDataRows) {
   const std::string rule =
       "profile.leave_out: must be \"spikes\" or a list of data rows, the first one 1: [120, 121]";

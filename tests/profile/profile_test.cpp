@@ -269,5 +269,15 @@ TEST_F(ReadProfile, RefusesATraceThatReachesBeyondTheCut) {
   EXPECT_NO_THROW(read("0,0\n10,1\n"));
 }
 
+// A line's ends are those of the file, whatever has no value there.
+TEST_F(ReadProfile, LaysALineByPositionsWithoutAValueToo) {
+  profile_.line = Line{{0, 0}, {40, 0}};
+  source_.left_out_rows = {5};
+  read("40,\n30,1\n20,2\n10,1\n0,3\n");
+  EXPECT_THAT(profile_.positions, ElementsAre(10.0, 20.0, 30.0));
+  EXPECT_EQ(profile_.line->first_mm, 0.0);
+  EXPECT_EQ(profile_.line->last_mm, 40.0);
+}
+
 }  // namespace
 }  // namespace slideway

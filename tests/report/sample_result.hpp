@@ -54,6 +54,23 @@ inline std::vector<InputSummary> sample_inputs() {
   return {face, level};
 }
 
+inline ClosureSummary sample_closure() {
+  ClosureSummary closure;
+  closure.lines = 8;
+  closure.places = 9;
+  closure.redundancy = 2;
+  closure.verdict = "does not close";
+  closure.false_alarm = 1e-3;
+  closure.limit = 4.25;
+  closure.tied = true;
+  closure.readings = {{"feed2", 10.0, 20.5, 0.0, -2.5, 0.5},
+                      {"feed2", 10.0, 0.0, std::nullopt, std::nullopt, std::nullopt}};
+  closure.repeats = {{"feed2", "level", 17, 5.0, 0.25, 1.5, 0.125, 8.5, "do not agree"}};
+  closure.suspects = {"feed2"};
+  closure.notes = {"8 lines meet at 9 places and do not close"};
+  return closure;
+}
+
 inline RankingResult sample_ranking() {
   Ranking squareness{"squareness", "feed2", 0.83, 0.99, 0.5, 0.991, 12.5, 1e-9, {}};
   squareness.running = {{10, 20}, {0.5, 0.83}, {0.9, 0.99}};
@@ -115,6 +132,7 @@ inline Result sample_result() {
   result.title = "Face turned at two feeds";
   result.version = "0.1.0";
   result.inputs = sample_inputs();
+  result.closure = sample_closure();
   result.wavelet = "db1";
   result.boundary = "symmetric";
   result.level = 5;

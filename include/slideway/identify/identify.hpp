@@ -17,4 +17,10 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
                 Scope scope = Scope::identify);
 
+/// What the profiles are and whether their lines close, no more.
+Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles);
+
+/// close_lines() for the report.
+std::optional<ClosureSummary> summarise_closure(const std::vector<Profile>& profiles);
+
 }  // namespace slideway

@@ -86,6 +86,11 @@ struct Problem {
 Problem read_problem(const std::filesystem::path& path,
                      const std::optional<std::filesystem::path>& data_dir = std::nullopt);
 
+/// The same of a file that may do without [[effect]], for what looks at its profiles alone.
+Problem read_profiles_of_problem(
+    const std::filesystem::path& path,
+    const std::optional<std::filesystem::path>& data_dir = std::nullopt);
+
 /// Reads all profiles of a problem, in order. @throws DataError, UsageError
 std::vector<Profile> read_profiles(const Problem& problem);
 

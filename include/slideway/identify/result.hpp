@@ -30,6 +30,37 @@ struct InputSummary {
   std::vector<std::string> notes;
 };
 
+/// What one line reads where it meets others, against what they say (close_lines()).
+struct MisclosureSummary {
+  std::string profile;
+  double x_mm = 0.0, y_mm = 0.0;
+  std::optional<double> difference_um;  // as the data stand; none where a slope takes part
+  std::optional<double> closure_um;     // none: nothing checks it
+  std::optional<double> standard_uncertainty_um;
+};
+
+/// Two profiles of one line, at the station at which they differ most.
+struct RepeatSummary {
+  std::string a, b;
+  std::size_t stations = 0;
+  double x_mm = 0.0, y_mm = 0.0;
+  double difference_um = 0.0, standard_uncertainty_um = 0.0;
+  double limit = 0.0;   // of their ratio
+  std::string verdict;  // "agree", "do not agree"
+};
+
+struct ClosureSummary {
+  std::size_t lines = 0, places = 0, redundancy = 0;
+  std::string verdict;  // "closes", "does not close", "not judged"
+  double false_alarm = 0.0;
+  std::optional<double> limit;  // of a closure, in standard uncertainties
+  bool tied = false;            // heights that a reduction has made agree
+  std::vector<MisclosureSummary> readings;
+  std::vector<RepeatSummary> repeats;
+  std::vector<std::string> suspects;  // lines without any one of which the rest closes
+  std::vector<std::string> notes;     // what that means, in words
+};
+
 struct RunningSeries {
   std::vector<std::size_t> samples;
   std::vector<double> raw, low_band;
@@ -169,6 +200,7 @@ struct Result {
   std::string title;
   std::string version;
   std::vector<InputSummary> inputs;
+  std::optional<ClosureSummary> closure;  // none where no two profiles say where they lie
   std::string wavelet, boundary;
   int level = 0;
   std::size_t low_band_values = 0;

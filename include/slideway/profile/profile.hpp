@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -24,6 +25,13 @@ struct OutlierRow {
   OutlierKind kind = OutlierKind::spike;
 };
 
+/// Where a profile lies on the surface: [x, y] of its ends, missing samples included. A slope over
+/// a base ends at the outer feet.
+struct Line {
+  std::array<double, 2> from_mm{}, to_mm{};
+  double first_mm = 0.0, last_mm = 0.0;  // smallest and largest position: at from_mm, at to_mm
+};
+
 /// One measured profile, ready for use: positions in mm, strictly increasing; values in mm
 /// (heights) or rad (slopes). The two have the same length.
 struct Profile {
@@ -33,6 +41,7 @@ struct Profile {
   std::string sha256;  // of the file's bytes
   Setup setup;
   Role role = Role::fit;
+  std::optional<Line> line;
   std::vector<double> positions;
   std::vector<double> values;
   std::size_t missing = 0;           // points of the file that have no value, left out here

@@ -25,6 +25,12 @@ std::string html_report(std::string_view json, const std::string& name = "report
 /// The same on one line, without the final newline: part of a longer JSON text.
 std::string json_line(const Result& result, const std::optional<TraceResult>& trace = {});
 
+/// What the profiles are, the report's `inputs` and `closure` alone: schema "slideway.data/1".
+std::string data_json(const Result& result);
+
+/// The same for people: the report down to there.
+std::string data_text(const Result& result);
+
 /// The report for people: aligned plain text in at most 80 columns, values with units, at most two
 /// digits of uncertainty.
 std::string text_report(const Result& result, const std::optional<TraceResult>& trace = {},

@@ -54,6 +54,57 @@ class Input:
 
 
 @dataclass(frozen=True)
+class Misclosure:
+    """What one line reads where it meets others, against what they say.
+
+    ``difference_um`` is that of the data as they stand; ``closure_um`` is None where nothing checks it.
+    """
+
+    profile: str
+    x_mm: float
+    y_mm: float
+    difference_um: float | None
+    closure_um: float | None
+    standard_uncertainty_um: float | None
+
+
+@dataclass(frozen=True)
+class Repeat:
+    """Two profiles of one line, at the station at which they differ most; "agree", "do not agree"."""
+
+    a: str
+    b: str
+    stations: int
+    x_mm: float
+    y_mm: float
+    difference_um: float
+    standard_uncertainty_um: float
+    limit: float
+    verdict: str
+
+
+@dataclass(frozen=True)
+class Closure:
+    """Whether lines agree where they meet: ``verdict`` "closes", "does not close", "not judged".
+
+    ``limit`` is that of ``closure_um / standard_uncertainty_um``; ``suspects`` are the lines without
+    any one of which the rest closes; ``tied`` heights were made to agree before.
+    """
+
+    verdict: str
+    lines: int
+    places: int
+    redundancy: int
+    false_alarm: float
+    limit: float | None
+    tied: bool
+    readings: list[Misclosure]
+    repeats: list[Repeat]
+    suspects: list[str]
+    notes: list[str]
+
+
+@dataclass(frozen=True)
 class LowBand:
     wavelet: str
     level: int
@@ -353,6 +404,7 @@ class Report:
     version: str
     title: str
     inputs: list[Input]
+    closure: Closure | None
     travel: Travel | None
     low_band: LowBand
     ranking: list[Ranking]
