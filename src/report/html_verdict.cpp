@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "html_parts.hpp"
+#include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/report/number.hpp"
