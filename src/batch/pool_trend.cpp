@@ -10,15 +10,15 @@
 namespace slideway {
 namespace {
 
-struct Line {
+struct TrendLine {
   Eigen::Vector2d coefficients;
   Eigen::Matrix2d covariance;
   double chi_square = 0.0;
 };
 
-Line fit_line(const Eigen::MatrixX2d& columns, const Eigen::VectorXd& values,
-              const Eigen::VectorXd& weights) {
-  Line line;
+TrendLine fit_line(const Eigen::MatrixX2d& columns, const Eigen::VectorXd& values,
+                   const Eigen::VectorXd& weights) {
+  TrendLine line;
   line.covariance = (columns.transpose() * weights.asDiagonal() * columns).inverse();
   line.coefficients = line.covariance * (columns.transpose() * (weights.cwiseProduct(values)));
   const Eigen::VectorXd residual = values - columns * line.coefficients;
@@ -27,7 +27,7 @@ Line fit_line(const Eigen::MatrixX2d& columns, const Eigen::VectorXd& values,
 }
 
 /// τ²: what the residual has beyond its expectation at τ = 0.
-double variance_between(const Line& line, const Eigen::MatrixX2d& columns,
+double variance_between(const TrendLine& line, const Eigen::MatrixX2d& columns,
                         const Eigen::VectorXd& weights) {
   const Eigen::Matrix2d squares = columns.transpose() * weights.cwiseAbs2().asDiagonal() * columns;
   const auto expected = static_cast<double>(columns.rows() - 2);
@@ -63,7 +63,7 @@ std::vector<Trend> trends(const std::vector<std::vector<FittedParameter>>& items
 
     const Eigen::VectorXd weights = variances.cwiseInverse();
     const double between = variance_between(fit_line(columns, values, weights), columns, weights);
-    const Line line = fit_line(columns, values, (variances.array() + between).inverse());
+    const TrendLine line = fit_line(columns, values, (variances.array() + between).inverse());
     const double excess = std::max(1.0, line.chi_square / static_cast<double>(n - 2));
     Trend trend{items.front()[p].name, items.front()[p].unit, known.size()};
     trend.rate = line.coefficients[1] * unit / span;

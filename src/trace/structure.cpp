@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "background.hpp"
+#include "linear_algebra.hpp"
 #include "calibration.hpp"
 
 namespace slideway {
@@ -236,10 +237,13 @@ LackOfFit lack_of_fit(const Whitened& data, const Linearisation& linear) {
 Unnamed describe(const Structure& found, const Whitened& data, const Linearisation& linear) {
   Unnamed out = found.description;
   double largest = -1.0;
+  Eigen::VectorXd process =
+      stack(linear, 1, [&](std::size_t i) { return found.columns[i] * found.coefficients; });
+  const Eigen::MatrixXd span = model_span(linear);
+  process -= span * least_squares(span, process).values;  // that part shows as parameters
   for (std::size_t i = 0; i < found.columns.size(); ++i) {
     const Observation& observation = *linear.observations[i];
-    Eigen::VectorXd values = found.columns[i] * found.coefficients;
-    values.array() -= values.mean();
+    Eigen::VectorXd values = process.segment(data.first_row(i), data.count(i));
     const double standing_out = values.norm() / std::sqrt(static_cast<double>(values.size())) /
                                 data.noise()[i].standard_deviation();
     if (standing_out <= largest) continue;

@@ -3,9 +3,7 @@
 #include "linear_algebra.hpp"
 
 namespace slideway {
-namespace {
 
-/// Nuisances of each profile in columns of their own, then amplitudes and shapes.
 Eigen::MatrixXd model_span(const Linearisation& linear) {
   Eigen::Index nuisances = 0;
   for (const Observation* observation : linear.observations)
@@ -23,8 +21,6 @@ Eigen::MatrixXd model_span(const Linearisation& linear) {
   out.bottomRightCorner(linear.prior_rows.rows(), shared) = linear.prior_rows;
   return out;
 }
-
-}  // namespace
 
 Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, Eigen::MatrixXd loose)
     : noise_(std::move(noise)), loose_(std::move(loose)) {

@@ -79,4 +79,8 @@ Eigen::MatrixXd stack(const Linearisation& linear, Eigen::Index columns, Of&& of
   return stack(linear.observations, linear.prior_rows.rows(), columns, of);
 }
 
+/// What the model makes, stacked: nuisances of each profile in columns of their own, then
+/// amplitudes and shapes.
+Eigen::MatrixXd model_span(const Linearisation& linear);
+
 }  // namespace slideway

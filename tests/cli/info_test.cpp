@@ -169,7 +169,7 @@ TEST_F(Info, ClosesTheLinesOfAProblemWithoutAnEffect) {
     }
   EXPECT_THAT(run({"info", "plate.toml"}).out,
               AllOf(HasSubstr("Closure between lines: does not close"),
-                    HasSubstr("µm above what the others say at [60, 60] mm")));
+                    HasSubstr("µm above what the\n    others say at [60, 60] mm")));
   const auto refused = run({"info", "plate.toml", "--decimal", ","});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("--decimal belongs to a FILE"));

@@ -63,6 +63,15 @@ TEST_F(Measured, CurvatureOfAMirrorDeclaredStraightComesBack) {
   expect_within_4u(result.after, "straightness.b2", *b2->value);
 }
 
+// What is left without a name is a part of the residual, not of what the parameters take.
+TEST_F(Measured, StructureWithoutANameIsNoLargerThanTheResidual) {
+  const TraceResult result = close_problem("real/mirror.toml");
+  SCOPED_TRACE(story(result));
+  ASSERT_TRUE(result.unnamed);
+  ASSERT_TRUE(result.after_rms_urad);
+  EXPECT_LT(result.unnamed->rms, *result.after_rms_urad);
+}
+
 TEST(Shipped, ThreeLevelsLackNothing) {
   const TraceResult result = close_problem("three-levels/problem.toml");
   SCOPED_TRACE(story(result));
