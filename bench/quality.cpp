@@ -107,6 +107,7 @@ Json run_case(const std::string& name, int cuts, double size, bool at_limit, dou
     for (const TriedEffect& tried : round.candidates)
       json["tried"].push_back({tried.effect, tried.delta_bic, tried.refused});
   }
+  json["notes"] = result.notes;
   json["refused"] = Json::array();
   for (const TriedEffect& tried : result.refused)
     if (tried.delta_bic < -10.0)

@@ -34,18 +34,18 @@ std::span<const double> middle_shape(const Candidate& candidate) {
   return candidate.shapes[candidate.shapes.size() / 2];
 }
 
-/// Places from one end of what the search looks at to the other (in the logarithm where the shape
-/// has one), at the nodes of Chebyshev: what lies between them can be interpolated, near the ends
+/// Places from one end of what the search looks at to the other, in the logarithm unless they are
+/// positions, at the nodes of Chebyshev: what lies between them can be interpolated, near the ends
 /// too. One empty shape for a candidate without.
 std::vector<std::vector<double>> spread_shapes(const Candidate& candidate) {
   if (candidate.shapes.front().empty()) return {{}};
-  const Shape& kind = candidate.term.effect->shapes()[0];
-  const double first = kind.inner(candidate.shapes.front()[0]);
-  const double last = kind.inner(candidate.shapes.back()[0]);
+  const double first = candidate.shapes.front()[0], last = candidate.shapes.back()[0];
+  const bool is_position = candidate.term.effect->shapes()[0].stepwise;
   std::vector<std::vector<double>> out;
   for (int i = 0; i < kSpreadShapes; ++i) {
     const double share = 0.5 - 0.5 * std::cos(kPi * (i + 0.5) / kSpreadShapes);
-    out.push_back({kind.outer(first + share * (last - first))});
+    out.push_back(
+        {is_position ? first + share * (last - first) : first * std::pow(last / first, share)});
   }
   return out;
 }
@@ -109,6 +109,25 @@ struct Case {
   }
 };
 
+/// Standard uncertainty the joint fit, whose least squares weigh profiles but not frequencies,
+/// would give one unit of the first parameter at a given shape.
+double joint_uncertainty(const Linearisation& linear, const Whitened& data,
+                         const std::vector<Noise>& noise, const Case& one) {
+  Eigen::MatrixXd span = model_span(linear);
+  Eigen::VectorXd column = one.columns * one.amplitudes(1.0);
+  for (std::size_t i = 0; i < data.observations(); ++i) {
+    span.middleRows(data.first_row(i), data.count(i)) /= noise[i].weight_deviation();
+    column.segment(data.first_row(i), data.count(i)) /= noise[i].weight_deviation();
+  }
+  column -= span * least_squares(span, column).values;
+  double variance = 0.0;
+  for (std::size_t i = 0; i < data.observations(); ++i)
+    variance += covariance_under(noise[i], column.segment(data.first_row(i), data.count(i)) /
+                                               noise[i].weight_deviation())
+                    .value();
+  return std::sqrt(variance) / column.squaredNorm();
+}
+
 /// Size found with 80 % probability in these data.
 std::optional<double> limit_in(const Whitened& data, const Case& one, double least_gain) {
   const Projection own = project(data, one.columns);
@@ -138,10 +157,14 @@ std::optional<double> limit_in(const Whitened& data, const Case& one, double lea
 
 /// The same; an effect that is steep at the centre takes the values there out of the search, the
 /// more of them the larger it is.
-std::optional<double> limit_at(const Fitted& fitted, const Whitened& data, const Case& one,
+std::optional<double> limit_at(const Fitted& fitted, const Whitened& data,
+                               const std::vector<Noise>& joint_noise, const Case& one,
                                double least_gain) {
   std::optional<double> limit = limit_in(data, one, least_gain);
-  if (!is_centred(*one.candidate.term.effect)) return limit;
+  if (!limit) return limit;
+  if (!is_centred(*one.candidate.term.effect))
+    return std::max(*limit, (kLeastJointSize + kPowerDeviate) *
+                                joint_uncertainty(fitted.fit.linear, data, joint_noise, one));
   Eigen::Index lost = 0;
   for (int round = 0; limit && round < kMostRounds; ++round) {
     const Eigen::MatrixXd loose =
@@ -155,6 +178,7 @@ std::optional<double> limit_at(const Fitted& fitted, const Whitened& data, const
 
 /// Over all shapes, stated for the middle one.
 std::optional<DetectionLimit> detection_limit(const Fitted& fitted, const Whitened& data,
+                                              const std::vector<Noise>& joint_noise,
                                               const Candidate& candidate, double least_gain) {
   if (!candidate.term.effect->has_one_size()) return std::nullopt;
   const Parameter& first = candidate.term.effect->parameters()[0];
@@ -164,7 +188,7 @@ std::optional<DetectionLimit> detection_limit(const Fitted& fitted, const Whiten
     const Case one{
         fitted.model, candidate, shape,
         stacked_columns(fitted.model, candidate.term, shape, data.rows() - data.values())};
-    const std::optional<double> limit = limit_at(fitted, data, one, least_gain);
+    const std::optional<double> limit = limit_at(fitted, data, joint_noise, one, least_gain);
     if (shape == shapes[shapes.size() / 2]) {
       if (!limit) return std::nullopt;
       out.value = *limit;
@@ -178,12 +202,13 @@ std::optional<DetectionLimit> detection_limit(const Fitted& fitted, const Whiten
 }  // namespace
 
 std::vector<DetectionLimit> detection_limits(const Fitted& fitted, const Whitened& data,
+                                             const std::vector<Noise>& joint_noise,
                                              const Candidates& candidates,
                                              const Calibration& calibration, double significance) {
   const double least_gain = std::max(kEnough, calibration.threshold(significance));
   std::vector<std::optional<DetectionLimit>> limits(candidates.size());
   parallel_for(candidates.size(), [&](std::size_t c) {
-    limits[c] = detection_limit(fitted, data, *candidates[c], least_gain);
+    limits[c] = detection_limit(fitted, data, joint_noise, *candidates[c], least_gain);
   });
   std::vector<DetectionLimit> out;
   for (std::optional<DetectionLimit>& limit : limits)

@@ -7,9 +7,11 @@
 namespace slideway {
 
 /// For every candidate the size that is found with 80 % probability, in the unit of its first
-/// parameter: its gain must pass what the search finds in noise, ΔBIC -10, and five standard
-/// uncertainties. None for a candidate the model spans, or whose size is not one number.
+/// parameter: its gain must pass what the search finds in noise, ΔBIC -10, five standard
+/// uncertainties, and three in a joint fit whose residual has `joint_noise`. None for a candidate
+/// the model spans, or whose size is not one number.
 std::vector<DetectionLimit> detection_limits(const Fitted& fitted, const Whitened& data,
+                                             const std::vector<Noise>& joint_noise,
                                              const Candidates& candidates,
                                              const Calibration& calibration, double significance);
 

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "background.hpp"
-#include "linear_algebra.hpp"
 #include "calibration.hpp"
+#include "linear_algebra.hpp"
 
 namespace slideway {
 namespace {

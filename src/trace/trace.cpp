@@ -19,8 +19,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kBetter = 2.0;          // of BIC, for one effect to take another's place
-constexpr double kLeastJointSize = 3.0;  // standard uncertainties of an effect in the joint fit
+constexpr double kBetter = 2.0;  // of BIC, for one effect to take another's place
 
 class Loop {
  public:
@@ -302,7 +301,7 @@ class Loop {
           extender_.base(),
           {extender_.base().fit.linear, last.data.noise(),
            loose_values(extender_.base().model, extender_.base().fit, last.data.noise())},
-          candidates_without({}), *calibration_, problem_.trace.significance);
+          state.fit.noise, candidates_without({}), *calibration_, problem_.trace.significance);
     out.advice = advice_;
     out.notes = notes_;
     const std::string other_cause =

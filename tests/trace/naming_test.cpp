@@ -126,8 +126,8 @@ TEST(Named, WhatIsSteepAtTheCentreIsNoOtherAlone) {
   }
 }
 
-// One spindle speed in all cuts: time and revolutions are one clock. Of 0.1 um a nose of 50 mm would
-// make a second harmonic of 50 mm/4 (2π 0.1 um/0.9 mm)² = 6 nm, a line of its own.
+// One spindle speed in all cuts: time and revolutions are one clock. Of 0.1 um a nose of 50 mm
+// would make a second harmonic of 50 mm/4 (2π 0.1 um/0.9 mm)² = 6 nm, a line of its own.
 TEST(Named, TimeAndRevolutionsAreOneClockAtOneSpeed) {
   const TraceResult result = close_on(
       {"time_periodic",
