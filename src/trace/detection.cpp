@@ -19,6 +19,7 @@ constexpr double kPower = 0.8;
 constexpr double kPowerDeviate = 0.8416;  // normal deviate of 80 %
 constexpr int kSpreadShapes = 5;
 constexpr int kMostRounds = 8;        // of a limit that depends on itself
+constexpr double kMostVisible = 1.0;  // mm or rad in a low band: beyond it nothing is a flatness
 constexpr double kNegligible = 0.02;  // of a column's size: not worth a name
 
 /// Distribution of a gain where there is an effect, in plain doubles; not finite instead of an
@@ -176,7 +177,7 @@ std::optional<double> limit_at(const Fitted& fitted, const Whitened& data,
   return limit;
 }
 
-/// Over all shapes, stated for the middle one.
+/// Over all shapes, stated for the one nearest to the middle that has a limit.
 std::optional<DetectionLimit> detection_limit(const Fitted& fitted, const Whitened& data,
                                               const std::vector<Noise>& joint_noise,
                                               const Candidate& candidate, double least_gain) {
@@ -184,18 +185,23 @@ std::optional<DetectionLimit> detection_limit(const Fitted& fitted, const Whiten
   const Parameter& first = candidate.term.effect->parameters()[0];
   DetectionLimit out{candidate.name(), first.name, first.unit, 0.0, "", {}};
   const std::vector<std::vector<double>> shapes = spread_shapes(candidate);
-  for (const std::vector<double>& shape : shapes) {
+  const auto middle = std::ssize(shapes) / 2;
+  std::ptrdiff_t nearest = std::ssize(shapes);  // places from the middle
+  for (std::ptrdiff_t s = 0; s < std::ssize(shapes); ++s) {
+    const std::vector<double>& shape = shapes[static_cast<std::size_t>(s)];
     const Case one{
         fitted.model, candidate, shape,
         stacked_columns(fitted.model, candidate.term, shape, data.rows() - data.values())};
     const std::optional<double> limit = limit_at(fitted, data, joint_noise, one, least_gain);
-    if (shape == shapes[shapes.size() / 2]) {
-      if (!limit) return std::nullopt;
-      out.value = *limit;
-      out.at = shape_text(candidate, shape);
-    }
-    if (limit && !shape.empty()) out.by_shape.emplace_back(shape[0], *limit);
+    if (!limit || !((one.columns * one.amplitudes(*limit)).cwiseAbs().maxCoeff() < kMostVisible))
+      continue;
+    if (!shape.empty()) out.by_shape.emplace_back(shape[0], *limit);
+    if (std::abs(s - middle) >= nearest) continue;
+    nearest = std::abs(s - middle);
+    out.value = *limit;
+    out.at = shape_text(candidate, shape);
   }
+  if (out.value == 0.0) return std::nullopt;
   return out;
 }
 
