@@ -19,8 +19,9 @@ TEST(Progress, EachStageGoesFromItsBeginningOnInTheThreadOfTheCaller) {
                EXPECT_EQ(std::this_thread::get_id(), caller) << stage;
                EXPECT_GE(done, 0.0) << stage;
                EXPECT_LE(done, 1.0) << stage;
-               if (!told.empty() && told.back().first == stage)
+               if (!told.empty() && told.back().first == stage) {
                  EXPECT_GE(done, told.back().second) << stage;
+               }
                told.emplace_back(stage, done);
              });
   std::vector<std::string> stages;
