@@ -235,7 +235,7 @@ void judge(const ClosureNet& net, const std::vector<Noise>& noises, Closure& out
     if (freedom > 0.0) out.readings[i].standard_uncertainty = all.uncertainty[at];
   }
   if (freedom == 0.0) return;
-  const double readings = static_cast<double>(net.readings.size());
+  const auto readings = static_cast<double>(net.readings.size());
   out.limit = limit_of(readings, static_cast<double>(all.redundancy), freedom);
   if (all.largest() <= *out.limit) return;
   for (std::size_t i = 0; i < net.readings.size(); ++i) {
