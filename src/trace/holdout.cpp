@@ -29,7 +29,7 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
   const Eigen::MatrixXd basis = orthonormal(rows.leftCols(rows.cols() - k - a - 1));
   Eigen::MatrixXd rest = rows.rightCols(k + a + 1);
   rest -= basis * (basis.transpose() * rest).eval();
-  return upper_triangle(std::move(rest));
+  return upper_triangle(rest);
 }
 
 /// What some profiles say: model, and model with effect, fitted to their rows and the priors.

@@ -35,9 +35,9 @@ LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd
   return out;
 }
 
-Eigen::MatrixXd upper_triangle(Eigen::MatrixXd columns) {
+Eigen::MatrixXd upper_triangle(const Eigen::MatrixXd& columns) {
   const Eigen::Index size = std::min(columns.rows(), columns.cols());
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(std::move(columns));
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
   return qr.matrixQR().topRows(size).triangularView<Eigen::Upper>();
 }
 

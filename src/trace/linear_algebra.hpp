@@ -14,7 +14,7 @@ struct LeastSquares {
 LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& targets);
 
 /// Upper triangular, at most as many rows as columns, with the same inner products of its columns.
-Eigen::MatrixXd upper_triangle(Eigen::MatrixXd columns);
+Eigen::MatrixXd upper_triangle(const Eigen::MatrixXd& columns);
 
 /// (C'C)⁺: covariance of the amplitudes of the columns C, for white data of unit variance.
 Eigen::MatrixXd amplitude_covariance(const Eigen::MatrixXd& columns);
