@@ -115,12 +115,8 @@ class InfoCommand : public ReportCommand {
   }
 
   [[nodiscard]] int run_problem() const {
-    Problem problem = read_profiles_of_problem(input_, data_directory(data_));
-    for (ProfileEntry& entry : problem.profiles) {
-      keep(entry.source.path);
-      entry.source.request.ignore_checksum = request_.ignore_checksum;
-    }
-    const Result result = summarise_data(problem, read_profiles(problem));
+    const Problem problem = read_profiles_of_problem(input_, data_directory(data_));
+    const Result result = summarise_data(problem, profiles_of(problem, request_.ignore_checksum));
     report([&] { return data_text(result); }, [&] { return data_json(result); });
     return kDone;
   }

@@ -54,6 +54,15 @@ void ReportCommand::report(const std::function<std::string()>& text,
   if (!is_quiet() && json_ != "-" && html_ != "-") print_report(text());
 }
 
+std::vector<Profile> ReportCommand::profiles_of(Problem problem, bool ignore_checksum) const {
+  for (ProfileEntry& entry : problem.profiles) {
+    keep(entry.source.path);
+    entry.source.request.ignore_checksum = ignore_checksum;
+  }
+  require_simulated(problem);
+  return read_profiles(problem);
+}
+
 std::string ReportCommand::document_text(const nlohmann::ordered_json& document) {
   return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
@@ -74,16 +83,11 @@ void ProblemCommand::add_strict() {
 
 int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
   keep(input_);
-  Problem problem = read_problem(input_, data_directory(data_));
-  for (ProfileEntry& entry : problem.profiles) {
-    keep(entry.source.path);
-    entry.source.request.ignore_checksum = ignore_checksum_;
-  }
+  const Problem problem = read_problem(input_, data_directory(data_));
   const Analysis analysis = [&] {
     StageLine line(!is_quiet());
     line.show("reading");
-    require_simulated(problem);
-    const std::vector<Profile> profiles = read_profiles(problem);
+    const std::vector<Profile> profiles = profiles_of(problem, ignore_checksum_);
     line.show("fitting the declared model");
     return analyse(problem, profiles, {scope, closes_loop, closes_loop || wants_json()},
                    [&](const std::string& stage, double done) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "slideway/identify/identify.hpp"
@@ -26,6 +27,9 @@ class ReportCommand : public Command {
 
   /// @throws UsageError  an output would replace the input
   void keep(const std::filesystem::path& input) const;
+
+  /// Profiles of a problem, none of which an output replaces.
+  [[nodiscard]] std::vector<Profile> profiles_of(Problem problem, bool ignore_checksum) const;
 
   /// A document as --json writes it; what is no UTF-8 in it, a file's name, is replaced.
   static std::string document_text(const nlohmann::ordered_json& document);
