@@ -177,7 +177,7 @@ std::string comparison_json(const NamedReport& a, const NamedReport& b) {
                          {"b", json_of(b)},
                          {"parameters", array_of(pairs_of(a, b), to_json)},
                          {"changes", array_of(changes_of(a, b), to_json)}};
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return laid_out(document) + "\n";
 }
 
 }  // namespace slideway

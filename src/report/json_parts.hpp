@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 
 #include "slideway/identify/result.hpp"
 #include "slideway/trace/details.hpp"
@@ -22,6 +23,9 @@ Json array_of(const Range& range, Function&& to_json) {
   for (const auto& item : range) array.push_back(to_json(item));
   return array;
 }
+
+/// The document over several lines; what is no UTF-8 in it, a file's name, is replaced.
+std::string laid_out(const Json& document);
 
 Json parameter_json(const FittedParameter& parameter);
 

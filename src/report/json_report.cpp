@@ -275,17 +275,20 @@ Json report_json(const Result& result, const std::optional<TraceResult>& trace,
 
 }  // namespace
 
+std::string laid_out(const Json& document) {
+  return document.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string data_json(const Result& result) {
   const Json document = head(result, "slideway.data/1");
   require_finite(document, "");
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return laid_out(document) + "\n";
 }
 
 std::string json_report(const Result& result, const std::optional<TraceResult>& trace,
                         const std::optional<Details>& details) {
   const Json report = report_json(result, trace, details);
-  // A file name need not be UTF-8.
-  std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
+  std::string text = laid_out(report);
   if (details) {  // a line for each profile, not for each number
     const Json curves = curves_json(*details);
     require_finite(curves, "curves");
