@@ -1,9 +1,10 @@
+#include "closure_summary.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
-#include "slideway/identify/identify.hpp"
 #include "slideway/profile/closure.hpp"
 
 namespace slideway {
@@ -39,8 +40,8 @@ const Misclosure& largest(const Closure& closure) {
 
 std::string in_words(const Closure& closure, const std::vector<Profile>& profiles,
                      const std::vector<std::string>& suspects) {
-  std::string text = std::to_string(closure.lines) + " lines meet at " +
-                     std::to_string(closure.places) + (closure.places == 1 ? " place" : " places");
+  std::string text =
+      std::to_string(closure.lines) + " lines meet at " + counted(closure.places, "place");
   if (closure.places == 0) return text + ": nothing to close";
   if (closure.redundancy == 0) return text + ", and no loop closes: offsets and tilts take it all";
   if (!closure.limit) return text + ": too few stations to tell chance from error";

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "closure_summary.hpp"
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/ranking.hpp"

@@ -14,11 +14,10 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kShort = 200;         // stations; shorter lines are pooled
-constexpr std::size_t kFewest = 8;          // second differences that tell a scatter
-constexpr double kMad = 1.482602218505602;  // of a normal distribution
-constexpr double kEffective = 0.2;  // degrees of freedom of a MAD of second differences, of each
-constexpr double kKnown = 1e6;      // degrees of freedom
+constexpr std::size_t kShort = 200;  // stations; shorter lines are pooled
+constexpr std::size_t kFewest = 8;   // second differences that tell a scatter
+constexpr double kEffective = 0.2;   // degrees of freedom of a MAD of second differences, of each
+constexpr double kKnown = 1e6;       // degrees of freedom
 constexpr std::size_t kFar = 8;
 constexpr double kGrows = 1.19;  // scatter from next to far; 1 if white, √8 of a random walk
 constexpr double kEqual = 1e-6;
@@ -40,12 +39,10 @@ struct Scatter {
 };
 
 void append_bends(const std::vector<double>& z, std::size_t lag, std::vector<double>& all) {
-  std::vector<double> bends;
-  for (std::size_t i = lag; i + lag < z.size(); ++i)
-    bends.push_back(z[i] - 0.5 * (z[i - lag] + z[i + lag]));
-  if (bends.empty()) return;
-  const double middle = median(bends);
-  for (const double each : bends) all.push_back(std::abs(each - middle));
+  std::vector<double> own = bends(z, lag);
+  if (own.empty()) return;
+  const double middle = median(own);
+  for (const double each : own) all.push_back(std::abs(each - middle));
 }
 
 void add_scatter(const std::vector<double>& z, Scatter& scatter) {

@@ -9,16 +9,12 @@
 namespace slideway {
 namespace {
 
-using Point = std::array<double, 2>;
-
 constexpr double kParallel = 0.02;    // sine of the angle
 constexpr double kGap = 1.9;          // steps
 constexpr double kSameHeight = 1e-9;  // of the largest
 constexpr std::size_t kMostReadings = 1000;
 
 double cross(const Point& a, const Point& b) { return a[0] * b[1] - a[1] * b[0]; }
-double length(const Point& a) { return std::hypot(a[0], a[1]); }
-Point between(const Point& a, const Point& b) { return {b[0] - a[0], b[1] - a[1]}; }
 
 double median_step(const std::vector<double>& at) {
   std::vector<double> steps;
@@ -60,10 +56,8 @@ HeightLine height_line(const Profile& profile, std::size_t index) {
   }
   for (double& at : out.at) at = (at - first) / (last - first);
   out.step = median_step(out.at);
-  std::vector<double> bends;
-  for (std::size_t i = 1; i + 1 < out.heights.size(); ++i)
-    bends.push_back(out.heights[i] - 0.5 * (out.heights[i - 1] + out.heights[i + 1]));
-  if (!bends.empty()) out.bend = median(bends);
+  std::vector<double> own = bends(out.heights, 1);
+  if (!own.empty()) out.bend = median(own);
   return out;
 }
 
@@ -78,8 +72,7 @@ std::optional<Point> meeting(const HeightLine& a, const HeightLine& b) {
     return t >= -0.5 * line.step && t <= 1.0 + 0.5 * line.step;
   };
   if (!on(a, on_a) || !on(b, on_b)) return std::nullopt;
-  const Point& from = a.profile->line->from_mm;
-  return Point{from[0] + on_a * a.along[0], from[1] + on_a * a.along[1]};
+  return a.place(on_a);
 }
 
 // Lines that meet within half a station of one another meet at one place.
@@ -172,6 +165,18 @@ void add_lines(const std::vector<Profile>& profiles, ClosureNet& net) {
 
 }  // namespace
 
+std::vector<double> bends(const std::vector<double>& z, std::size_t lag) {
+  std::vector<double> out;
+  for (std::size_t i = lag; i + lag < z.size(); ++i)
+    out.push_back(z[i] - 0.5 * (z[i - lag] + z[i + lag]));
+  return out;
+}
+
+Point HeightLine::place(double t) const {
+  const Point& from = profile->line->from_mm;
+  return {from[0] + t * along[0], from[1] + t * along[1]};
+}
+
 double HeightLine::half_station_mm() const { return 0.5 * step * length(along); }
 
 std::optional<HeightLine::Height> HeightLine::height(double t, bool beside) const {
@@ -186,9 +191,8 @@ std::optional<HeightLine::Height> HeightLine::height(double t, bool beside) cons
   const double gap = at[right] - at[left], share = (t - at[left]) / gap;
   const double nearest = std::min(std::abs(t - at[left]), std::abs(at[right] - t));
   if (nearest > kGap * step || gap > 2.0 * kGap * step) return std::nullopt;
-  const double bends = share * (1.0 - share) * (gap / step) * (gap / step);
-  return Height{(1.0 - share) * heights[left] + share * heights[right] + bend * bends,
-                std::abs(bends)};
+  const double off = share * (1.0 - share) * (gap / step) * (gap / step);
+  return Height{(1.0 - share) * heights[left] + share * heights[right] + bend * off, std::abs(off)};
 }
 
 ClosureNet closure_net(const std::vector<Profile>& profiles) {

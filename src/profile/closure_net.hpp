@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -11,17 +12,26 @@
 
 namespace slideway {
 
+// A place on the surface, or the way from one to another; mm.
+using Point = std::array<double, 2>;
+inline Point between(const Point& a, const Point& b) { return {b[0] - a[0], b[1] - a[1]}; }
+inline double length(const Point& a) { return std::hypot(a[0], a[1]); }
+
+// Each value less the middle of those `lag` to either side.
+std::vector<double> bends(const std::vector<double>& z, std::size_t lag);
+
 // A profile as heights at stations along its line.
 struct HeightLine {
   const Profile* profile = nullptr;
-  std::size_t index = 0;          // of the profile
-  std::array<double, 2> along{};  // from one end to the other, mm
-  std::vector<double> at;         // stations: share of `along`, ascending
-  std::vector<double> heights;    // mm
-  double step = 0.0;              // median, share of `along`
-  double bend = 0.0;              // median of a height less the middle of its neighbours
+  std::size_t index = 0;        // of the profile
+  Point along{};                // from one end to the other
+  std::vector<double> at;       // stations: share of `along`, ascending
+  std::vector<double> heights;  // mm
+  double step = 0.0;            // median, share of `along`
+  double bend = 0.0;            // median of a height less the middle of its neighbours
 
   [[nodiscard]] double half_station_mm() const;
+  [[nodiscard]] Point place(double t) const;  // at a share of the line
   struct Height {
     double value = 0.0;
     double bends = 0.0;  // by how many bends it may be off: 1 between neighbours, 2 beyond an end
@@ -40,7 +50,7 @@ struct Reading {
 
 struct ClosureNet {
   std::vector<HeightLine> lines;
-  std::vector<std::array<double, 2>> places;
+  std::vector<Point> places;
   std::vector<Reading> readings;  // by place; each place has two at least
   std::vector<std::string> notes;
   bool tied = false;

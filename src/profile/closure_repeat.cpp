@@ -11,15 +11,11 @@ namespace {
 
 constexpr std::size_t kFewest = 6;  // stations
 
-using Point = std::array<double, 2>;
-
 struct Differences {
   std::vector<double> t, size;  // share of the line; mm
 };
 
-bool is_near(const Point& a, const Point& b, double mm) {
-  return std::hypot(b[0] - a[0], b[1] - a[1]) <= mm;
-}
+bool is_near(const Point& a, const Point& b, double mm) { return length(between(a, b)) <= mm; }
 
 // Of b from a at the stations of a; none unless both have the same ends.
 std::optional<Differences> differences(const HeightLine& a, const HeightLine& b) {
@@ -65,8 +61,7 @@ void find_worst(const HeightLine& a, const Differences& all, Repeat& out) {
     const double uncertainty = (std::sqrt(others) + rounding) / std::sqrt(own);
     if (!(uncertainty > 0.0) || std::abs(deleted) / uncertainty <= worst) continue;
     worst = std::abs(deleted) / uncertainty;
-    const Point& from = a.profile->line->from_mm;
-    out.place = {from[0] + all.t[i] * a.along[0], from[1] + all.t[i] * a.along[1]};
+    out.place = a.place(all.t[i]);
     out.difference = deleted;
     out.standard_uncertainty = uncertainty;
   }

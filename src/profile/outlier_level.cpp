@@ -8,11 +8,10 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kNear = 32;           // errors on either side
-constexpr std::size_t kWindow = 16;         // values that make one peak
-constexpr std::size_t kLonely = 4;          // peaks that may be half as large, or ...
-constexpr std::size_t kPerPeak = 1000;      // ... one in so many values
-constexpr double kMad = 1.482602218505602;  // of a normal distribution
+constexpr std::size_t kNear = 32;       // errors on either side
+constexpr std::size_t kWindow = 16;     // values that make one peak
+constexpr std::size_t kLonely = 4;      // peaks that may be half as large, or ...
+constexpr std::size_t kPerPeak = 1000;  // ... one in so many values
 constexpr double kGolden = 0.6180339887498949;
 
 // By how much a limit rises where the scale is the MAD of so few errors: what holds kFalseAlarm in

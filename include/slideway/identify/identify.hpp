@@ -20,7 +20,4 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
 /// What the profiles are and whether their lines close, no more.
 Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles);
 
-/// close_lines() for the report.
-std::optional<ClosureSummary> summarise_closure(const std::vector<Profile>& profiles);
-
 }  // namespace slideway
