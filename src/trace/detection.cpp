@@ -110,24 +110,47 @@ struct Case {
   }
 };
 
-/// Standard uncertainty the joint fit, whose least squares weigh profiles but not frequencies,
-/// would give one unit of the first parameter at a given shape.
-double joint_uncertainty(const Linearisation& linear, const Whitened& data,
-                         const std::vector<Noise>& noise, const Case& one) {
-  Eigen::MatrixXd span = model_span(linear);
-  Eigen::VectorXd column = one.columns * one.amplitudes(1.0);
-  for (std::size_t i = 0; i < data.observations(); ++i) {
-    span.middleRows(data.first_row(i), data.count(i)) /= noise[i].weight_deviation();
-    column.segment(data.first_row(i), data.count(i)) /= noise[i].weight_deviation();
+/// The joint fit, whose least squares weigh profiles but not frequencies.
+class JointFit {
+ public:
+  JointFit(const Linearisation& linear, const Whitened& data, const std::vector<Noise>& noise)
+      : data_(data), noise_(noise) {
+    Eigen::MatrixXd span = model_span(linear);
+    weigh(span);
+    basis_ = orthonormal(std::move(span));
   }
-  column -= span * least_squares(span, column).values;
-  double variance = 0.0;
-  for (std::size_t i = 0; i < data.observations(); ++i)
-    variance += covariance_under(noise[i], column.segment(data.first_row(i), data.count(i)) /
-                                               noise[i].weight_deviation())
-                    .value();
-  return std::sqrt(variance) / column.squaredNorm();
-}
+
+  /// Standard uncertainty of the amplitude of one column.
+  [[nodiscard]] double uncertainty(Eigen::MatrixXd column) const {
+    weigh(column);
+    column -= basis_ * (basis_.transpose() * column);
+    const double squares = column.squaredNorm();
+    weigh(column);
+    double variance = 0.0;
+    for (std::size_t i = 0; i < data_.observations(); ++i)
+      variance += covariance_under(noise_[i], column.middleRows(data_.first_row(i), data_.count(i)))
+                      .value();
+    return std::sqrt(variance) / squares;
+  }
+
+ private:
+  void weigh(Eigen::MatrixXd& columns) const {
+    for (std::size_t i = 0; i < data_.observations(); ++i)
+      columns.middleRows(data_.first_row(i), data_.count(i)) /= noise_[i].weight_deviation();
+  }
+
+  const Whitened& data_;
+  const std::vector<Noise>& noise_;
+  Eigen::MatrixXd basis_;
+};
+
+/// What an effect has to show itself in, and the least gain that counts.
+struct Design {
+  const Fitted& fitted;
+  const Whitened& data;
+  JointFit joint;
+  double least_gain;
+};
 
 /// Size found with 80 % probability in these data.
 std::optional<double> limit_in(const Whitened& data, const Case& one, double least_gain) {
@@ -158,14 +181,13 @@ std::optional<double> limit_in(const Whitened& data, const Case& one, double lea
 
 /// The same; an effect that is steep at the centre takes the values there out of the search, the
 /// more of them the larger it is.
-std::optional<double> limit_at(const Fitted& fitted, const Whitened& data,
-                               const std::vector<Noise>& joint_noise, const Case& one,
-                               double least_gain) {
+std::optional<double> limit_at(const Design& design, const Case& one) {
+  const auto& [fitted, data, joint, least_gain] = design;
   std::optional<double> limit = limit_in(data, one, least_gain);
   if (!limit) return limit;
   if (!is_centred(*one.candidate.term.effect))
     return std::max(*limit, (kLeastJointSize + kPowerDeviate) *
-                                joint_uncertainty(fitted.fit.linear, data, joint_noise, one));
+                                joint.uncertainty(one.columns * one.amplitudes(1.0)));
   Eigen::Index lost = 0;
   for (int round = 0; limit && round < kMostRounds; ++round) {
     const Eigen::MatrixXd loose =
@@ -178,9 +200,7 @@ std::optional<double> limit_at(const Fitted& fitted, const Whitened& data,
 }
 
 /// Over all shapes, stated for the one nearest to the middle that has a limit.
-std::optional<DetectionLimit> detection_limit(const Fitted& fitted, const Whitened& data,
-                                              const std::vector<Noise>& joint_noise,
-                                              const Candidate& candidate, double least_gain) {
+std::optional<DetectionLimit> detection_limit(const Design& design, const Candidate& candidate) {
   if (!candidate.term.effect->has_one_size()) return std::nullopt;
   const Parameter& first = candidate.term.effect->parameters()[0];
   DetectionLimit out{candidate.name(), first.name, first.unit, 0.0, "", {}};
@@ -189,10 +209,11 @@ std::optional<DetectionLimit> detection_limit(const Fitted& fitted, const Whiten
   std::ptrdiff_t nearest = std::ssize(shapes);  // places from the middle
   for (std::ptrdiff_t s = 0; s < std::ssize(shapes); ++s) {
     const std::vector<double>& shape = shapes[static_cast<std::size_t>(s)];
+    const Model& model = design.fitted.model;
     const Case one{
-        fitted.model, candidate, shape,
-        stacked_columns(fitted.model, candidate.term, shape, data.rows() - data.values())};
-    const std::optional<double> limit = limit_at(fitted, data, joint_noise, one, least_gain);
+        model, candidate, shape,
+        stacked_columns(model, candidate.term, shape, design.data.rows() - design.data.values())};
+    const std::optional<double> limit = limit_at(design, one);
     if (!limit || !((one.columns * one.amplitudes(*limit)).cwiseAbs().maxCoeff() < kMostVisible))
       continue;
     if (!shape.empty()) out.by_shape.emplace_back(shape[0], *limit);
@@ -211,11 +232,11 @@ std::vector<DetectionLimit> detection_limits(const Fitted& fitted, const Whitene
                                              const std::vector<Noise>& joint_noise,
                                              const Candidates& candidates,
                                              const Calibration& calibration, double significance) {
-  const double least_gain = std::max(kEnough, calibration.threshold(significance));
+  const Design design{fitted, data, JointFit(fitted.fit.linear, data, joint_noise),
+                      std::max(kEnough, calibration.threshold(significance))};
   std::vector<std::optional<DetectionLimit>> limits(candidates.size());
-  parallel_for(candidates.size(), [&](std::size_t c) {
-    limits[c] = detection_limit(fitted, data, joint_noise, *candidates[c], least_gain);
-  });
+  parallel_for(candidates.size(),
+               [&](std::size_t c) { limits[c] = detection_limit(design, *candidates[c]); });
   std::vector<DetectionLimit> out;
   for (std::optional<DetectionLimit>& limit : limits)
     if (limit) out.push_back(std::move(*limit));
