@@ -2,23 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
 #include "format/registry.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
+#include "support/measured_data.hpp"
 
 namespace slideway {
 
 /// A measured file under SLIDEWAY_DATA, or nothing if the data are not there.
 inline std::string sample(const std::string& name) {
-  const char* const folder = std::getenv("SLIDEWAY_DATA");
-  const std::filesystem::path root =
-      folder ? std::filesystem::path(folder)
-             : std::filesystem::path(SLIDEWAY_SOURCE_DIR) / ".." / "shared" / "data";
-  return exists(root / name) ? std::string(FileBytes(root / name).text()) : std::string();
+  const std::filesystem::path file = measured_data() / name;
+  return exists(file) ? std::string(FileBytes(file).text()) : std::string();
 }
 
 /// The message with which a file is refused, checked to be one line; "" if it is read.

@@ -1,11 +1,10 @@
 #include <gmock/gmock.h>
 
-#include <cstdlib>
-
 #include "base/temporary_folder.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 #include "slideway/format/format.hpp"
+#include "support/measured_data.hpp"
 
 namespace slideway {
 namespace {
@@ -65,9 +64,7 @@ TEST_F(ReadTrace, StandsHostileText) {
 }
 
 std::filesystem::path sample(const std::string& name) {
-  const char* const variable = std::getenv("SLIDEWAY_DATA");
-  return std::filesystem::path(variable ? variable : SLIDEWAY_SOURCE_DIR "/../shared/data") /
-         "surface_format_samples" / name;
+  return measured_data() / "surface_format_samples" / name;
 }
 
 // Lengths, steps and units as SOURCE.md and the files' own headers tell them.

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -13,6 +12,7 @@
 #include "identify/cases.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/result.hpp"
+#include "support/measured_data.hpp"
 
 namespace slideway {
 namespace {
@@ -25,10 +25,7 @@ struct Certified {
 class NistLinear : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
-    const char* given = std::getenv("SLIDEWAY_DATA");
-    folder_ = (given ? std::filesystem::path(given)
-                     : std::filesystem::path(SLIDEWAY_SOURCE_DIR) / "../shared/data") /
-              "nist_strd_linear";
+    folder_ = measured_data() / "nist_strd_linear";
     if (!std::filesystem::exists(folder_ / "certified.csv"))
       GTEST_SKIP() << "no nist_strd_linear; set SLIDEWAY_DATA";
   }

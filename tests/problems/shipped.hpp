@@ -3,22 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
 
 #include "slideway/identify/identify.hpp"
+#include "support/measured_data.hpp"
 
 namespace slideway {
 
 inline std::filesystem::path source_folder() { return SLIDEWAY_SOURCE_DIR; }
-
-/// Where the really measured data are, if anywhere.
-inline std::filesystem::path measured_data() {
-  const char* given = std::getenv("SLIDEWAY_DATA");
-  return given != nullptr ? std::filesystem::path(given) : source_folder() / "../shared/data";
-}
 
 /// A problem of problems/, read.
 inline Problem shipped_problem(const std::string& name) {

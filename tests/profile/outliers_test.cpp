@@ -4,16 +4,13 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
 #include <iterator>
 #include <numbers>
 #include <string>
 #include <vector>
 
-#include "slideway/base/file.hpp"
+#include "profile/plates.hpp"
 #include "slideway/base/random.hpp"
-#include "slideway/format/table.hpp"
 #include "support/turning.hpp"
 
 namespace slideway {
@@ -165,41 +162,25 @@ TEST(FindOutliers, SaysNothingOfWhatIsTooShortConstantOrAllRounding) {
   EXPECT_THAT(outliers_of(flicker), IsEmpty());
 }
 
-// --- really measured lines with known blunders (SOURCE.md of each) ---------------------------
-
-class PlateLines : public testing::Test {
+class PlateLines : public MeasuredPlates {
  protected:
-  void SetUp() override {
-    const char* variable = std::getenv("SLIDEWAY_DATA");
-    data_ = variable != nullptr
-                ? std::filesystem::path(variable)
-                : std::filesystem::path(SLIDEWAY_SOURCE_DIR) / ".." / "shared" / "data";
-    if (!std::filesystem::exists(data_ / "surface_plate_sandia_2008"))
-      GTEST_SKIP() << "no measured data in SLIDEWAY_DATA";
-  }
-
   // Outliers of the data rows from first to last, counted from 1, that have a value.
-  [[nodiscard]] std::vector<Outlier> outliers(const std::string& file, const std::string& column,
-                                              std::size_t first, std::size_t last) const {
-    const FileBytes bytes(data_ / file);
-    const std::vector<double> all =
-        parse_table(bytes.text(), {.columns = {"station_index", column}, .may_miss = true})
-            .columns[1];
+  [[nodiscard]] static std::vector<Outlier> outliers(const std::string& file,
+                                                     const std::string& name, std::size_t first,
+                                                     std::size_t last) {
+    const std::vector<double> all = column(file, name);
     std::vector<double> line;
     for (std::size_t row = first; row <= last; ++row)
       if (!std::isnan(all[row - 1])) line.push_back(all[row - 1]);
     return outliers_of(line);
   }
-  [[nodiscard]] std::vector<Outlier> sandia(std::size_t first, std::size_t last) const {
-    return outliers("surface_plate_sandia_2008/sandia_plate_3_instruments.csv", "height_uin", first,
-                    last);
+  [[nodiscard]] static std::vector<Outlier> sandia(std::size_t first, std::size_t last) {
+    return outliers(kSandia, "height_uin", first, last);
   }
-  [[nodiscard]] std::vector<Outlier> moody(const std::string& column, std::size_t first,
-                                           std::size_t last) const {
-    return outliers("surface_plate_moody_1955/moody_lines.csv", column, first, last);
+  [[nodiscard]] static std::vector<Outlier> moody(const std::string& name, std::size_t first,
+                                                  std::size_t last) {
+    return outliers(kMoody, name, first, last);
   }
-
-  std::filesystem::path data_;
 };
 
 TEST_F(PlateLines, ALostMinusSignIsFoundAlongTheLine) {

@@ -1,16 +1,13 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "profile/lines.hpp"
-#include "slideway/base/file.hpp"
-#include "slideway/format/table.hpp"
+#include "profile/plates.hpp"
 #include "slideway/profile/closure.hpp"
 
 namespace slideway {
@@ -25,27 +22,12 @@ constexpr double kMicroinch = 25.4e-6;  // mm
 constexpr double kBase = 4.0 * kInch;
 constexpr double kWidth = 16.0 * kBase, kHeight = 10.0 * kBase;
 
-// Really measured plates (SOURCE.md of each); closures in microinch.
-class PlateClosure : public testing::Test {
+// Closures in microinch.
+class PlateClosure : public MeasuredPlates {
  protected:
-  void SetUp() override {
-    const char* variable = std::getenv("SLIDEWAY_DATA");
-    data_ = variable != nullptr
-                ? std::filesystem::path(variable)
-                : std::filesystem::path(SLIDEWAY_SOURCE_DIR) / ".." / "shared" / "data";
-    if (!std::filesystem::exists(data_ / "surface_plate_sandia_2008"))
-      GTEST_SKIP() << "no measured data in SLIDEWAY_DATA";
-  }
-
-  [[nodiscard]] std::vector<double> column(const std::string& file, const std::string& name) const {
-    const FileBytes bytes(data_ / file);
-    return parse_table(bytes.text(), {.columns = {"station_index", name}, .may_miss = true})
-        .columns[1];
-  }
-
   // Table 1 of 1955: slopes over 4 inch, or the printed heights.
-  [[nodiscard]] std::vector<Profile> moody(const std::string& name) const {
-    const std::vector<double> all = column("surface_plate_moody_1955/moody_lines.csv", name);
+  [[nodiscard]] static std::vector<Profile> moody(const std::string& name) {
+    const std::vector<double> all = column(kMoody, name);
     struct Row {
       const char* name;
       std::array<int, 4> ends;
@@ -76,9 +58,8 @@ class PlateClosure : public testing::Test {
   }
 
   // Heights of one instrument, 0 to 2: levels, autocollimator, laser.
-  [[nodiscard]] std::vector<Profile> sandia(int instrument) const {
-    const std::vector<double> all =
-        column("surface_plate_sandia_2008/sandia_plate_3_instruments.csv", "height_uin");
+  [[nodiscard]] static std::vector<Profile> sandia(int instrument) {
+    const std::vector<double> all = column(kSandia, "height_uin");
     const bool level = instrument == 0;
     const double step = level ? 5.125 * kInch : kBase;
     const std::size_t steps[] = {level ? 14U : 16U, level ? 8U : 10U, level ? 16U : 18U};

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -12,6 +11,7 @@
 
 #include "signal/noise.hpp"
 #include "slideway/base/text.hpp"
+#include "support/measured_data.hpp"
 
 namespace slideway {
 namespace {
@@ -47,10 +47,7 @@ TEST(Pearson, AgreesWithAnscombesFirstSet) {
 
 // NIST StRD, linear regression "Norris": certified R-squared, 15 digits.
 TEST(Pearson, SquaredIsTheCertifiedValueOfNorris) {
-  const char* folder = std::getenv("SLIDEWAY_DATA");
-  const auto path =
-      std::filesystem::path(folder != nullptr ? folder : SLIDEWAY_SOURCE_DIR "/../shared/data") /
-      "nist_strd_linear/norris.csv";
+  const auto path = measured_data() / "nist_strd_linear/norris.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
   std::ifstream file(path);
   std::vector<double> x, y;

@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -8,6 +7,7 @@
 
 #include "slideway/base/text.hpp"
 #include "slideway/signal/dwt.hpp"
+#include "support/measured_data.hpp"
 
 namespace slideway {
 namespace {
@@ -38,11 +38,6 @@ std::vector<Row> read_rows(const std::filesystem::path& path, std::size_t words)
   return rows;
 }
 
-std::filesystem::path data_folder() {
-  if (const char* folder = std::getenv("SLIDEWAY_DATA")) return folder;
-  return std::filesystem::path(SLIDEWAY_SOURCE_DIR) / "../shared/data";
-}
-
 // The transform takes any filter bank: those that are not Daubechies' are in pywavelets_taps.csv.
 std::map<std::string, Wavelet> filter_banks() {
   std::map<std::string, Wavelet> banks;
@@ -61,7 +56,7 @@ std::map<std::string, Wavelet> filter_banks() {
 // MATLAB R2012a's dwt(), 15 wavelets x 2 lengths x 9 modes; the source is described beside the
 // data. 1e-10 is what the digits of MATLAB's own taps (some 1e-12 each) allow.
 TEST(DwtReference, AgreesWithMatlab) {
-  const auto path = data_folder() / "dwt_matlab_reference/dwt_reference.csv";
+  const auto path = measured_data() / "dwt_matlab_reference/dwt_reference.csv";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
   const std::map<std::string, Boundary> modes{
       {"zpd", Boundary::zero},          {"sp0", Boundary::constant},
