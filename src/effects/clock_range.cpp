@@ -16,6 +16,12 @@ double measuring_time_of(const Stations& stations, Eigen::Index i) {
   return stations.measuring_time(i);
 }
 
+Eigen::VectorXd readings(const Stations& stations, ClockReading clock) {
+  Eigen::VectorXd out(stations.size());
+  for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = clock(stations, i);
+  return out;
+}
+
 ClockRange range_of(const Stations& stations, ClockReading clock) {
   if (stations.size() == 0) return {};
   ClockRange range{clock(stations, 0), clock(stations, 0), 0.0};

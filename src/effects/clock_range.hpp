@@ -16,6 +16,8 @@ double revolution_of(const Stations& stations, Eigen::Index i);
 double distance_m_of(const Stations& stations, Eigen::Index i);
 double measuring_time_of(const Stations& stations, Eigen::Index i);
 
+Eigen::VectorXd readings(const Stations& stations, ClockReading clock);
+
 // What a profile shows of a clock.
 struct ClockRange {
   double low = 0.0, high = 0.0;

@@ -20,6 +20,14 @@ std::vector<std::string> Effect::lacking(const Setup& setup) const {
   return missing_for(description().clock, setup);
 }
 
+void Effect::columns_of_shapes(const Stations& stations,
+                               std::span<const std::vector<double>> shapes,
+                               Eigen::Ref<Eigen::MatrixXd> out) const {
+  for (std::size_t s = 0; s < shapes.size(); ++s)
+    columns(stations, shapes[s],
+            out.middleCols(static_cast<Eigen::Index>(s) * amplitudes(), amplitudes()));
+}
+
 void Effect::derivatives(const Stations& /*stations*/, std::span<const double> /*shape*/,
                          int /*which*/, Eigen::Ref<Eigen::MatrixXd> out) const {
   out.setZero();

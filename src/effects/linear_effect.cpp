@@ -70,14 +70,27 @@ void SingleAmplitude::columns(const Stations& stations, std::span<const double> 
                               Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
   const double p = shape.empty() ? 0.0 : shape[0];
-  for (Eigen::Index i = 0; i < stations.size(); ++i) out(i, 0) = spec_.value(stations, i, p);
+  for (Eigen::Index i = 0; i < stations.size(); ++i)
+    out(i, 0) = spec_.value(spec_.clock(stations, i), p);
+}
+
+void SingleAmplitude::columns_of_shapes(const Stations& stations,
+                                        std::span<const std::vector<double>> shapes,
+                                        Eigen::Ref<Eigen::MatrixXd> out) const {
+  if (!applies_to(stations.setup())) return void(out.setZero());
+  const Eigen::VectorXd q = readings(stations, spec_.clock);
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    const double p = shapes[s].empty() ? 0.0 : shapes[s][0];
+    for (Eigen::Index i = 0; i < q.size(); ++i)
+      out(i, static_cast<Eigen::Index>(s)) = spec_.value(q[i], p);
+  }
 }
 
 void SingleAmplitude::derivatives(const Stations& stations, std::span<const double> shape,
                                   int which, Eigen::Ref<Eigen::MatrixXd> out) const {
   if (shapes()[which].stepwise || !applies_to(stations.setup())) return void(out.setZero());
   for (Eigen::Index i = 0; i < stations.size(); ++i)
-    out(i, 0) = spec_.shape->derivative(stations, i, shape[0]);
+    out(i, 0) = spec_.shape->derivative(spec_.clock(stations, i), shape[0]);
 }
 
 std::pair<double, double> within_bounds(std::pair<double, double> range,

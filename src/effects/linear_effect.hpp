@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "clock_range.hpp"
 #include "slideway/effects/effect.hpp"
 
 namespace slideway {
@@ -46,7 +47,7 @@ ExtendedMatrix diagonal_map(Eigen::Index size, double unit);
 struct ShapeSpec {
   Parameter parameter;
   Shape shape;
-  double (*derivative)(const Stations&, Eigen::Index, double shape) = nullptr;  // unless stepwise
+  double (*derivative)(double q, double shape) = nullptr;  // unless stepwise
   std::pair<double, double> (*range)(const Stations&) = nullptr;
 };
 
@@ -54,13 +55,14 @@ struct SingleAmplitudeSpec {
   Description description;
   Parameter amplitude;
   double unit = kMicrometre;  // the unit of the amplitude's parameter in mm, s
-  double (*value)(const Stations&, Eigen::Index, double shape) = nullptr;
+  ClockReading clock = nullptr;
+  double (*value)(double q, double shape) = [](double q, double) { return q; };
   bool (*applies_to)(const Setup&) = nullptr;
   bool needs_cut_radius = false;
   std::optional<ShapeSpec> shape = std::nullopt;
 };
 
-// h = A * value(station; shape): one amplitude, at most one shape parameter.
+// h = A * value(q; shape) of what the clock reads, q: one amplitude, at most one shape parameter.
 class SingleAmplitude : public LinearEffect {
  public:
   explicit SingleAmplitude(SingleAmplitudeSpec spec);
@@ -71,6 +73,8 @@ class SingleAmplitude : public LinearEffect {
   [[nodiscard]] std::vector<std::string> lacking(const Setup& setup) const override;
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override;
+  void columns_of_shapes(const Stations& stations, std::span<const std::vector<double>> shapes,
+                         Eigen::Ref<Eigen::MatrixXd> out) const override;
   void derivatives(const Stations& stations, std::span<const double> shape, int which,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
 

@@ -10,6 +10,17 @@ namespace {
 
 constexpr double kTurn = 2.0 * kPi;
 
+// Cosine and sine of 2π cycles q(i).
+template <typename Reading>
+void fill(double cycles, const Reading& q, Eigen::Ref<Eigen::MatrixXd> out) {
+  Phasor phasor;
+  for (Eigen::Index i = 0; i < out.rows(); ++i) {
+    phasor.turn_to(kTurn * cycles * q(i));
+    out(i, 0) = phasor.cosine();
+    out(i, 1) = phasor.sine();
+  }
+}
+
 }  // namespace
 
 PeriodicEffect::PeriodicEffect(PeriodicSpec spec)
@@ -29,28 +40,35 @@ double PeriodicEffect::resolution(int /*shape*/, double value, const Stations& s
 
 bool PeriodicEffect::applies_to(const Setup& setup) const { return spec_.applies_to(setup); }
 
+double PeriodicEffect::cycles(std::span<const double> shape) const {
+  return spec_.rate_is_period ? 1.0 / shape[0] : shape[0];
+}
+
 void PeriodicEffect::columns(const Stations& stations, std::span<const double> shape,
                              Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
-  const double cycles = spec_.rate_is_period ? 1.0 / shape[0] : shape[0];
-  Phasor phasor;
-  for (Eigen::Index i = 0; i < stations.size(); ++i) {
-    phasor.turn_to(kTurn * cycles * spec_.clock(stations, i));
-    out(i, 0) = phasor.cosine();
-    out(i, 1) = phasor.sine();
-  }
+  fill(
+      cycles(shape), [&](Eigen::Index i) { return spec_.clock(stations, i); }, out);
+}
+
+void PeriodicEffect::columns_of_shapes(const Stations& stations,
+                                       std::span<const std::vector<double>> shapes,
+                                       Eigen::Ref<Eigen::MatrixXd> out) const {
+  if (!applies_to(stations.setup())) return void(out.setZero());
+  const Eigen::VectorXd q = readings(stations, spec_.clock);
+  for (std::size_t s = 0; s < shapes.size(); ++s)
+    fill(cycles(shapes[s]), q, out.middleCols(static_cast<Eigen::Index>(2 * s), 2));
 }
 
 void PeriodicEffect::derivatives(const Stations& stations, std::span<const double> shape,
                                  int /*which*/, Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
-  const double cycles = spec_.rate_is_period ? 1.0 / shape[0] : shape[0];
-  const double cycles_slope = spec_.rate_is_period ? -cycles * cycles : 1.0;
+  const double rate = cycles(shape), rate_slope = spec_.rate_is_period ? -rate * rate : 1.0;
   Phasor phasor;
   for (Eigen::Index i = 0; i < stations.size(); ++i) {
     const double clock = spec_.clock(stations, i);
-    phasor.turn_to(kTurn * cycles * clock);
-    const double angle_slope = kTurn * cycles_slope * clock;
+    phasor.turn_to(kTurn * rate * clock);
+    const double angle_slope = kTurn * rate_slope * clock;
     out(i, 0) = -phasor.sine() * angle_slope;
     out(i, 1) = phasor.cosine() * angle_slope;
   }

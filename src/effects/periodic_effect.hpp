@@ -37,6 +37,8 @@ class PeriodicEffect : public Effect {
   [[nodiscard]] bool applies_to(const Setup& setup) const override;
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override;
+  void columns_of_shapes(const Stations& stations, std::span<const std::vector<double>> shapes,
+                         Eigen::Ref<Eigen::MatrixXd> out) const override;
   void derivatives(const Stations& stations, std::span<const double> shape, int which,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
   [[nodiscard]] ParameterValues parameter_values(const Eigen::VectorXd& amplitudes,
@@ -45,6 +47,8 @@ class PeriodicEffect : public Effect {
   [[nodiscard]] bool linear_parameters() const override { return false; }
 
  private:
+  [[nodiscard]] double cycles(std::span<const double> shape) const;  // per unit of the clock
+
   PeriodicSpec spec_;
   std::vector<Parameter> parameters_;
   std::vector<Shape> shapes_;

@@ -4,11 +4,13 @@
 
 namespace slideway {
 
-// Cosine and sine of angles that come in even steps, by rotation: to 1e-12, wherever the steps
-// change by themselves computed anew.
+// Cosine and sine of angles that stay or come in even steps, by rotation: to 1e-10, which is what
+// rounding leaves of even steps thousands of turns away. Where the steps change they are computed
+// anew.
 class Phasor {
  public:
   void turn_to(double angle) {
+    if (angle == angle_) return;
     const double expected = start_ + (turned_ + 1) * step_;
     if (turned_ >= kLongest || !(std::abs(angle - expected) <= kSame)) {
       step_ = angle - angle_;
@@ -34,7 +36,7 @@ class Phasor {
 
  private:
   static constexpr int kLongest = 256;
-  static constexpr double kSame = 1e-12;
+  static constexpr double kSame = 1e-10;
   double angle_ = NAN, start_ = NAN, step_ = NAN;
   int turned_ = 0;
   double cosine_ = 1.0, sine_ = 0.0, step_cosine_ = 1.0, step_sine_ = 0.0;

@@ -56,27 +56,35 @@ class Viewer {
 
   [[nodiscard]] Eigen::Index rows() const { return rows_; }
 
-  void columns(const ModelTerm& term, std::span<const double> shape,
+  /// Of several shapes, side by side.
+  void columns(const ModelTerm& term, std::span<const std::vector<double>> shapes,
                Eigen::Ref<Eigen::MatrixXd> out) const {
     out.setZero();
     Eigen::Index row = 0;
     for (std::size_t i = 0; i < observations_.size(); ++i) {
       const Observation& observation = *observations_[i];
-      const Eigen::Index count = observation.values.size();
-      if (term.effect->applies_to(observation.profile->setup))
-        out.middleRows(row, count) = thin_[i] ? thin_columns(term, shape, observation, *thin_[i])
-                                              : low_band_columns(model_, term, observation, shape);
-      row += count;
+      auto rows = out.middleRows(row, observation.values.size());
+      row += rows.rows();
+      if (!term.effect->applies_to(observation.profile->setup)) continue;
+      if (thin_[i]) {
+        rows = thin_columns(term, shapes, observation, *thin_[i]);
+        continue;
+      }
+      const Eigen::Index a = term.effect->amplitudes();
+      for (std::size_t s = 0; s < shapes.size(); ++s)
+        rows.middleCols(static_cast<Eigen::Index>(s) * a, a) =
+            low_band_columns(model_, term, observation, shapes[s]);
     }
   }
 
  private:
-  [[nodiscard]] Eigen::MatrixXd thin_columns(const ModelTerm& term, std::span<const double> shape,
+  [[nodiscard]] Eigen::MatrixXd thin_columns(const ModelTerm& term,
+                                             std::span<const std::vector<double>> shapes,
                                              const Observation& observation,
                                              const ThinProfile& profile) const {
     const Stations stations(profile.positions, observation.profile->setup, model_.machine);
-    Eigen::MatrixXd columns(stations.size(), term.effect->amplitudes());
-    term.effect->columns(stations, shape, columns);
+    Eigen::MatrixXd columns(stations.size(), std::ssize(shapes) * term.effect->amplitudes());
+    term.effect->columns_of_shapes(stations, shapes, columns);
     return profile.scale * profile.low_band.apply(columns);
   }
 
@@ -114,8 +122,11 @@ void fill(const Viewer& viewer, Candidate& candidate) {
   candidate.columns.resize(viewer.rows(), a * atoms);
   parallel_for((atoms + kAtomsAtATime - 1) / kAtomsAtATime, [&](std::size_t block) {
     const Eigen::Index first = static_cast<Eigen::Index>(block) * kAtomsAtATime;
-    for (Eigen::Index i = first; i < std::min(first + kAtomsAtATime, atoms); ++i)
-      viewer.columns(candidate.term, candidate.shapes[i], candidate.columns.middleCols(i * a, a));
+    const Eigen::Index count = std::min(kAtomsAtATime, atoms - first);
+    const auto shapes =
+        std::span(candidate.shapes)
+            .subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+    viewer.columns(candidate.term, shapes, candidate.columns.middleCols(first * a, count * a));
   });
 }
 

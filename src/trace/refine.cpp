@@ -13,6 +13,8 @@
 namespace slideway {
 namespace {
 
+constexpr double kSamePlace = 1e-6;  // of what is scanned: both halves of a diameter are one
+
 /// The residual outside model and candidate as a function of the shape.
 class ProjectedResidual final : public ceres::SizedCostFunction<ceres::DYNAMIC, 1> {
  public:
@@ -92,7 +94,9 @@ double best_step(const Model& model, const Whitened& data, const Finding& findin
     }
   }
   std::sort(places.begin() + 1, places.end());
-  places.erase(std::unique(places.begin() + 1, places.end()), places.end());
+  const double same = kSamePlace * (high - low);
+  const auto is_same = [&](double a, double b) { return b - a <= same; };
+  places.erase(std::unique(places.begin() + 1, places.end(), is_same), places.end());
   double best = places[0], largest = -1.0;
   for (const double place : places) {
     const Projection projection =

@@ -103,6 +103,11 @@ class Effect {
   virtual void columns(const Stations& stations, std::span<const double> shape,
                        Eigen::Ref<Eigen::MatrixXd> out) const = 0;
 
+  /// The columns of several shapes side by side: #stations by (#shapes #amplitudes).
+  virtual void columns_of_shapes(const Stations& stations,
+                                 std::span<const std::vector<double>> shapes,
+                                 Eigen::Ref<Eigen::MatrixXd> out) const;
+
   /// Fills `out` with d(columns)/d(shape[which]); zero for a stepwise shape.
   virtual void derivatives(const Stations& stations, std::span<const double> shape, int which,
                            Eigen::Ref<Eigen::MatrixXd> out) const;

@@ -8,13 +8,9 @@ namespace slideway {
 namespace {
 
 // (sqrt(r² + h²) - r)/h without the cancellation at large r.
-double value(const Stations& stations, Eigen::Index i, double h) {
-  const double r = stations.radius(i);
-  return h / (std::hypot(r, h) + r);
-}
+double value(double r, double h) { return h / (std::hypot(r, h) + r); }
 
-double derivative(const Stations& stations, Eigen::Index i, double h) {
-  const double r = stations.radius(i);
+double derivative(double r, double h) {
   const double hypotenuse = std::hypot(r, h);
   return r / (hypotenuse * (hypotenuse + r));
 }
@@ -38,6 +34,7 @@ std::unique_ptr<Effect> make_centre_height(const Request& request) {
                           "parallel traces at known spacing, a microscope: a nub is there "
                           "or not"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
+      .clock = radius_of,
       .value = value,
       .applies_to = is_face_height,
       .shape = ShapeSpec{.parameter = {"height_mm", "h", "mm", 0.05, 1e-4, 10.0},

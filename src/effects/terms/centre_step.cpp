@@ -5,7 +5,7 @@
 namespace slideway {
 namespace {
 
-double sign(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
+double value(double x, double) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 // On one side of the axis it would be an offset.
 bool crosses_the_axis(const Setup& setup) {
@@ -32,8 +32,8 @@ std::unique_ptr<Effect> make_centre_step(const Request& request) {
                       .separated_by = "traces at three or more azimuths: the step goes with the "
                                       "spindle angle; on a radius it can not be seen"},
       .amplitude = {"height_um", "A", "µm", 0.01},
-      .value = [](const Stations& stations, Eigen::Index i,
-                  double) { return sign(stations.trace(i)); },
+      .clock = [](const Stations& stations, Eigen::Index i) { return stations.trace(i); },
+      .value = value,
       .applies_to = crosses_the_axis});
 }
 

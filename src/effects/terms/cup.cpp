@@ -5,9 +5,8 @@
 namespace slideway {
 namespace {
 
-double value(const Stations& stations, Eigen::Index i, double) {
-  const double ratio = stations.radius(i) / *stations.setup().cut_radius_mm;
-  return ratio * ratio;
+double relative_radius(const Stations& stations, Eigen::Index i) {
+  return stations.radius(i) / *stations.setup().cut_radius_mm;
 }
 
 }  // namespace
@@ -30,7 +29,8 @@ std::unique_ptr<Effect> make_cup(const Request& request) {
                            "independent reading of the straightness; a second feed against "
                            "tool_wear"},
       .amplitude = {"sag_um", "A", "µm", 0.1},
-      .value = value,
+      .clock = relative_radius,
+      .value = [](double ratio, double) { return ratio * ratio; },
       .applies_to = is_face_height,
       .needs_cut_radius = true});
 }

@@ -13,12 +13,9 @@ double from_rim(const Stations& stations, Eigen::Index i) {
   return std::min(stations.radius(i) - *stations.setup().cut_radius_mm, 0.0);
 }
 
-double value(const Stations& stations, Eigen::Index i, double width) {
-  return std::exp(from_rim(stations, i) / width);
-}
+double value(double distance, double width) { return std::exp(distance / width); }
 
-double derivative(const Stations& stations, Eigen::Index i, double width) {
-  const double distance = from_rim(stations, i);
+double derivative(double distance, double width) {
   return -distance / (width * width) * std::exp(distance / width);
 }
 
@@ -41,6 +38,7 @@ std::unique_ptr<Effect> make_edge_roll_off(const Request& request) {
                           "it stays at the same radii at every feed and in both cutting "
                           "directions"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
+      .clock = from_rim,
       .value = value,
       .applies_to = is_face_height,
       .needs_cut_radius = true,

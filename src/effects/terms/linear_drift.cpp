@@ -20,7 +20,7 @@ std::unique_ptr<Effect> make_linear_drift(const Request& request) {
                           "in the other direction changes its sign"},
       .amplitude = {"rate_um_per_min", "a", "µm/min", 0.01},
       .unit = kMicrometre / kMinute,
-      .value = [](const Stations& stations, Eigen::Index i, double) { return stations.time(i); },
+      .clock = time_of,
       .applies_to = is_height});
 }
 

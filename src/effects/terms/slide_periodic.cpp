@@ -19,12 +19,14 @@ std::pair<double, double> search(const Stations& stations) {
   return {std::max(4.0 * range.step, 0.1), range.extent()};
 }
 
+// A height shows the wave itself, a slope what the locus does under its base.
 class SlidePeriodic : public PeriodicEffect {
  public:
   using PeriodicEffect::PeriodicEffect;
 
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
+    if (is_height(stations.setup())) return PeriodicEffect::columns(stations, shape, out);
     const double wave = kTurn / shape[0];
     const auto line = [wave](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value,
                              Eigen::ArrayXXd& slope) {
@@ -35,8 +37,17 @@ class SlidePeriodic : public PeriodicEffect {
     fill_from_locus(stations, height_only(), line, out);
   }
 
-  void derivatives(const Stations& stations, std::span<const double> shape, int /*which*/,
+  void columns_of_shapes(const Stations& stations, std::span<const std::vector<double>> shapes,
+                         Eigen::Ref<Eigen::MatrixXd> out) const override {
+    if (is_height(stations.setup()))
+      return PeriodicEffect::columns_of_shapes(stations, shapes, out);
+    Effect::columns_of_shapes(stations, shapes, out);
+  }
+
+  void derivatives(const Stations& stations, std::span<const double> shape, int which,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
+    if (is_height(stations.setup()))
+      return PeriodicEffect::derivatives(stations, shape, which, out);
     const double wave = kTurn / shape[0];
     const double change = -wave / shape[0];  // d wave / d period
     const auto line = [=](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value, Eigen::ArrayXXd& slope) {

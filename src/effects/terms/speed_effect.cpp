@@ -11,17 +11,14 @@ namespace {
 // The power law ends where the cutting speed is lost in the edge radius.
 constexpr double kSmallestRadius = 0.02;  // mm
 
-double speed_ratio(const Stations& stations, Eigen::Index i) {
-  return std::max(stations.radius(i), kSmallestRadius) / *stations.setup().cut_radius_mm;
+double log_speed_ratio(const Stations& stations, Eigen::Index i) {
+  return std::log(std::max(stations.radius(i), kSmallestRadius) / *stations.setup().cut_radius_mm);
 }
 
-double value(const Stations& stations, Eigen::Index i, double exponent) {
-  return std::expm1(-exponent * std::log(speed_ratio(stations, i)));
-}
+double value(double log_ratio, double exponent) { return std::expm1(-exponent * log_ratio); }
 
-double derivative(const Stations& stations, Eigen::Index i, double exponent) {
-  const double ratio = speed_ratio(stations, i);
-  return -std::log(ratio) * std::pow(ratio, -exponent);
+double derivative(double log_ratio, double exponent) {
+  return -log_ratio * std::exp(-exponent * log_ratio);
 }
 
 }  // namespace
@@ -42,6 +39,7 @@ std::unique_ptr<Effect> make_speed_effect(const Request& request) {
                       .separated_by = "a spring pass (no depth of cut, no force), a second feed "
                                       "(force grows with about f^0.7)"},
       .amplitude = {"amplitude_um", "A", "µm", 0.01, 0.0},
+      .clock = log_speed_ratio,
       .value = value,
       .applies_to = is_face_height,
       .needs_cut_radius = true,

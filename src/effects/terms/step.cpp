@@ -31,8 +31,8 @@ std::unique_ptr<Effect> make_step(const Request& request) {
                           "both halves of a diameter show it at the same radius; the next "
                           "part does not"},
       .amplitude = {"height_um", "A", "µm", 0.1},
-      .value = [](const Stations& stations, Eigen::Index i,
-                  double position) { return tool_radius_of(stations, i) < position ? 1.0 : 0.0; },
+      .clock = tool_radius_of,
+      .value = [](double radius, double position) { return radius < position ? 1.0 : 0.0; },
       .applies_to = is_face_height,
       .shape = ShapeSpec{.parameter = {"position_mm", "r_c", "mm", 1.0, 0.0},
                          .shape = {.parameter = 1, .logarithmic = false, .stepwise = true},

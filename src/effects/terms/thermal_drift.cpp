@@ -13,14 +13,9 @@ double since_start(const Stations& stations, Eigen::Index i) {
   return std::max(stations.time(i), 0.0);
 }
 
-double value(const Stations& stations, Eigen::Index i, double tau) {
-  return -std::expm1(-since_start(stations, i) / tau);
-}
+double value(double t, double tau) { return -std::expm1(-t / tau); }
 
-double derivative(const Stations& stations, Eigen::Index i, double tau) {
-  const double t = since_start(stations, i);
-  return -std::exp(-t / tau) * t / (tau * tau);
-}
+double derivative(double t, double tau) { return -std::exp(-t / tau) * t / (tau * tau); }
 
 }  // namespace
 
@@ -44,6 +39,7 @@ std::unique_ptr<Effect> make_thermal_drift(const Request& request) {
            .separated_by = "a second feed (the time scale on the face changes), a cut "
                            "outward (mirrored), a temperature log"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
+      .clock = since_start,
       .value = value,
       .applies_to = is_height,
       .shape = ShapeSpec{

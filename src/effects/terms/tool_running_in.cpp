@@ -13,12 +13,9 @@ double since_start_m(const Stations& stations, Eigen::Index i) {
   return std::max(distance_m_of(stations, i), 0.0);
 }
 
-double value(const Stations& stations, Eigen::Index i, double distance_m) {
-  return -std::expm1(-since_start_m(stations, i) / distance_m);
-}
+double value(double s, double distance_m) { return -std::expm1(-s / distance_m); }
 
-double derivative(const Stations& stations, Eigen::Index i, double distance_m) {
-  const double s = since_start_m(stations, i);
+double derivative(double s, double distance_m) {
   return -std::exp(-s / distance_m) * s / (distance_m * distance_m);
 }
 
@@ -41,6 +38,7 @@ std::unique_ptr<Effect> make_tool_running_in(const Request& request) {
                           "a change of spindle speed at the same feed rate (distance "
                           "changes, time does not), a second feed, an edge already run in"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1, 0.0},
+      .clock = since_start_m,
       .value = value,
       .applies_to = is_face_height,
       .shape = ShapeSpec{.parameter = {"distance_m", "s0", "m", 1.0, 1e-2, 1e3},

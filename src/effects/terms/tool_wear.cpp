@@ -24,8 +24,7 @@ std::unique_ptr<Effect> make_tool_wear(const Request& request) {
                            "direction"},
       .amplitude = {"rate_um_per_m", "w", "µm/m", 0.01, 0.0},
       .unit = kMicrometre / kMetre,
-      .value = [](const Stations& stations, Eigen::Index i,
-                  double) { return stations.distance(i); },
+      .clock = [](const Stations& stations, Eigen::Index i) { return stations.distance(i); },
       .applies_to = is_face_height});
 }
 

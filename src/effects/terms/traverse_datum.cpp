@@ -8,12 +8,11 @@
 namespace slideway {
 namespace {
 
-double value(const Stations& stations, Eigen::Index i, double) {
+double relative_position(const Stations& stations, Eigen::Index i) {
   const Setup& setup = stations.setup();
   const double reach = std::max(std::abs(setup.first_mm - setup.center_mm),
                                 std::abs(setup.last_mm - setup.center_mm));
-  const double ratio = reach > 0.0 ? stations.trace(i) / reach : 0.0;
-  return ratio * ratio * ratio;
+  return reach > 0.0 ? stations.trace(i) / reach : 0.0;
 }
 
 }  // namespace
@@ -35,7 +34,8 @@ std::unique_ptr<Effect> make_traverse_datum(const Request& request) {
                           "a trace at another azimuth (the trefoil changes), a trace over "
                           "the diameter (odd against even)"},
       .amplitude = {"amplitude_um", "A", "µm", 0.01},
-      .value = value,
+      .clock = relative_position,
+      .value = [](double ratio, double) { return ratio * ratio * ratio; },
       .applies_to = is_face_height});
 }
 
