@@ -2,8 +2,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include "slideway/base/distribution.hpp"
 
 #include "pool_trend.hpp"
 #include "slideway/identify/identifiability.hpp"
@@ -99,12 +99,11 @@ struct Misfit {
   double chi_square = 0.0;
   Index degrees_of_freedom = 0;  // 0: nothing to hold it against
   [[nodiscard]] double quantile(double probability) const {
-    return boost::math::quantile(boost::math::chi_squared(static_cast<double>(degrees_of_freedom)),
-                                 probability);
+    return chi_squared_quantile(static_cast<double>(degrees_of_freedom), probability);
   }
   [[nodiscard]] double p_value(double scatter) const {
-    return cdf(complement(boost::math::chi_squared(static_cast<double>(degrees_of_freedom)),
-                          chi_square / (scatter * scatter)));
+    return chi_squared_tail(static_cast<double>(degrees_of_freedom),
+                            chi_square / (scatter * scatter));
   }
 };
 

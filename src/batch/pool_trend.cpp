@@ -2,8 +2,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include "slideway/base/distribution.hpp"
 
 #include "slideway/identify/uncertainty.hpp"
 
@@ -70,8 +70,7 @@ std::vector<Trend> trends(const std::vector<std::vector<FittedParameter>>& items
     trend.standard_uncertainty = std::sqrt(line.covariance(1, 1) * excess) * unit / span;
     const auto freedom = static_cast<double>(n - 2);
     trend.expanded_uncertainty = coverage_factor(freedom) * trend.standard_uncertainty;
-    trend.p_value = 2.0 * cdf(complement(boost::math::students_t(freedom),
-                                         std::abs(trend.rate / trend.standard_uncertainty)));
+    trend.p_value = 2.0 * student_tail(freedom, std::abs(trend.rate / trend.standard_uncertainty));
     trend.between_items = std::sqrt(between) * unit;
     out.push_back(std::move(trend));
   }

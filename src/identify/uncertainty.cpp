@@ -2,8 +2,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include "slideway/base/distribution.hpp"
 
 #include "residual.hpp"
 #include "slideway/base/parallel.hpp"
@@ -114,7 +114,7 @@ Uncertainty assess(const Linearisation& linear, const std::vector<double>& weigh
 double coverage_factor(const std::optional<double>& degrees_of_freedom) {
   constexpr double kOutside = 0.5 * (1.0 - 0.954499736103642);  // beyond two standard deviations
   if (!degrees_of_freedom) return 2.0;
-  return quantile(complement(boost::math::students_t(*degrees_of_freedom), kOutside));
+  return student_limit(*degrees_of_freedom, kOutside);
 }
 
 }  // namespace slideway

@@ -5,8 +5,7 @@
 #include <map>
 
 #include <Eigen/Dense>
-#include <boost/math/distributions/fisher_f.hpp>
-#include <boost/math/distributions/students_t.hpp>
+#include "slideway/base/distribution.hpp"
 
 #include "closure_net.hpp"
 #include "outlier_level.hpp"
@@ -196,10 +195,8 @@ class Adjustment {
 // What the largest of so many correlated ratios reaches by chance: Bonferroni's bound, or Scheffé's
 // for all combinations of the closures, which is less where few readings are independent.
 double limit_of(double readings, double redundancy, double freedom) {
-  using boost::math::fisher_f, boost::math::students_t;
-  const double each =
-      quantile(complement(students_t(freedom), 0.5 * kClosureFalseAlarm / readings));
-  const double all = quantile(complement(fisher_f(redundancy, freedom), kClosureFalseAlarm));
+  const double each = student_limit(freedom, 0.5 * kClosureFalseAlarm / readings);
+  const double all = fisher_limit(redundancy, freedom, kClosureFalseAlarm);
   return std::min(each, std::sqrt(redundancy * all));
 }
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <optional>
 
-#include <boost/math/distributions/students_t.hpp>
+#include "slideway/base/distribution.hpp"
 
 #include "closure_net.hpp"
 
@@ -65,8 +65,7 @@ void find_worst(const HeightLine& a, const Differences& all, Repeat& out) {
     out.difference = deleted;
     out.standard_uncertainty = uncertainty;
   }
-  const boost::math::students_t student(n - 3.0);
-  out.limit = quantile(complement(student, 0.5 * kClosureFalseAlarm / n));
+  out.limit = student_limit(n - 3.0, 0.5 * kClosureFalseAlarm / n);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include "slideway/signal/autoregression.hpp"
 
 #include <algorithm>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <string>
+#include "slideway/base/distribution.hpp"
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
@@ -159,7 +159,7 @@ double ljung_box_p_value(std::span<const double> series, int lags, int fitted) {
   for (int k = 1; k <= lags && k < std::ssize(series); ++k)
     sum += r[static_cast<std::size_t>(k)] * r[static_cast<std::size_t>(k)] / (n - k);
   const double freedom = std::max(lags - fitted, 1);
-  return boost::math::gamma_q(0.5 * freedom, 0.5 * n * (n + 2.0) * sum);
+  return chi_squared_tail(freedom, n * (n + 2.0) * sum);
 }
 
 }  // namespace slideway

@@ -2,12 +2,12 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <optional>
 #include <unsupported/Eigen/FFT>
+#include "slideway/base/distribution.hpp"
 
 namespace slideway {
 namespace {
@@ -218,7 +218,7 @@ double correlation_p_value(double r, double n) {
   // With t^2 = r^2 (n - 2) / (1 - r^2) Student's two tails are an incomplete beta function of
   // 1 - r^2.
   const double rest = (1.0 - r) * (1.0 + r);
-  return rest > 0.0 ? boost::math::ibeta(0.5 * (n - 2.0), 0.5, std::min(rest, 1.0)) : 0.0;
+  return rest > 0.0 ? beta_share(0.5 * (n - 2.0), 0.5, std::min(rest, 1.0)) : 0.0;
 }
 
 }  // namespace slideway

@@ -2,8 +2,8 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <boost/math/distributions/non_central_chi_squared.hpp>
 #include <cmath>
+#include "slideway/base/distribution.hpp"
 
 #include "background.hpp"
 #include "gates.hpp"
@@ -21,15 +21,6 @@ constexpr int kSpreadShapes = 5;
 constexpr int kMostRounds = 8;        // of a limit that depends on itself
 constexpr double kMostVisible = 1.0;  // mm or rad in a low band: beyond it nothing is a flatness
 constexpr double kNegligible = 0.02;  // of a column's size: not worth a name
-
-/// Distribution of a gain where there is an effect, in plain doubles; not finite instead of an
-/// exception where it can not be evaluated.
-namespace policies = boost::math::policies;
-using Quiet = policies::policy<policies::domain_error<policies::ignore_error>,
-                               policies::evaluation_error<policies::ignore_error>,
-                               policies::overflow_error<policies::ignore_error>,
-                               policies::promote_double<false>>;
-using GainOfEffect = boost::math::non_central_chi_squared_distribution<double, Quiet>;
 
 std::span<const double> middle_shape(const Candidate& candidate) {
   return candidate.shapes[candidate.shapes.size() / 2];
@@ -159,7 +150,7 @@ std::optional<double> limit_in(const Whitened& data, const Case& one, double lea
   const double enough = std::max(penalty(data, one.candidate.unknowns(own.rank)) + least_gain,
                                  kLeastSize * kLeastSize);
   const double noncentrality =
-      GainOfEffect::find_non_centrality(static_cast<double>(own.rank), enough, 1.0 - kPower);
+      chi_squared_noncentrality(static_cast<double>(own.rank), enough, 1.0 - kPower);
   const Eigen::Index a = one.candidate.amplitudes();
   // Gain of one unit of the first parameter; the mean over its phase, where it has one.
   const double gain = own.gram.diagonal().head(std::min<Eigen::Index>(a, 2)).mean() *

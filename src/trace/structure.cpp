@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
-#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
+#include "slideway/base/distribution.hpp"
 
 #include "background.hpp"
 #include "calibration.hpp"
@@ -231,7 +231,7 @@ LackOfFit lack_of_fit(const Whitened& data, const Linearisation& linear) {
   const double variance =
       (null.array() - mean).square().sum() / static_cast<double>(kResamples - 1);
   if (!(variance > 0.0)) return {};
-  return {boost::math::gamma_q(mean * mean / variance, found * mean / variance), found / mean};
+  return {gamma_tail(mean * mean / variance, found * mean / variance), found / mean};
 }
 
 Unnamed describe(const Structure& found, const Whitened& data, const Linearisation& linear) {
