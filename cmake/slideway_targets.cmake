@@ -29,6 +29,9 @@ function(slideway_room name)
   foreach(library IN ITEMS slideway_options ${ROOM_HEADER_ONLY})
     target_link_libraries(slideway_${name} PRIVATE $<BUILD_INTERFACE:${library}>)
   endforeach()
+  if(NOT name MATCHES "^(base|format)$")  # these two use none of it
+    slideway_use_headers(slideway_${name} slideway_room_headers)
+  endif()
   set_property(GLOBAL APPEND PROPERTY SLIDEWAY_ROOMS slideway_${name})
 endfunction()
 
@@ -43,6 +46,7 @@ function(slideway_test room)
                         slideway_options ${TEST_DEPENDS} GTest::gmock_main)
   target_compile_definitions(${room}_test PRIVATE
     SLIDEWAY_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  slideway_use_headers(${room}_test slideway_test_headers)
   list(JOIN TEST_SLOW ":" slow)
   gtest_discover_tests(${room}_test TEST_PREFIX ${room}/ NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
                        TEST_FILTER "-${slow}" PROPERTIES TIMEOUT 600)
