@@ -82,6 +82,22 @@ double outstanding_line(const Eigen::VectorXd& values) {
   return frequency;
 }
 
+/// The line, and on a face each half of a diameter with a phase of its own: what the cut has laid
+/// down runs there and back.
+Eigen::MatrixXd line_on(const Observation& observation, double cycles_per_value) {
+  const Setup& setup = observation.profile->setup;
+  Eigen::MatrixXd out = line(observation.values.size(), cycles_per_value);
+  if (setup.kind != Kind::face) return out;
+  out.conservativeResize(Eigen::NoChange, 4);
+  const std::vector<double> positions =
+      observation.low_band.positions(observation.profile->positions);
+  for (Eigen::Index i = 0; i < out.rows(); ++i) {
+    const bool is_far = positions[static_cast<std::size_t>(i)] < setup.center_mm;
+    out.row(i).tail(2) = is_far ? Eigen::RowVector2d::Zero() : out.row(i).head<2>().eval();
+  }
+  return out;
+}
+
 void append(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
   Eigen::MatrixXd out(std::max(columns.rows(), more.rows()), columns.cols() + more.cols());
   out << columns, more;
@@ -128,7 +144,7 @@ LinearProfile from_fine_band(const Linearisation& linear, std::size_t i,
         linear.residuals[i] - basis * (basis.transpose() * linear.residuals[i]);
     const double frequency = outstanding_line(rest);
     if (frequency == 0.0) break;
-    append(free, line(n, frequency));
+    append(free, line_on(observation, frequency));
   }
   return linear_profile(free, linear.residuals[i], observation.profile->standard_uncertainty);
 }

@@ -52,9 +52,11 @@ class Loop {
       }
     }
     const bool exchanged = exchange(state);
-    if (drop_small(state, kLeastJointSize) || exchanged) last = look_at(state);
+    const bool changed = drop_small(state, kLeastJointSize) || exchanged;
+    if (changed) last = look_at(state);
     const bool retracted = retract(state, last->data);
     if (retracted) last = look_at(state);
+    if (changed || retracted || has_dropped_) retell(state.added);
     tell("describing what is left");
     ClosedLoop out = report(state, *last, retracted);
     if (!state.added.empty()) out.extended = extender_.in_declared_band(std::move(state));
@@ -114,6 +116,34 @@ class Loop {
     added.round.ambiguous_with.clear();
     for (const Seen* rival : look.rivals(choice))
       added.round.ambiguous_with.push_back(rival->name());
+    if (!choice.held_out) return;
+    added.round.before_holdout_rms_um = choice.held_out->before_um;
+    added.round.after_holdout_rms_um = choice.held_out->after_um;
+  }
+
+  /// Profiles held out by the problem stand before those left out in turn.
+  static void set_residuals(const FitResult& before, const FitResult& after, TraceRound& round) {
+    round.before_rms_um = before.rms_um;
+    round.after_rms_um = after.rms_um;
+    round.before_rms_urad = before.rms_urad;
+    round.after_rms_urad = after.rms_urad;
+    if (const auto held_out = holdout_rms_um(before)) {
+      round.before_holdout_rms_um = held_out;
+      round.after_holdout_rms_um = holdout_rms_um(after);
+    }
+  }
+
+  /// The rounds as if what is in the model at the end had been added one after the other: effects
+  /// have been exchanged, and have left.
+  void retell(std::vector<Added>& added) const {
+    FitResult before = *before_;
+    for (std::size_t i = 0; i < added.size(); ++i) {
+      const auto end = added.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+      const Extended state = extender_.extend({added.begin(), end});
+      FitResult after = extender_.summary(state);
+      set_residuals(before, after, added[i].round);
+      before = std::move(after);
+    }
   }
 
   bool try_adding(Extended& state, const Look& look, const Seen& choice) {
@@ -122,21 +152,11 @@ class Loop {
     record(look, choice, added.emplace_back());
     Extended extended = extender_.extend(std::move(added));
     const FitResult& after = extender_.summary(extended);
-    TraceRound& round = extended.added.back().round;
-    round.before_rms_um = before.rms_um;
-    round.after_rms_um = after.rms_um;
-    round.before_rms_urad = before.rms_urad;
-    round.after_rms_urad = after.rms_urad;
-    round.before_holdout_rms_um = holdout_rms_um(before);
-    round.after_holdout_rms_um = holdout_rms_um(after);
-    if (round.before_holdout_rms_um) {
-      if (!(*round.after_holdout_rms_um < *round.before_holdout_rms_um)) {
-        notes_.push_back(round.accepted + " was refused: it predicts the held-out profiles worse");
-        return false;
-      }
-    } else if (choice.held_out) {
-      round.before_holdout_rms_um = choice.held_out->before_um;
-      round.after_holdout_rms_um = choice.held_out->after_um;
+    set_residuals(before, after, extended.added.back().round);
+    if (const auto held_out = holdout_rms_um(before);
+        held_out && !(*holdout_rms_um(after) < *held_out)) {
+      notes_.push_back(choice.name() + " was refused: it predicts the held-out profiles worse");
+      return false;
     }
     if (is_carriage_effect(choice.name()) &&
         !outdoes_process(extended, state, look.data.noise(), state.added.size())) {
@@ -175,6 +195,7 @@ class Loop {
         ++i;
         continue;
       }
+      has_dropped_ = true;
       notes_.push_back(effect.name() + " was dropped again: " + state.added.back().name() +
                        " has made it superfluous");
       state = std::move(without);
@@ -320,6 +341,7 @@ class Loop {
   std::optional<Look> first_look_;  // at the declared model alone
   std::optional<FitResult> before_;
   std::vector<std::string> ruled_out_, advice_, notes_;
+  bool has_dropped_ = false;
 };
 
 }  // namespace

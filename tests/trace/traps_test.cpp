@@ -103,6 +103,22 @@ TEST(Trap, ToolWearIsNotTakenForNoise) {
                "tool_wear.rate_um_per_m", 0.6 / 17.3);
 }
 
+// On a diameter the cut runs there and back: a line in time is two, with a kink at the axis. One
+// cut's was taken for noise, and the other's could then be the slide's.
+TEST(Trap, ALineThatRunsThereAndBackIsNotTakenForNoise) {
+  const TraceResult result = close_loop(
+      turning::face_problem(),
+      turning::make_faces(
+          {"time_periodic",
+           [](const ToolPoint& p) { return 0.24e-3 * std::cos(2.0 * kPi * p.t / 10.85 + 2.13); }},
+          2, kSharp, 102));
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ::testing::AnyOf(::testing::Contains("time_periodic"),
+                                              ::testing::Contains("revolution_periodic")));
+  // What is left is the stylus' noise, 11 nm, and what the nose makes of the line.
+  EXPECT_LT(result.after_rms_um, 0.03);
+}
+
 TEST(Trap, BiasOfTheSquarenessByADriftFallsByNineTenths) {
   expect_bias_removed(
       {"thermal_drift", [](const ToolPoint& p) { return 6e-3 * (1.0 - std::exp(-p.t / 73.0)); }},
