@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <system_error>
@@ -72,11 +73,22 @@ std::string shortest(double value) {
 }
 
 std::string significant(double value, int digits) {
+  constexpr double kMillion = 1e6;
   std::string text(static_cast<std::size_t>(std::max(digits, 1)) + 16, '\0');
   char* const begin = text.data();
-  const auto written = std::to_chars(begin, begin + text.size(), value, std::chars_format::general,
-                                     std::max(digits, 1));
-  text.resize(static_cast<std::size_t>(written.ptr - begin));
+  char* const end = begin + text.size();
+  const auto write = [&](double number, std::chars_format format, int precision) {
+    return static_cast<std::size_t>(std::to_chars(begin, end, number, format, precision).ptr -
+                                    begin);
+  };
+  std::size_t length = write(value, std::chars_format::general, std::max(digits, 1));
+  const bool below_a_million = std::abs(value) >= 1.0 && std::abs(value) < kMillion;
+  if (below_a_million && text.find('e') < length) {
+    double rounded = value;
+    std::from_chars(begin, begin + length, rounded);
+    length = write(rounded, std::chars_format::fixed, 0);
+  }
+  text.resize(length);
   return text;
 }
 

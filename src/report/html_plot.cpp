@@ -32,16 +32,26 @@ double nice_step(double range, double count) {
   return 10.0 * power;
 }
 
+/// "-5e-05" as "−5·10⁻⁵", in characters: a picture has no markup for powers.
+std::string in_powers(const std::string& text) {
+  constexpr const char* kRaised[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  const std::size_t e = text.find('e');
+  std::string out = text.substr(0, e);
+  if (out.front() == '-') out.replace(0, 1, "−");
+  if (e == std::string::npos) return out;
+  out += "·10";
+  const int power = std::stoi(text.substr(e + 1));
+  if (power < 0) out += "⁻";
+  for (const char digit : std::to_string(std::abs(power))) out += kRaised[digit - '0'];
+  return out;
+}
+
 std::string tick_text(double value, double step) {
   if (std::abs(value) < 1e-9 * step) return "0";
   const double size = std::max(std::abs(value), step);
-  if (size >= 1e5 || step < 1e-4) {
-    std::string text = significant(value, 3);
-    return text.front() == '-' ? "−" + text.substr(1) : text;
-  }
+  if (size >= 1e5 || step < 1e-4) return in_powers(significant(value, 3));
   const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
-  std::string text = fixed_point(value, decimals);
-  return text.front() == '-' ? "−" + text.substr(1) : text;
+  return in_powers(fixed_point(value, decimals));
 }
 
 void require_one_length(const Plot::Text& plot, const std::vector<double>& positions,

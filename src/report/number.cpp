@@ -68,11 +68,8 @@ std::string fixed_point(double value, int decimals) {
 }
 
 std::string to_digits(double value, int digits) {
-  constexpr double kMillion = 1e6;
   if (!std::isfinite(value)) throw std::logic_error("to_digits: the value is not finite");
-  if (std::abs(value) < 1.0 || std::abs(value) >= kMillion) return significant(value, digits);
-  const int place = exponent_of(value, digits - 1) + 1 - digits;
-  return place > 0 ? at_place(value, place) : significant(value, digits);
+  return significant(value, digits);
 }
 
 std::string with_uncertainty(double value, double uncertainty) {

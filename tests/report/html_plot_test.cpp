@@ -46,8 +46,8 @@ TEST(Plot, IsDrawnForAConstantAndForASinglePoint) {
 }
 
 TEST(Plot, RefusesWhatCanNotBeDrawn) {
-  EXPECT_THROW(plot().line("one", "after", {0, 1}, {0}), DataError);
-  EXPECT_THROW(plot().line("one", "after", {0, 1}, {-1.7e308, 1.7e308}).svg(), DataError);
+  EXPECT_THROW((void)plot().line("one", "after", {0, 1}, {0}), DataError);
+  EXPECT_THROW((void)plot().line("one", "after", {0, 1}, {-1.7e308, 1.7e308}).svg(), DataError);
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ std::optional<double> parse_double(std::string_view field);
 /// Shortest text that reads back as the same double, with '.' as decimal point.
 std::string shortest(double value);
 
-/// `value` with `digits` significant digits, as printf's %.*g.
+/// `value` with `digits` significant digits, as printf's %.*g but without an exponent from 1 to
+/// 1e6.
 std::string significant(double value, int digits);
 
 std::string_view trimmed(std::string_view text);
