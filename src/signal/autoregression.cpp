@@ -129,7 +129,7 @@ double Autoregression::log_determinant(Eigen::Index n) const {
 }
 
 std::vector<double> Autoregression::burg(std::span<const double> series, int p) {
-  constexpr double kLargest = 0.995;
+  constexpr double kMost = 0.995;
   std::vector<double> forward(series.begin(), series.end());
   std::vector<double> backward = forward;
   std::vector<double> partial(static_cast<std::size_t>(p), 0.0);
@@ -141,7 +141,7 @@ std::vector<double> Autoregression::burg(std::span<const double> series, int p) 
       power += forward[t] * forward[t] + backward[t - 1] * backward[t - 1];
     }
     if (power <= 0.0) break;
-    const double k = std::clamp(2.0 * product / power, -kLargest, kLargest);
+    const double k = std::clamp(2.0 * product / power, -kMost, kMost);
     partial[m - 1] = k;
     for (std::size_t t = series.size() - 1; t >= m; --t) {
       const double ahead = forward[t];

@@ -122,10 +122,10 @@ TEST_F(X3pSample, HoldsTheSameInXmlAndInBinary) {
 }
 
 TEST_F(X3pSample, NeedsALineAndNamesTheChoices) {
-  for (const auto& [name, bytes] : files_)
-    EXPECT_THAT([&] { (void)x3p.read(bytes, {}); },
+  for (const auto& file : files_)
+    EXPECT_THAT([&] { (void)x3p.read(file.second, {}); },
                 testing::ThrowsMessage<UsageError>(HasSubstr("4 rows of 4 points")))
-        << name;
+        << file.first;
 }
 
 TEST_F(X3pSample, ReadsAListOfPointsOnAGrid) {
