@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "slideway/base/parallel.hpp"
+#include "slideway/base/sanitizer.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/batch/item.hpp"
 
@@ -63,14 +64,10 @@ std::optional<std::string> receive_text(int socket) {
 }
 
 void limit_memory(std::uint64_t bytes) {
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their shadow is data too
   struct rlimit limit {};
-  if (bytes == 0 || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  if (kHasShadow || bytes == 0 || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
   limit.rlim_cur = std::min<rlim_t>(bytes, limit.rlim_max);
   ::setrlimit(RLIMIT_DATA, &limit);
-#else
-  static_cast<void>(bytes);
-#endif
 }
 
 std::string described(int status) {

@@ -13,6 +13,7 @@
 #include "command_list.hpp"
 #include "output.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/base/sanitizer.hpp"
 
 namespace slideway {
 
@@ -37,6 +38,7 @@ int run(const std::vector<std::string>& arguments) {
 // Fresh pages cost more than the arithmetic on them: what a matrix gives back serves the next, and
 // the pages are huge ones where the system has them.
 void prepare_memory() {
+  if (kHasShadow) return;
   constexpr std::size_t kRoom = 1 << 30, kHugePage = 1 << 21;
   mallopt(M_MMAP_THRESHOLD, kRoom);
   mallopt(M_TRIM_THRESHOLD, kRoom);

@@ -10,6 +10,7 @@
 #include <new>
 #include <thread>
 
+#include "slideway/base/sanitizer.hpp"
 #include "slideway/batch/item.hpp"
 
 namespace slideway {
@@ -83,9 +84,7 @@ TEST(Workers, OneThatWasEndedWhileIdleIsReplaced) {
 }
 
 TEST(Workers, MemoryIsLimited) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the shadow of a sanitizer is beyond any limit";
-#endif
+  if (kHasShadow) GTEST_SKIP() << "the shadow of a sanitizer is beyond any limit";
   const auto greedy = [](const std::string& task) {
     try {
       return std::to_string(std::string(std::stoul(task), 'x').size());

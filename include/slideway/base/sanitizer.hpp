@@ -1,0 +1,16 @@
+#pragma once
+
+namespace slideway {
+
+/// Whether a sanitizer keeps a shadow of all memory: limits of memory are then beyond keeping, and
+/// what saves fresh pages costs them.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kHasShadow = true;
+#elif defined(__has_feature)
+inline constexpr bool kHasShadow =
+    __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#else
+inline constexpr bool kHasShadow = false;
+#endif
+
+}  // namespace slideway
