@@ -41,7 +41,8 @@ class SlidePeriodic : public PeriodicEffect {
                          Eigen::Ref<Eigen::MatrixXd> out) const override {
     if (is_height(stations.setup()))
       return PeriodicEffect::columns_of_shapes(stations, shapes, out);
-    Effect::columns_of_shapes(stations, shapes, out);
+    for (std::size_t s = 0; s < shapes.size(); ++s)
+      columns(stations, shapes[s], out.middleCols(static_cast<Eigen::Index>(2 * s), 2));
   }
 
   void derivatives(const Stations& stations, std::span<const double> shape, int which,
