@@ -190,8 +190,8 @@ TEST_F(ProblemFile, SaysInWhichLineItIsNoToml) {
 }
 
 TEST_F(ProblemFile, IsAUsageErrorWhenThereIsNoneOrADirectory) {
-  EXPECT_THROW(read_problem(directory_ / "nothing.toml"), UsageError);
-  EXPECT_THROW(read_problem(directory_), UsageError);
+  EXPECT_THROW(read_problem(folder_.path() / "nothing.toml"), UsageError);
+  EXPECT_THROW(read_problem(folder_.path()), UsageError);
 }
 
 }  // namespace

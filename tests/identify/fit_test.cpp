@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <filesystem>
 #include <fstream>
 
+#include "base/temporary_folder.hpp"
 #include "identify/cases.hpp"
 #include "slideway/base/random.hpp"
 #include "slideway/base/text.hpp"
@@ -206,12 +206,11 @@ TEST(Fit, OfEveryProfileTwiceHasHalfTheVariance) {
 }
 
 TEST(Fit, DoesNotMindTheOrderOfAFileNorItsUnits) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "fit_order";
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   const std::vector<Profile> profiles = readings();
   const auto from_file = [&](const std::string& name, bool backwards, double unit,
                              std::string_view unit_name) {
-    std::ofstream out(folder / name);
+    std::ofstream out(folder.path() / name);
     const Profile& face = profiles[0];
     for (std::size_t i = 0; i < face.values.size(); ++i) {
       const std::size_t j = backwards ? face.values.size() - 1 - i : i;
@@ -220,7 +219,7 @@ TEST(Fit, DoesNotMindTheOrderOfAFileNorItsUnits) {
     out.close();
     std::vector<Profile> read = profiles;
     ProfileSource source;
-    source.path = folder / name;
+    source.path = folder.path() / name;
     source.position_unit = "mm";
     source.value_unit = unit_name;
     read_profile(source, read[0]);
@@ -231,7 +230,6 @@ TEST(Fit, DoesNotMindTheOrderOfAFileNorItsUnits) {
   for (const std::string& name : kDetermined)
     EXPECT_EQ(value(forwards, name), value(backwards, name)) << name;
   expect_same(forwards, from_file("micrometres.csv", false, 1e3, "um"));
-  std::filesystem::remove_all(folder);
 }
 
 TEST(Fit, OfPositionsThatAreNotUniformIsUnbiased) {

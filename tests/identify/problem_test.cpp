@@ -96,7 +96,7 @@ TEST_F(ProblemFile, GivesEveryKeyOfAProfile) {
   const slideway::Setup& setup = entry.profile.setup;
   EXPECT_EQ(entry.profile.name, "feed2");
   EXPECT_EQ(entry.profile.file, "feed2.csv");
-  EXPECT_EQ(entry.source.path, directory_ / "feed2.csv");
+  EXPECT_EQ(entry.source.path, folder_.path() / "feed2.csv");
   EXPECT_EQ(entry.source.request.position_column, "x_mm");
   EXPECT_EQ(entry.source.request.value_column, "3");
   EXPECT_EQ(entry.source.window, std::pair(0.0, 10.0));
@@ -193,7 +193,7 @@ TEST_F(ProblemFile, FindsTheDataDirectory) {
   EXPECT_THAT(refusal(text), AllOf(HasSubstr("SLIDEWAY_DATA"), HasSubstr("--data DIR")));
   setenv("SLIDEWAY_DATA", "/environment", 1);
   EXPECT_EQ(read(text).profiles[0].source.path, "/environment/a.csv");
-  EXPECT_EQ(read_problem(directory_ / "problem.toml", "/option").profiles[0].source.path,
+  EXPECT_EQ(read_problem(folder_.path() / "problem.toml", "/option").profiles[0].source.path,
             "/option/a.csv");
   unsetenv("SLIDEWAY_DATA");
   if (before != nullptr) setenv("SLIDEWAY_DATA", kept.c_str(), 1);

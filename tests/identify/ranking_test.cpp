@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 
+#include "base/temporary_folder.hpp"
 #include "identify/cases.hpp"
 #include "slideway/base/error.hpp"
 #include "support/turning.hpp"
@@ -19,13 +19,13 @@ class ColumnFile : public ::testing::Test {
  protected:
   ColumnFile() {
     // y with each candidate: 4/5 by hand (Σ xy = 8, Σ x² = Σ y² = 10 about the means), -1, 0.
-    std::ofstream(path_) << "y,close,against,apart\n"
-                            "1,2,-1,1\n2,1,-2,-2\n3,4,-3,2\n4,3,-4,-2\n5,5,-5,1\n";
+    path_ = folder_.file("columns.csv",
+                         "y,close,against,apart\n"
+                         "1,2,-1,1\n2,1,-2,-2\n3,4,-3,2\n4,3,-4,-2\n5,5,-5,1\n");
   }
-  ~ColumnFile() override { std::filesystem::remove(path_); }
 
-  std::filesystem::path path_ =
-      std::filesystem::path(::testing::TempDir()) / "slideway_ranking_columns.csv";
+  TemporaryFolder folder_;
+  std::filesystem::path path_;
 };
 
 TEST_F(ColumnFile, RanksColumnsByTheSizeOfPearsonsCoefficient) {

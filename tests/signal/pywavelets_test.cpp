@@ -1,12 +1,12 @@
 #include <gmock/gmock.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "base/temporary_folder.hpp"
 #include "signal/noise.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/signal/dwt.hpp"
@@ -99,13 +99,12 @@ std::vector<double> rebuilt_with_halved_details(const Case& each, Decomposition 
 
 TEST(PyWavelets, AgreesOnMultilevelTransformsOfRandomLengths) {
   const std::vector<Case> cases = make_cases();
-  const auto path = std::filesystem::temp_directory_path() /
-                    ("slideway_pywavelets_" + std::to_string(getpid()) + ".txt");
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "cases.txt";
   write_cases(cases, path);
   const auto [text, code] = output_of("/usr/bin/python3 '" SLIDEWAY_SOURCE_DIR
                                       "/tests/signal/pywavelets_reference.py' '" +
                                       path.string() + "'");
-  std::filesystem::remove(path);
   if (code == 77 || code == 127) GTEST_SKIP() << "no PyWavelets (Debian's python3-pywt)";
   ASSERT_EQ(code, 0);
 
