@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include "slideway/base/distribution.hpp"
 
 #include "pool_trend.hpp"
+#include "slideway/base/distribution.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/uncertainty.hpp"
 

@@ -3,8 +3,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include "slideway/base/distribution.hpp"
 
+#include "slideway/base/distribution.hpp"
 #include "slideway/identify/uncertainty.hpp"
 
 namespace slideway {

@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include "slideway/base/distribution.hpp"
 
 #include "residual.hpp"
+#include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
 
 namespace slideway {

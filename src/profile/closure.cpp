@@ -5,10 +5,10 @@
 #include <map>
 
 #include <Eigen/Dense>
-#include "slideway/base/distribution.hpp"
 
 #include "closure_net.hpp"
 #include "outlier_level.hpp"
+#include "slideway/base/distribution.hpp"
 
 namespace slideway {
 namespace {

@@ -2,9 +2,8 @@
 #include <cmath>
 #include <optional>
 
-#include "slideway/base/distribution.hpp"
-
 #include "closure_net.hpp"
+#include "slideway/base/distribution.hpp"
 
 namespace slideway {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include "slideway/base/distribution.hpp"
 
+#include "slideway/base/distribution.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/signal/correlation.hpp"

@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <unsupported/Eigen/FFT>
+
 #include "slideway/base/distribution.hpp"
 
 namespace slideway {

@@ -3,11 +3,11 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include "slideway/base/distribution.hpp"
 
 #include "background.hpp"
 #include "gates.hpp"
 #include "linear_algebra.hpp"
+#include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"

@@ -4,11 +4,11 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include "slideway/base/distribution.hpp"
 
 #include "background.hpp"
 #include "calibration.hpp"
 #include "linear_algebra.hpp"
+#include "slideway/base/distribution.hpp"
 
 namespace slideway {
 namespace {
