@@ -38,6 +38,7 @@ class Loop {
     Extended state = extender_.extend({});
     before_ = extender_.summary(state);
     std::optional<Look> last;
+    bool dropped = false;
     while (true) {
       tell_round(state);
       last = look_at(state);
@@ -46,7 +47,7 @@ class Loop {
       const Seen* choice = last->choice();
       if (!choice) break;
       if (try_adding(state, *last, *choice)) {
-        drop_superfluous(state);
+        dropped = drop_superfluous(state) || dropped;
       } else {
         ruled_out_.push_back(choice->name());
       }
@@ -56,7 +57,7 @@ class Loop {
     if (changed) last = look_at(state);
     const bool retracted = retract(state, last->data);
     if (retracted) last = look_at(state);
-    if (changed || retracted || has_dropped_) retell(state.added);
+    if (dropped || changed || retracted) retell(state);
     tell("describing what is left");
     ClosedLoop out = report(state, *last, retracted);
     if (!state.added.empty()) out.extended = extender_.in_declared_band(std::move(state));
@@ -135,13 +136,14 @@ class Loop {
 
   /// The rounds as if what is in the model at the end had been added one after the other: effects
   /// have been exchanged, and have left.
-  void retell(std::vector<Added>& added) const {
+  void retell(Extended& state) const {
     FitResult before = *before_;
-    for (std::size_t i = 0; i < added.size(); ++i) {
-      const auto end = added.begin() + static_cast<std::ptrdiff_t>(i) + 1;
-      const Extended state = extender_.extend({added.begin(), end});
-      FitResult after = extender_.summary(state);
-      set_residuals(before, after, added[i].round);
+    const auto first = state.added.begin(), end = state.added.end();
+    for (auto effect = first; effect != end; ++effect) {
+      const auto next = std::next(effect);
+      FitResult after = next == end ? extender_.summary(state)
+                                    : extender_.summary(extender_.extend({first, next}));
+      set_residuals(before, after, effect->round);
       before = std::move(after);
     }
   }
@@ -180,8 +182,9 @@ class Loop {
     return gain - penalty(with_it, candidate.unknowns(candidate.amplitudes())) >= kEnough;
   }
 
-  /// Earlier effects that the last one has made superfluous leave again.
-  void drop_superfluous(Extended& state) {
+  /// Earlier effects that the last one has made superfluous leave again. @return true if one did
+  bool drop_superfluous(Extended& state) {
+    bool changed = false;
     for (std::size_t i = 0; i + 1 < state.added.size();) {
       Extended without = extender_.extend(all_but(state.added, i));
       const Added& effect = state.added[i];
@@ -195,11 +198,12 @@ class Loop {
         ++i;
         continue;
       }
-      has_dropped_ = true;
       notes_.push_back(effect.name() + " was dropped again: " + state.added.back().name() +
                        " has made it superfluous");
       state = std::move(without);
+      changed = true;
     }
+    return changed;
   }
 
   /// Each effect once more against all others, the rest of the model as it now is: a better one
@@ -341,7 +345,6 @@ class Loop {
   std::optional<Look> first_look_;  // at the declared model alone
   std::optional<FitResult> before_;
   std::vector<std::string> ruled_out_, advice_, notes_;
-  bool has_dropped_ = false;
 };
 
 }  // namespace
