@@ -1,12 +1,12 @@
 # Heavy headers, parsed once for the rooms and once for the tests, and what of Eigen is compiled once.
 # Off in the presets dev and tidy, where a file must name what it uses.
 
-# slideway_headers(name header ...): a set of precompiled headers.
-function(slideway_headers name)
+# slideway_headers(name source header ...): a set of precompiled headers, and the source beside it.
+function(slideway_headers name source)
   if(CMAKE_DISABLE_PRECOMPILE_HEADERS)
     return()
   endif()
-  add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/compiled_once.cpp)
+  add_library(${name} OBJECT ${source})
   set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)
   target_link_libraries(${name} PRIVATE slideway_options Eigen3::Eigen nlohmann_json::nlohmann_json)
   target_precompile_headers(${name} PRIVATE
@@ -27,11 +27,12 @@ function(slideway_use_headers target name)
   endif()
 endfunction()
 
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS cmake/compiled_once.hpp)
 file(READ ${PROJECT_SOURCE_DIR}/cmake/compiled_once.hpp once)
 string(REPLACE "extern template" "template" once "${once}")
 string(REPLACE "#pragma once\n" "" once "${once}")
 file(CONFIGURE OUTPUT compiled_once.cpp CONTENT "${once}" @ONLY)
-slideway_headers(slideway_room_headers)
+slideway_headers(slideway_room_headers ${PROJECT_BINARY_DIR}/compiled_once.cpp)
 if(TARGET slideway_room_headers)
   set_target_properties(slideway_room_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endif()
