@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "output.hpp"
+#include "progress.hpp"
 #include "report_command.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/profile/outliers.hpp"
@@ -116,7 +117,10 @@ class InfoCommand : public ReportCommand {
 
   [[nodiscard]] int run_problem() const {
     const Problem problem = read_profiles_of_problem(input_, data_directory(data_));
-    const Result result = summarise_data(problem, profiles_of(problem, request_.ignore_checksum));
+    const Result result = [&] {
+      StageLine line(!is_quiet());
+      return summarise_data(problem, profiles_of(problem, request_.ignore_checksum, line));
+    }();
     report([&] { return data_text(result); }, [&] { return data_json(result); });
     return kDone;
   }

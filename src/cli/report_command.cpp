@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "output.hpp"
-#include "progress.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/report/report.hpp"
 #include "slideway/trace/analysis.hpp"
@@ -54,13 +53,16 @@ void ReportCommand::report(const std::function<std::string()>& text,
   if (!is_quiet() && json_ != "-" && html_ != "-") print_report(text());
 }
 
-std::vector<Profile> ReportCommand::profiles_of(Problem problem, bool ignore_checksum) const {
+std::vector<Profile> ReportCommand::profiles_of(Problem problem, bool ignore_checksum,
+                                                StageLine& line) const {
   for (ProfileEntry& entry : problem.profiles) {
     keep(entry.source.path);
     entry.source.request.ignore_checksum = ignore_checksum;
   }
   require_simulated(problem);
-  return read_profiles(problem);
+  const auto reading = [&](double done) { line.show("reading", done); };
+  reading(0.0);
+  return read_profiles(problem, reading);
 }
 
 std::string ReportCommand::document_text(const nlohmann::ordered_json& document) {
@@ -86,8 +88,7 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
   const Problem problem = read_problem(input_, data_directory(data_));
   const Analysis analysis = [&] {
     StageLine line(!is_quiet());
-    line.show("reading");
-    const std::vector<Profile> profiles = profiles_of(problem, ignore_checksum_);
+    const std::vector<Profile> profiles = profiles_of(problem, ignore_checksum_, line);
     line.show("fitting the declared model");
     return analyse(problem, profiles, {scope, closes_loop, closes_loop || wants_json()},
                    [&](const std::string& stage, double done) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "progress.hpp"
 #include "slideway/identify/identify.hpp"
 
 namespace slideway {
@@ -28,8 +29,9 @@ class ReportCommand : public Command {
   /// @throws UsageError  an output would replace the input
   void keep(const std::filesystem::path& input) const;
 
-  /// Profiles of a problem, none of which an output replaces.
-  [[nodiscard]] std::vector<Profile> profiles_of(Problem problem, bool ignore_checksum) const;
+  /// Profiles of a problem, none of which an output replaces; the line shows how far they are read.
+  [[nodiscard]] std::vector<Profile> profiles_of(Problem problem, bool ignore_checksum,
+                                                 StageLine& line) const;
 
   /// A document as --json writes it; what is no UTF-8 in it, a file's name, is replaced.
   static std::string document_text(const nlohmann::ordered_json& document);

@@ -287,13 +287,40 @@ void check_names(const Problem& problem, const GivenTraces& given) {
                        "; accepted: " + joined(names, " "));
 }
 
-void take_or_read(const ProfileEntry& entry, const GivenTraces& given, Profile& profile) {
+void take_or_read(const ProfileEntry& entry, const GivenTraces& given, const ReadProgress& progress,
+                  Profile& profile) {
   if (const auto at = given.find(entry.profile.name); at != given.end())
     return take_profile(entry.source, at->second, profile);
   if (entry.source.path.empty())
     throw UsageError("profile '" + entry.profile.name + "': no numbers; accepted: arrays, or file");
-  read_profile(entry.source, profile);
+  read_profile(entry.source, profile, progress);
 }
+
+/// Which part of all files has been read, told by each.
+class FilesRead {
+ public:
+  FilesRead(const Problem& problem, const ReadProgress& progress) : progress_(progress) {
+    for (const ProfileEntry& entry : problem.profiles) all_ += size_of(entry);
+  }
+
+  [[nodiscard]] ReadProgress within(const ProfileEntry& entry) const {
+    if (!progress_ || all_ == 0.0) return {};
+    return
+        [this, size = size_of(entry)](double share) { progress_((before_ + share * size) / all_); };
+  }
+  void finish(const ProfileEntry& entry) { before_ += size_of(entry); }
+
+ private:
+  /// 0 of what is no regular file.
+  static double size_of(const ProfileEntry& entry) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(entry.source.path, error);
+    return error ? 0.0 : static_cast<double>(size);
+  }
+
+  const ReadProgress& progress_;
+  double all_ = 0.0, before_ = 0.0;  // bytes
+};
 
 }  // namespace
 
@@ -319,15 +346,20 @@ Problem read_problem(const TomlValue& tree, const std::optional<std::filesystem:
   return problem_of(tree, "problem", {{}, data_dir, false});
 }
 
-std::vector<Profile> read_profiles(const Problem& problem) { return read_profiles(problem, {}); }
+std::vector<Profile> read_profiles(const Problem& problem, const ReadProgress& progress) {
+  return read_profiles(problem, GivenTraces{}, progress);
+}
 
-std::vector<Profile> read_profiles(const Problem& problem, const GivenTraces& given) {
+std::vector<Profile> read_profiles(const Problem& problem, const GivenTraces& given,
+                                   const ReadProgress& progress) {
   check_names(problem, given);
+  FilesRead files(problem, progress);
   std::vector<Profile> profiles;
   for (const ProfileEntry& entry : problem.profiles) {
     profiles.push_back(entry.profile);
     try {
-      take_or_read(entry, given, profiles.back());
+      take_or_read(entry, given, files.within(entry), profiles.back());
+      files.finish(entry);
     } catch (const DataError& error) {
       throw DataError("profile '" + entry.profile.name + "': " + error.what());
     } catch (const UsageError& error) {

@@ -138,10 +138,12 @@ void complete(const ProfileSource& source, TraceFile file, Intake& intake, Profi
 
 }  // namespace
 
-void read_profile(const ProfileSource& source, Profile& profile) {
+void read_profile(const ProfileSource& source, Profile& profile, const ReadProgress& progress) {
   Intake intake(source, profile);
-  TraceFile file =
-      read_trace(source.path, source.request, [&](const TracePart& part) { intake.take(part); });
+  TraceFile file = read_trace(source.path, source.request, [&](const TracePart& part) {
+    intake.take(part);
+    if (progress) progress(part.share);
+  });
   complete(source, std::move(file), intake, profile);
 }
 

@@ -213,6 +213,16 @@ TEST_F(ProblemFile, SaysHowTheTextIsWritten) {
   EXPECT_EQ(request.line, "row:12");
 }
 
+TEST_F(ProblemFile, TellsWhichPartOfAllItsFilesHasBeenRead) {
+  write("x,z\n0,1\n1,2\n2,3\n3,4\n", "feed2.csv");  // read twice, by profiles of two names
+  const Problem problem = read(kMachine + profile() + profile("", "again") + kEffect);
+  std::vector<double> told;
+  const std::vector<Profile> profiles =
+      read_profiles(problem, [&](double done) { told.push_back(done); });
+  EXPECT_THAT(profiles, ::testing::SizeIs(2));
+  EXPECT_THAT(told, ::testing::ElementsAre(0.5, 1.0));
+}
+
 TEST_F(ProblemFile, NamesTheProfileWhoseDataAreBad) {
   const Problem problem = read(kMachine + profile() + kEffect);
   try {

@@ -91,8 +91,9 @@ Problem read_profiles_of_problem(
     const std::filesystem::path& path,
     const std::optional<std::filesystem::path>& data_dir = std::nullopt);
 
-/// Reads all profiles of a problem, in order. @throws DataError, UsageError
-std::vector<Profile> read_profiles(const Problem& problem);
+/// Reads all profiles of a problem, in order, and tells which part of their bytes has been read.
+/// @throws DataError, UsageError
+std::vector<Profile> read_profiles(const Problem& problem, const ReadProgress& progress = {});
 
 /// The problem file without its [truth], each profile's `file` replaced by one of `files` with the
 /// columns x_mm and z_um (slopes: slope_urad), no window and no

@@ -43,6 +43,7 @@ using GivenTraces = std::map<std::string, Trace>;
 /// Profiles of a problem, in order: from `given` where it has them, else from their files.
 /// @throws UsageError  no [[profile]] of a given name; a profile with neither file nor numbers
 /// @throws DataError   as read_profiles(problem) and take_profile()
-std::vector<Profile> read_profiles(const Problem& problem, const GivenTraces& given);
+std::vector<Profile> read_profiles(const Problem& problem, const GivenTraces& given,
+                                   const ReadProgress& progress = {});
 
 }  // namespace slideway

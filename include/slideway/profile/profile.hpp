@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -70,15 +71,18 @@ struct ProfileSource {
   std::size_t most_samples = 10'000'000;            // more are kept as means of 2, 4, 8, ...; even
 };
 
+/// Told which part of what is to be read has been, 0 to 1, in the thread that reads.
+using ReadProgress = std::function<void(double done)>;
+
 /// Reads, converts and sorts out one profile: window applied, missing points left out, a trace that
 /// runs backwards reversed, outliers listed, and left out if asked, cut_radius_mm completed. Notes
 /// tell what was decided, and of sizes that a wrong unit makes. A file that states its units is
 /// converted from those.
+/// @param progress  is told which part of the file has been read
 /// @throws DataError   what read_trace() refuses; a unit in the header that is not the source's;
 ///                     naming file and row: unsorted or repeated positions, too few rows
-/// @throws UsageError  no unit, no feed where the positions are times, a cut smaller than the
-/// trace,
-///                     a row to leave out that is not there
-void read_profile(const ProfileSource& source, Profile& profile);
+/// @throws UsageError  no unit, no feed where the positions are times, a row to leave out that is
+///                     not there, a cut smaller than the trace
+void read_profile(const ProfileSource& source, Profile& profile, const ReadProgress& progress = {});
 
 }  // namespace slideway
