@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slideway/base/random.hpp"
+#include "slideway/signal/bands.hpp"
 #include "slideway/signal/correlation.hpp"
 #include "slideway/signal/low_band.hpp"
 

@@ -9,6 +9,7 @@
 #include "output.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/format/format.hpp"
+#include "slideway/signal/bands.hpp"
 
 namespace slideway {
 namespace {

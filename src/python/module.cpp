@@ -11,7 +11,7 @@
 #include "slideway/identify/ranking.hpp"
 #include "slideway/identify/simulate.hpp"
 #include "slideway/report/report.hpp"
-#include "slideway/signal/dwt.hpp"
+#include "slideway/signal/bands.hpp"
 #include "slideway/trace/analysis.hpp"
 
 /// The compiled half of the Python module: plain containers in and out. What users see, its units

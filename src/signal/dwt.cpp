@@ -1,12 +1,12 @@
 #include "slideway/signal/dwt.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <string>
 
 #include "slideway/base/error.hpp"
-#include "slideway/base/parallel.hpp"
+#include "slideway/base/wide.hpp"
+#include "upsample.hpp"
 
 namespace slideway {
 namespace {
@@ -154,62 +154,30 @@ void downsample(const Wavelet& wavelet, Boundary boundary, std::span<const doubl
   };
   for (Index o = 0; o < first_inside; ++o) at_an_end(o);
   if (end_inside > first_inside)
-    convolve(outputs(first_inside), taps, signal.data() + start + 2 * first_inside,
-             end_inside - first_inside);
+    wide([&] {
+      convolve(outputs(first_inside), taps, signal.data() + start + 2 * first_inside,
+               end_inside - first_inside);
+    });
   for (Index o = end_inside; o < count; ++o) at_an_end(o);
 }
 
-// out[2 i] += Σ_j filter[2 j] c[i - j], out[2 i + 1] += Σ_j filter[2 j + 1] c[i - j]; as if from
-// zeros if `fresh`.
-template <int Half>
-void add_pairs(bool fresh, std::span<const double> filter, const double* c, Index count,
-               double* out) {
-  const Index half = Half > 0 ? Half : std::ssize(filter) / 2;
-  const double* f = filter.data();
-  for (Index i = 0; i < count; ++i) {
-    double even = 0.0;
-    double odd = 0.0;
-    for (Index j = 0; j < half; ++j) {
-      even += f[2 * j] * c[i - j];
-      odd += f[2 * j + 1] * c[i - j];
-    }
-    out[2 * i] = (fresh ? 0.0 : out[2 * i]) + even;
-    out[2 * i + 1] = (fresh ? 0.0 : out[2 * i + 1]) + odd;
-  }
-}
-
-void add_pairs(bool fresh, std::span<const double> filter, const double* c, Index count,
-               double* out) {
-  switch (filter.size()) {
-    case 2:
-      return add_pairs<1>(fresh, filter, c, count, out);
-    case 4:
-      return add_pairs<2>(fresh, filter, c, count, out);
-    case 6:
-      return add_pairs<3>(fresh, filter, c, count, out);
-    case 8:
-      return add_pairs<4>(fresh, filter, c, count, out);
-    default:
-      return add_pairs<0>(fresh, filter, c, count, out);
-  }
-}
-
-// Adds the dyadic upsampling of c, filtered: with u = m + shift, i = floor(u / 2), p = u mod 2,
-// signal[m] += Σ_j filter[2 j + p] c[i - j]. The transform is orthonormal on a circle of twice as
-// many samples as coefficients under periodization, hence the indices that wrap there.
-void add_upsampled(bool fresh, std::span<const double> filter, Boundary boundary,
-                   std::span<const double> c, std::span<double> signal) {
+// Sets the signal to the dyadic upsampling of c, or adds it. The transform is orthonormal on a
+// circle of twice as many samples as coefficients under periodization, hence the indices that wrap
+// there.
+template <bool Adds>
+void upsample(std::span<const double> filter, Boundary boundary, std::span<const double> c,
+              std::span<double> signal) {
   if (c.empty()) return;
   const Index n = std::ssize(signal);
   const Index size = std::ssize(c);
   const Index half = std::ssize(filter) / 2;
   const bool wraps = boundary == Boundary::periodization;
-  const Index shift = wraps ? half - 1 : 2 * half - 2;
+  const Index shift = upsampling_shift(boundary, half);
   const double* f = filter.data();
 
   const auto at_an_end = [&](Index m) {
     const Index i = (m + shift) / 2;
-    if (fresh) signal[m] = 0.0;
+    if (!Adds) signal[m] = 0.0;
     for (Index j = 0; j < half; ++j) {
       const Index k = wraps ? floor_mod(i - j, size) : i - j;
       if (k >= 0 && k < size) signal[m] += f[2 * j + (m + shift) % 2] * c[k];
@@ -219,22 +187,10 @@ void add_upsampled(bool fresh, std::span<const double> filter, Boundary boundary
   const Index end = std::max(first, std::min(size, (n + shift) / 2));
   for (Index m = 0; m < std::min(n, 2 * first - shift); ++m) at_an_end(m);
   if (end > first)
-    add_pairs(fresh, filter, c.data() + first, end - first, signal.data() + 2 * first - shift);
+    wide([&] {
+      fill_pairs<Adds>(filter, c.data() + first, end - first, signal.data() + 2 * first - shift);
+    });
   for (Index m = 2 * end - shift; m < n; ++m) at_an_end(m);
-}
-
-// Coefficients of level lengths.size() up to full length, the other filter's being zeros. Bands of
-// coarser levels pass through the scratch buffers.
-void to_full_length(const Wavelet& wavelet, Boundary boundary, std::span<const std::size_t> lengths,
-                    std::span<const double> low, std::span<const double> high,
-                    std::array<Band, 2>& scratch, Band& band) {
-  for (std::size_t j = lengths.size(); j > 0; --j) {
-    Band& finer = j == 1 ? band : scratch[j % 2];
-    finer.resize(lengths[j - 1]);
-    inverse_dwt(wavelet, boundary, low, high, finer);
-    low = finer;
-    high = {};
-  }
 }
 
 }  // namespace
@@ -271,8 +227,11 @@ void dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> sign
 void inverse_dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> low,
                  std::span<const double> high, std::span<double> signal) {
   if (low.empty() && high.empty()) std::ranges::fill(signal, 0.0);
-  add_upsampled(true, wavelet.reconstruct_low, boundary, low, signal);
-  add_upsampled(low.empty(), wavelet.reconstruct_high, boundary, high, signal);
+  upsample<false>(wavelet.reconstruct_low, boundary, low, signal);
+  if (low.empty())
+    upsample<false>(wavelet.reconstruct_high, boundary, high, signal);
+  else
+    upsample<true>(wavelet.reconstruct_high, boundary, high, signal);
 }
 
 Decomposition decompose(const Wavelet& wavelet, Boundary boundary, int levels,
@@ -290,40 +249,6 @@ Decomposition decompose(const Wavelet& wavelet, Boundary boundary, int levels,
   }
   if (levels == 0) parts.approximation.assign(signal.begin(), signal.end());
   return parts;
-}
-
-Bands reconstruct_bands(const Wavelet& wavelet, Boundary boundary, int levels,
-                        std::span<const double> signal) {
-  const Decomposition parts = decompose(wavelet, boundary, levels, signal);
-  const std::size_t count = parts.details.size();
-  Bands bands;
-  bands.approximations.resize(count);
-  bands.details.resize(count);
-  const std::span<const std::size_t> lengths(parts.lengths);
-  constexpr std::size_t kPart = 1 << 16;     // samples: all bands of a part stay in the cache
-  const auto restore = [&](std::size_t j) {  // a_L, then d_1 ... d_L
-    std::array<Band, 2> scratch;
-    if (j == 0)
-      to_full_length(wavelet, boundary, lengths, parts.approximation, {}, scratch,
-                     bands.approximations[count - 1]);
-    else
-      to_full_length(wavelet, boundary, lengths.first(j), {}, parts.details[j - 1], scratch,
-                     bands.details[j - 1]);
-  };
-  const std::size_t restored = count > 0 ? count + 1 : 0;
-  if (signal.size() <= kPart) {  // not worth a thread
-    for (std::size_t j = 0; j < restored; ++j) restore(j);
-  } else {
-    parallel_for(restored, restore);
-  }
-  for (std::size_t j = count; j > 1; --j) bands.approximations[j - 2].resize(signal.size());
-  parallel_for((signal.size() + kPart - 1) / kPart, [&](std::size_t part) {
-    const std::size_t first = part * kPart, last = std::min(signal.size(), first + kPart);
-    for (std::size_t j = count; j > 1; --j)  // a_(j-1) = a_j + d_j
-      for (std::size_t i = first; i < last; ++i)
-        bands.approximations[j - 2][i] = bands.approximations[j - 1][i] + bands.details[j - 1][i];
-  });
-  return bands;
 }
 
 }  // namespace slideway

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slideway/signal/bands.hpp"
 #include "slideway/signal/correlation.hpp"
 
 namespace slideway {

@@ -1,7 +1,8 @@
-#include "slideway/signal/dwt.hpp"
+#include "slideway/signal/bands.hpp"
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -139,6 +140,38 @@ TEST(Bands, AddUpToTheSignalAndTelescope) {
           EXPECT_THAT(bands.approximations[j], Pointwise(DoubleNear(1e-13 * largest(signal)), rest))
               << wavelet.name << ' ' << name(each) << ' ' << n << " level " << j + 1;
         }
+      }
+}
+
+// Coefficients of level `level` of a signal of n samples, the rest being zeros.
+std::vector<double> at_full_length(const Wavelet& wavelet, Boundary boundary,
+                                   const Decomposition& parts, std::size_t level, bool is_detail) {
+  std::vector<double> low = is_detail ? std::vector<double>() : parts.approximation;
+  std::vector<double> high = is_detail ? parts.details[level - 1] : std::vector<double>();
+  for (std::size_t j = level; j > 0; --j) {
+    std::vector<double> finer(parts.lengths[j - 1]);
+    inverse_dwt(wavelet, boundary, low, high, finer);
+    low = std::move(finer);
+    high.clear();
+  }
+  return low;
+}
+
+TEST(Bands, OfALongSignalAreTheInverseTransformsOfTheirCoefficients) {
+  for (const int number : {1, 2, 3, 4, 12})
+    for (const Boundary each : all_boundaries())
+      for (const std::size_t n : {40'000u, 70'001u, 70'035u}) {
+        const Wavelet wavelet = daubechies("db" + std::to_string(number));
+        const std::vector<double> signal = white_noise(n, "long");
+        const Decomposition parts = decompose(wavelet, each, 5, signal);
+        const Bands bands = reconstruct_bands(wavelet, each, 5, signal);
+        const auto expect_same = [&](const Band& found, std::size_t level, bool is_detail) {
+          const auto expected = at_full_length(wavelet, each, parts, level, is_detail);
+          EXPECT_TRUE(std::ranges::equal(found, expected))
+              << wavelet.name << ' ' << name(each) << ' ' << n << " level " << level;
+        };
+        expect_same(bands.approximations[4], 5, false);
+        for (std::size_t j = 1; j <= 5; ++j) expect_same(bands.details[j - 1], j, true);
       }
 }
 

@@ -8,6 +8,7 @@
 
 #include "signal/noise.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/signal/bands.hpp"
 
 namespace slideway {
 namespace {

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <memory>
 #include <span>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "slideway/signal/daubechies.hpp"
@@ -52,28 +50,6 @@ struct Decomposition {
 };
 
 Decomposition decompose(const Wavelet& wavelet, Boundary boundary, int levels,
-                        std::span<const double> signal);
-
-/// Memory that a resize leaves as it is: setting it to zero would take as long as what is then
-/// written into it.
-template <typename Value>
-struct Unset : std::allocator<Value> {
-  template <typename Other, typename... Arguments>
-  void construct(Other* at, Arguments&&... arguments) {
-    if constexpr (sizeof...(Arguments) > 0)
-      std::construct_at(at, std::forward<Arguments>(arguments)...);
-  }
-};
-using Band = std::vector<double, Unset<double>>;
-
-/// The bands at full length: a_1 ... a_L and d_1 ... d_L, each of N samples; a_L + Σ_j d_j is the
-/// signal to 1e-13 of its size.
-struct Bands {
-  std::vector<Band> approximations;  // [j-1] is a_j
-  std::vector<Band> details;         // [j-1] is d_j
-};
-
-Bands reconstruct_bands(const Wavelet& wavelet, Boundary boundary, int levels,
                         std::span<const double> signal);
 
 }  // namespace slideway

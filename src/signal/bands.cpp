@@ -1,0 +1,180 @@
+#include "slideway/signal/bands.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "slideway/base/parallel.hpp"
+#include "slideway/base/wide.hpp"
+#include "upsample.hpp"
+
+namespace slideway {
+namespace {
+
+using Index = std::ptrdiff_t;
+
+// Levels of scratch memory that take turns.
+using Scratch = std::array<Band, 2>;
+
+// Coefficients of level lengths.size() up to full length, the other filter's being zeros.
+void to_full_length(const Wavelet& wavelet, Boundary boundary, std::span<const std::size_t> lengths,
+                    std::span<const double> low, std::span<const double> high, Scratch& scratch,
+                    Band& band) {
+  for (std::size_t j = lengths.size(); j > 0; --j) {
+    Band& finer = j == 1 ? band : scratch[j % 2];
+    finer.resize(lengths[j - 1]);
+    inverse_dwt(wavelet, boundary, low, high, finer);
+    low = finer;
+    high = {};
+  }
+}
+
+// a_(j-1) = a_j + d_j
+void add_details(Bands& bands, Index first, Index last) {
+  for (std::size_t j = bands.details.size() - 1; j > 0; --j) {
+    const double *coarse = bands.approximations[j].data(), *detail = bands.details[j].data();
+    double* const out = bands.approximations[j - 1].data();
+    for (Index i = first; i < last; ++i) out[i] = coarse[i] + detail[i];
+  }
+}
+
+void resize(Bands& bands, std::size_t levels, std::size_t n) {
+  for (auto* each : {&bands.approximations, &bands.details}) {
+    each->resize(levels);
+    for (Band& band : *each) band.resize(n);
+  }
+}
+
+Bands whole_bands(const Wavelet& wavelet, Boundary boundary, const Decomposition& parts) {
+  Bands bands;
+  resize(bands, parts.details.size(), parts.lengths[0]);
+  const std::span<const std::size_t> lengths(parts.lengths);
+  Scratch scratch;
+  to_full_length(wavelet, boundary, lengths, parts.approximation, {}, scratch,
+                 bands.approximations.back());
+  for (std::size_t j = 0; j < parts.details.size(); ++j)
+    to_full_length(wavelet, boundary, lengths.first(j + 1), {}, parts.details[j], scratch,
+                   bands.details[j]);
+  add_details(bands, 0, static_cast<Index>(parts.lengths[0]));
+  return bands;
+}
+
+// The bands of a long signal. Its ends are those of a short one, from whose middle `left_out_`
+// blocks of 2^L samples are missing; between them nothing knows of the boundary, and all bands of a
+// part are made while it is in the cache.
+class LongSignal {
+ public:
+  LongSignal(const Wavelet& wavelet, Boundary boundary, const Decomposition& parts)
+      : wavelet_(wavelet),
+        boundary_(boundary),
+        parts_(parts),
+        levels_(static_cast<Index>(parts.details.size())),
+        half_(wavelet.taps() / 2),
+        shift_(upsampling_shift(boundary, half_)),
+        end_(2 * half_ + 2),
+        left_out_((size() >> std::min(levels_, kMostLevels)) - 4 * end_) {}
+
+  [[nodiscard]] bool is_long() const { return size() >= 4 * kPart && left_out_ > 0; }
+
+  [[nodiscard]] Bands bands() const {
+    Bands out;
+    resize(out, static_cast<std::size_t>(levels_), static_cast<std::size_t>(size()));
+    // Behind the samples that know of an end, where pairs of samples begin.
+    const Index first = (end_ << levels_) + shift_ % 2;
+    const Index count = (size() - 2 * first) / 2 * 2;
+    copy_ends(first, first + count, out);
+    const Index tasks = (count + kTask - 1) / kTask;
+    parallel_for(static_cast<std::size_t>(tasks), [&](std::size_t task) {
+      Scratch scratch;
+      const Index begin = static_cast<Index>(task) * kTask, end = std::min(count, begin + kTask);
+      for (Index at = begin; at < end; at += kPart)
+        make_part(first + at, first + std::min(end, at + kPart), scratch, out);
+    });
+    return out;
+  }
+
+ private:
+  static constexpr Index kPart = 4096, kTask = 16 * kPart;  // samples
+  static constexpr Index kMostLevels = 32;  // of a signal of more samples than memory holds
+
+  [[nodiscard]] Index size() const { return static_cast<Index>(parts_.lengths[0]); }
+
+  // Without the blocks that are left out behind the first 2 end_, of one level.
+  [[nodiscard]] std::vector<double> shortened(std::span<const double> coefficients,
+                                              Index level) const {
+    const Index before = (2 * end_) << (levels_ - level), gap = left_out_ << (levels_ - level);
+    std::vector<double> out(coefficients.begin(), coefficients.begin() + before);
+    out.insert(out.end(), coefficients.begin() + before + gap, coefficients.end());
+    return out;
+  }
+
+  void copy_ends(Index first, Index last, Bands& out) const {
+    Decomposition parts;
+    parts.approximation = shortened(parts_.approximation, levels_);
+    for (Index j = 1; j <= levels_; ++j) {
+      parts.details.push_back(shortened(parts_.details[j - 1], j));
+      parts.lengths.push_back(parts_.lengths[j - 1] -
+                              static_cast<std::size_t>(left_out_ << (levels_ - j + 1)));
+    }
+    const Bands ends = whole_bands(wavelet_, boundary_, parts);
+    const auto copy = [&](const std::vector<Band>& from, std::vector<Band>& to) {
+      for (std::size_t j = 0; j < from.size(); ++j) {
+        std::copy_n(from[j].begin(), first, to[j].begin());
+        std::copy(from[j].end() - (size() - last), from[j].end(), to[j].begin() + last);
+      }
+    };
+    copy(ends.approximations, out.approximations);
+    copy(ends.details, out.details);
+  }
+
+  void make_part(Index first, Index last, Scratch& scratch, Bands& out) const {
+    restore(wavelet_.reconstruct_low, parts_.approximation, levels_, first, last, scratch,
+            out.approximations.back().data());
+    for (Index j = 1; j <= levels_; ++j)
+      restore(wavelet_.reconstruct_high, parts_.details[j - 1], j, first, last, scratch,
+              out.details[j - 1].data());
+    wide([&] { add_details(out, first, last); });
+  }
+
+  // Samples first ... last - 1 of the band that coefficients of a level make. Of level k - 1 the
+  // samples 2 i - shift and 2 i + 1 - shift need the coefficients i - half + 1 ... i of level k.
+  void restore(std::span<const double> filter, std::span<const double> coefficients, Index level,
+               Index first, Index last, Scratch& scratch, double* band) const {
+    std::array<Index, kMostLevels> from{first}, to{last};
+    for (Index k = 1; k <= level; ++k) {
+      from[k] = (from[k - 1] + shift_) / 2 - half_ + 1;
+      to[k] = (to[k - 1] - 1 + shift_) / 2 + 1;
+    }
+    const double* c = coefficients.data() + from[level];
+    for (Index k = level; k > 0; --k) {
+      const Index pair = from[k] + half_ - 1, count = to[k] - pair, begin = 2 * pair - shift_;
+      double* made = band + first;
+      if (k > 1) {
+        scratch[k % 2].resize(static_cast<std::size_t>(2 * count));
+        made = scratch[k % 2].data();
+      }
+      wide([&] { fill_pairs<false>(filter, c + half_ - 1, count, made); });
+      c = made + (from[k - 1] - begin);
+      filter = wavelet_.reconstruct_low;
+    }
+  }
+
+  const Wavelet& wavelet_;
+  Boundary boundary_;
+  const Decomposition& parts_;
+  Index levels_, half_, shift_;
+  Index end_;       // blocks of 2^L samples that know of an end
+  Index left_out_;  // blocks
+};
+
+}  // namespace
+
+Bands reconstruct_bands(const Wavelet& wavelet, Boundary boundary, int levels,
+                        std::span<const double> signal) {
+  const Decomposition parts = decompose(wavelet, boundary, levels, signal);
+  if (parts.details.empty()) return {};
+  const LongSignal long_signal(wavelet, boundary, parts);
+  return long_signal.is_long() ? long_signal.bands() : whole_bands(wavelet, boundary, parts);
+}
+
+}  // namespace slideway
