@@ -1,12 +1,12 @@
 #include "slideway/identify/identify.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
 
 #include "closure_summary.hpp"
+#include "slideway/base/statistics.hpp"
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/ranking.hpp"
@@ -45,14 +45,13 @@ InputSummary summarise_input(const Profile& profile) {
   out.outliers = largest_outliers(profile);
   out.position_min_mm = profile.positions.front();
   out.position_max_mm = profile.positions.back();
-  const Eigen::Map<const Eigen::ArrayXd> values(profile.values.data(), std::ssize(profile.values));
-  const double rms = std::sqrt((values - values.mean()).square().mean());
-  const double spread = values.maxCoeff() - values.minCoeff();
+  const Statistics values = statistics_of(profile.values);
+  const double spread = values.largest - values.least;
   if (profile.setup.quantity == Quantity::height) {
-    out.rms_um = rms / kMicrometre;
+    out.rms_um = values.deviation / kMicrometre;
     out.pv_um = spread / kMicrometre;
   } else {
-    out.rms_urad = rms * 1e6;
+    out.rms_urad = values.deviation * 1e6;
     out.pv_urad = spread * 1e6;
   }
   out.notes = profile.notes;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <functional>
 
+#include "slideway/signal/lagged_products.hpp"
+
 namespace slideway {
 namespace {
 
@@ -35,9 +37,7 @@ class LaggedProducts {
       : head_(columns.topRows(max_order)) {
     const Eigen::Index n = columns.rows();
     products_.assign(max_order + 1, std::vector<Eigen::MatrixXd>(max_order + 1));
-    for (int b = 0; b <= max_order; ++b)
-      products_[0][b] = columns.bottomRows(n - max_order).transpose() *
-                        columns.middleRows(max_order - b, n - max_order);
+    products_[0] = lagged_grams(columns, max_order);
     for (int a = 1; a <= max_order; ++a)
       for (int b = a; b <= max_order; ++b)
         products_[a][b] = products_[a - 1][b - 1] +

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/base/wide.hpp"
 
 namespace slideway {
 namespace {
@@ -65,20 +67,26 @@ Conversion conversion(const ProfileSource& source, const TracePart& part, const 
 
 bool PlainSamples::convert(const Conversion& convert, std::span<const double> positions,
                            std::span<const double> values, double last, bool upwards) {
-  double largest = 0.0, missing = 0.0;
-  for (std::size_t i = 0; i < kCount; ++i) {
-    positions_[i] = convert.to_mm(convert.position(positions[i]));
-    values_[i] = convert.value(values[i]);
-  }
-  for (std::size_t i = 0; i < kCount; ++i) {
-    largest = std::max({largest, std::abs(positions_[i]), std::abs(values_[i])});
-    missing += values_[i] - values_[i];  // NaN if one is
-  }
   const double sign = upwards ? 1.0 : -1.0;
-  double least = sign * (positions_[0] - last);
-  for (std::size_t i = 1; i < kCount; ++i)
-    least = std::min(least, sign * (positions_[i] - positions_[i - 1]));
-  return largest <= kLargest && least > 0.0 && missing == 0.0;
+  std::uint64_t plain = sign * (convert.to_mm(convert.position(positions[0])) - last) > 0.0;
+  wide([&] {
+    scaled(convert.position, positions.data(), positions_);
+    scaled(convert.to_mm, positions_.data(), positions_);
+    scaled(convert.value, values.data(), values_);
+    for (std::size_t i = 0; i < kCount; ++i)  // not of NaN, which stands for a missing value
+      plain += (std::abs(positions_[i]) <= kLargest) & (std::abs(values_[i]) <= kLargest);
+    for (std::size_t i = 1; i < kCount; ++i)
+      plain += sign * (positions_[i] - positions_[i - 1]) > 0.0;
+  });
+  return plain == 2 * kCount;
+}
+
+void PlainSamples::scaled(const UnitScale& scale, const double* from, Samples& to) {
+  if (scale.factor == 1.0 && scale.divisor == 1.0) {
+    if (from != to.data()) std::copy_n(from, kCount, to.begin());
+  } else {
+    for (std::size_t i = 0; i < kCount; ++i) to[i] = scale(from[i]);
+  }
 }
 
 Intake::Intake(const ProfileSource& source, Profile& profile)

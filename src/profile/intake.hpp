@@ -34,7 +34,10 @@ class PlainSamples {
   [[nodiscard]] std::span<const double> values() const { return values_; }
 
  private:
-  std::array<double, kCount> positions_, values_;
+  using Samples = std::array<double, kCount>;
+  static void scaled(const UnitScale& scale, const double* from, Samples& to);
+
+  Samples positions_, values_;
 };
 
 // The points of a file on their way into a profile, in the file's order: those inside the window

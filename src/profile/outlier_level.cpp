@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "slideway/base/parallel.hpp"
+#include "slideway/base/wide.hpp"
 
 namespace slideway {
 namespace {
@@ -78,20 +79,33 @@ void Level::find_errors() {
       if (judged(i)) errors[i] = uneven_error(i) - middle;
 }
 
+// How many errors are larger, of even steps.
+std::uint64_t Level::count_above(double least, std::size_t from, std::size_t to) const {
+  const auto d = static_cast<std::ptrdiff_t>(lag);
+  const double* const z = values.data();
+  const auto count_of = [&, about = middle](auto&& error_at) {
+    std::uint64_t count = 0;
+    for (std::size_t i = from; i < to; ++i) count += std::abs(error_at(z + i, d) - about) > least;
+    return count;
+  };
+  std::uint64_t count = 0;
+  wide([&] { count = cubic ? count_of(cubic_error) : count_of(linear_error); });
+  return count;
+}
+
 // Whether any error is larger.
 bool Level::any_above(double least) const {
   const std::size_t first = outermost(), last = values.size() - first;
   std::vector<char> above(parts_of(last - first));
   parallel_for(above.size(), [&](std::size_t part) {
     const std::size_t from = first + part * kPart, to = std::min(last, from + kPart);
-    double largest = 0.0;
+    std::uint64_t count = 0;
     if (uniform)
-      for (std::size_t i = from; i < to; ++i)
-        largest = std::max(largest, std::abs(even_error(i) - middle));
+      count = count_above(least, from, to);
     else
       for (std::size_t i = from; i < to; ++i)
-        if (judged(i)) largest = std::max(largest, std::abs(uneven_error(i) - middle));
-    above[part] = largest > least;
+        count += judged(i) && std::abs(uneven_error(i) - middle) > least;
+    above[part] = count > 0;
   });
   return std::ranges::find(above, 1) != above.end();
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -42,14 +43,19 @@ struct Level {
     return uniform ? even_error(i) : uneven_error(i);
   }
   [[nodiscard]] double even_error(std::size_t i) const {
-    const double* z = values.data() + i;
     const auto d = static_cast<std::ptrdiff_t>(lag);
-    return cubic ? z[0] - (2.0 / 3.0) * (z[-d] + z[d]) + (1.0 / 6.0) * (z[-2 * d] + z[2 * d])
-                 : z[0] - 0.5 * (z[-d] + z[d]);
+    return cubic ? cubic_error(&values[i], d) : linear_error(&values[i], d);
+  }
+  static double cubic_error(const double* z, std::ptrdiff_t d) {
+    return z[0] - (2.0 / 3.0) * (z[-d] + z[d]) + (1.0 / 6.0) * (z[-2 * d] + z[2 * d]);
+  }
+  static double linear_error(const double* z, std::ptrdiff_t d) {
+    return z[0] - 0.5 * (z[-d] + z[d]);
   }
   [[nodiscard]] double uneven_error(std::size_t i) const;
   void find_scale();
   void find_errors();
+  [[nodiscard]] std::uint64_t count_above(double least, std::size_t from, std::size_t to) const;
   [[nodiscard]] bool any_above(double least) const;
   [[nodiscard]] double scale_of(std::vector<double>& part) const;
   [[nodiscard]] double scale_at(std::size_t i, double limit) const;

@@ -1,6 +1,5 @@
 #include "slideway/profile/profile.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -9,6 +8,7 @@
 #include "intake.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
+#include "slideway/base/statistics.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/profile/given.hpp"
 
@@ -39,8 +39,8 @@ void complete_cut_radius(const std::string& name, Setup& setup) {
 // Sizes that nobody turns or measures with: a unit or a digit is more likely wrong.
 void note_blunders(Profile& profile) {
   const Setup& setup = profile.setup;
-  const Eigen::Map<const Eigen::ArrayXd> heights(profile.values.data(), std::ssize(profile.values));
-  const double range = heights.maxCoeff() - heights.minCoeff();
+  const Statistics values = statistics_of(profile.values);
+  const double range = values.largest - values.least;
   constexpr double kLargestRange = 1.0, kLargestFeed = 10000.0, kLargestSpeed = 1e5;
   if (setup.quantity == Quantity::height && range > kLargestRange)
     profile.notes.push_back("heights range over " + significant(range, 3) +

@@ -9,6 +9,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "slideway/base/distribution.hpp"
+#include "slideway/signal/lagged_products.hpp"
 
 namespace slideway {
 namespace {
@@ -83,8 +84,8 @@ struct RunningSums {
   Eigen::VectorXd sum, squares;
 };
 
-double lagged_product(const Eigen::VectorXd& d, Eigen::Index lag) {
-  return d.head(d.size() - lag).dot(d.tail(d.size() - lag));
+std::span<const double> view(const Eigen::VectorXd& d) {
+  return {d.data(), static_cast<std::size_t>(d.size())};
 }
 
 // The next size whose transform is quick: a product of 2, 3 and 5.
@@ -158,6 +159,10 @@ Lag best_lag(std::span<const double> x, std::span<const double> y, int max_lag) 
   const RunningSums x_sums(dx);
   const RunningSums y_sums(dy);
   constexpr double kNothing = 1e-12;  // of the whole: cancellation, not variation
+  if (n < 3) return {};
+  const Eigen::Index most = std::min<Eigen::Index>(max_lag, n - 3);
+  const std::vector<double> products =
+      lagged_products(view(dx), view(dy), -most, static_cast<std::size_t>(2 * most + 1));
 
   const auto coefficient = [&](Eigen::Index lag) {
     const Eigen::Index size = n - std::abs(lag);
@@ -171,13 +176,12 @@ Lag best_lag(std::span<const double> x, std::span<const double> y, int max_lag) 
     const double yy =
         y_sums.squares[from_y + size] - y_sums.squares[from_y] - sum_y * sum_y / count;
     if (xx <= kNothing * x_sums.squares[n] || yy <= kNothing * y_sums.squares[n]) return 0.0;
-    const double xy = dx.segment(from_x, size).dot(dy.segment(from_y, size));
-    return std::clamp((xy - sum_x * sum_y / count) / std::sqrt(xx) / std::sqrt(yy), -1.0, 1.0);
+    return std::clamp(
+        (products[lag + most] - sum_x * sum_y / count) / std::sqrt(xx) / std::sqrt(yy), -1.0, 1.0);
   };
 
-  if (n < 3) return {};
   Lag best{0, coefficient(0)};
-  for (int lag = 1; lag <= std::min<Eigen::Index>(max_lag, n - 3); ++lag)
+  for (int lag = 1; lag <= most; ++lag)
     for (const int signed_lag : {lag, -lag}) {
       const double r = coefficient(signed_lag);
       if (std::abs(r) > std::abs(best.coefficient) + kNothing) best = {signed_lag, r};
@@ -190,9 +194,10 @@ std::vector<double> autocorrelation(std::span<const double> x, int max_lag) {
   std::vector<double> r(static_cast<std::size_t>(max_lag) + 1, 0.0);
   r[0] = 1.0;
   const double variance = d.squaredNorm();
-  if (variance > 0.0)
-    for (Eigen::Index k = 1; k <= std::min<Eigen::Index>(max_lag, d.size() - 1); ++k)
-      r[k] = lagged_product(d, k) / variance;
+  const std::size_t lags = std::min(r.size(), x.size());
+  if (!(variance > 0.0)) return r;
+  const std::vector<double> products = lagged_products(view(d), view(d), 0, lags);
+  for (std::size_t k = 1; k < lags; ++k) r[k] = products[k] / variance;
   return r;
 }
 
@@ -202,12 +207,14 @@ double effective_observations(std::span<const double> x, std::span<const double>
   const double scale = dx.squaredNorm() * dy.squaredNorm();
   const auto n = static_cast<double>(dx.size());
   constexpr Eigen::Index kDirect = 32;  // few lags are cheaper than a transform
+  const std::vector<double> first_x = lagged_products(view(dx), view(dx), 0, kDirect);
+  const std::vector<double> first_y = lagged_products(view(dy), view(dy), 0, kDirect);
   std::vector<std::complex<double>> products;
   double sum = 0.0;
   for (Eigen::Index k = 1; k < dx.size() && scale > 0.0; ++k) {
     if (k == kDirect) products = all_lagged_products(dx, dy);
-    const double product = k < kDirect ? lagged_product(dx, k) * lagged_product(dy, k)
-                                       : products[k].real() * products[k].imag();
+    const double product =
+        k < kDirect ? first_x[k] * first_y[k] : products[k].real() * products[k].imag();
     if (product <= 0.0) break;
     sum += (1.0 - static_cast<double>(k) / n) * product / scale;
   }

@@ -6,7 +6,9 @@
 #include <cstdint>
 
 #include "slideway/base/error.hpp"
+#include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/base/wide.hpp"
 
 namespace slideway {
 namespace {
@@ -35,24 +37,28 @@ void check_size(const LowBandOptions& options, std::size_t samples) {
 
 // Whether the steps are all the same. A trace that turns back or stands still has no grid.
 bool is_uniform(std::span<const double> positions) {
-  const double mean = mean_step(positions);
-  const auto n = std::ssize(positions) - 1;
-  const Eigen::Map<const Eigen::ArrayXd> before(positions.data(), n),
-      after(positions.data() + 1, n);
-  const double least = (after - before).minCoeff<Eigen::PropagateNaN>();
-  const double most = (after - before).maxCoeff<Eigen::PropagateNaN>();
-  if (least * mean > 0.0 && most * mean > 0.0)
-    return std::max(std::abs(least - mean), std::abs(most - mean)) <= kUniform * std::abs(mean);
-  bool uniform = true;
+  constexpr std::size_t kPart = 1 << 16;
+  const double mean = mean_step(positions), most = kUniform * std::abs(mean);
+  std::vector<char> uniform_part((positions.size() + kPart - 2) / kPart);
+  parallel_for(uniform_part.size(), [&](std::size_t part) {
+    const std::size_t first = part * kPart + 1;
+    const std::size_t last = std::min(positions.size(), first + kPart);
+    std::uint64_t uniform = 0;
+    wide([&] {
+      for (std::size_t i = first; i < last; ++i)
+        uniform += std::abs(positions[i] - positions[i - 1] - mean) <= most;
+    });
+    uniform_part[part] = uniform == last - first;
+  });
+  if (mean != 0.0 && std::ranges::find(uniform_part, 0) == uniform_part.end()) return true;
   for (std::size_t i = 1; i < positions.size(); ++i) {
     const double step = positions[i] - positions[i - 1];
     if (!(step * mean > 0.0))
       throw DataError("low band: position " + shortest(positions[i]) + " mm of sample " +
                       std::to_string(i + 1) + " after " + shortest(positions[i - 1]) +
                       " mm; accepted: positions that only rise or only fall");
-    uniform = uniform && std::abs(step - mean) <= kUniform * std::abs(mean);
   }
-  return uniform;
+  return false;
 }
 
 // Samples of the uniform grid: one per median step where every step is a multiple of that, so that

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+
+namespace slideway {
+
+struct Statistics {
+  double mean = 0.0;
+  double deviation = 0.0;  // rms about the mean
+  double least = 0.0, largest = 0.0;
+};
+
+/// Of numbers of any size and count, in parts whose moments are combined (Chan, Golub and LeVeque
+/// 1983). REQUIRES at least one.
+Statistics statistics_of(std::span<const double> values);
+
+}  // namespace slideway

@@ -1,0 +1,61 @@
+#include "slideway/base/statistics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "slideway/base/parallel.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::size_t kPart = 1 << 15;  // values that stay in the cache
+constexpr std::size_t kLanes = 4;       // independent sums
+
+struct Part {
+  double count = 0.0, mean = 0.0, squares = 0.0;  // about the mean
+  double least = INFINITY, largest = -INFINITY;
+};
+
+template <typename Term>
+double sum_of(std::span<const double> values, Term&& term) {
+  std::array<double, kLanes> sums{};
+  std::size_t i = 0;
+  for (; i + kLanes <= values.size(); i += kLanes)
+    for (std::size_t k = 0; k < kLanes; ++k) sums[k] += term(values[i + k]);
+  for (; i < values.size(); ++i) sums[0] += term(values[i]);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+Part part_of(std::span<const double> values) {
+  Part out{static_cast<double>(values.size())};
+  const double first = values[0];  // what is counted from it keeps its digits
+  out.mean = first + sum_of(values, [&](double v) { return v - first; }) / out.count;
+  out.squares = sum_of(values, [&](double v) { return (v - out.mean) * (v - out.mean); });
+  for (const double value : values) {
+    out.least = std::min(out.least, value);
+    out.largest = std::max(out.largest, value);
+  }
+  return out;
+}
+
+Part combined(const Part& a, const Part& b) {
+  const double count = a.count + b.count, step = b.mean - a.mean, share = b.count / count;
+  return {count, a.mean + share * step, a.squares + b.squares + a.count * share * step * step,
+          std::min(a.least, b.least), std::max(a.largest, b.largest)};
+}
+
+}  // namespace
+
+Statistics statistics_of(std::span<const double> values) {
+  std::vector<Part> parts((values.size() + kPart - 1) / kPart);
+  parallel_for(parts.size(), [&](std::size_t p) {
+    parts[p] = part_of(values.subspan(p * kPart, std::min(kPart, values.size() - p * kPart)));
+  });
+  Part all = parts[0];
+  for (std::size_t p = 1; p < parts.size(); ++p) all = combined(all, parts[p]);
+  return {all.mean, std::sqrt(all.squares / all.count), all.least, all.largest};
+}
+
+}  // namespace slideway

@@ -1,0 +1,123 @@
+#include "slideway/signal/lagged_products.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "slideway/base/parallel.hpp"
+#include "slideway/base/wide.hpp"
+
+namespace slideway {
+namespace {
+
+using Index = std::ptrdiff_t;
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+constexpr Index kLags = 8;  // at once
+
+// out[l] += Σ x_t y_(t+l), t < count
+void add_products(const double* x, const double* y, Index count, double* out) {
+  std::array<double, kLags> sums{};
+  for (Index t = 0; t < count; ++t)
+    for (Index l = 0; l < kLags; ++l) sums[l] += x[t] * y[t + l];
+  for (Index l = 0; l < kLags; ++l) out[l] += sums[l];
+}
+
+double product(std::span<const double> x, std::span<const double> y, Index lag, Index from,
+               Index to) {
+  double sum = 0.0;
+  for (Index t = from; t < to; ++t) sum += x[t] * y[t + lag];
+  return sum;
+}
+
+// Sums of a block of rows, tile by tile: what a tile adds up stays in the registers.
+class LaggedGrams {
+ public:
+  LaggedGrams(const Eigen::MatrixXd& rows, Index most_lag)
+      : rows_(rows),
+        most_lag_(most_lag),
+        width_((rows.cols() + kTile - 1) / kTile * kTile),
+        block_(RowMajor::Zero(kRows + most_lag, width_)),
+        sums_(static_cast<std::size_t>(most_lag) + 1, RowMajor::Zero(width_, width_)) {}
+
+  // The products of rows first ... last - 1 with those before them.
+  void add(Index first, Index last) {
+    for (; first < last; first += kRows) {
+      const Index count = std::min(kRows, last - first);
+      block_.topLeftCorner(count + most_lag_, rows_.cols()) =
+          rows_.middleRows(first - most_lag_, count + most_lag_);
+      const double* now = block_.row(most_lag_).data();
+      wide([&] {
+        for (Index lag = 0; lag <= most_lag_; ++lag)
+          for (Index i = 0; i < width_; i += kTile)
+            for (Index j = 0; j < width_; j += kTile)
+              add_tile(now + i, now - lag * width_ + j, count, sums_[lag].data() + i * width_ + j);
+      });
+    }
+  }
+
+  [[nodiscard]] Eigen::MatrixXd sum(Index lag) const {
+    return sums_[lag].topLeftCorner(rows_.cols(), rows_.cols());
+  }
+
+ private:
+  static constexpr Index kRows = 256;  // that stay in the cache
+  static constexpr Index kTile = 4;
+
+  void add_tile(const double* left, const double* right, Index count, double* out) const {
+    double sums[kTile][kTile] = {};
+    for (Index t = 0; t < count; ++t, left += width_, right += width_)
+      for (Index i = 0; i < kTile; ++i)
+        for (Index j = 0; j < kTile; ++j) sums[i][j] += left[i] * right[j];
+    for (Index i = 0; i < kTile; ++i)
+      for (Index j = 0; j < kTile; ++j) out[i * width_ + j] += sums[i][j];
+  }
+
+  const Eigen::MatrixXd& rows_;
+  Index most_lag_, width_;
+  RowMajor block_;
+  std::vector<RowMajor> sums_;
+};
+
+}  // namespace
+
+std::vector<double> lagged_products(std::span<const double> x, std::span<const double> y,
+                                    Index first, std::size_t count) {
+  constexpr Index kChunk = 4096;  // samples that stay in the cache for all lags
+  const Index n = std::ssize(x), lags = static_cast<Index>(count);
+  std::vector<double> out((count + kLags - 1) / kLags * kLags);
+  const auto from = [](Index lag) { return std::max<Index>(0, -lag); };
+  const auto to = [n](Index lag) { return std::max<Index>(0, std::min(n, n - lag)); };
+  // What all lags at once have, chunk by chunk; then what is left of each.
+  for (Index chunk = 0; chunk < n; chunk += kChunk)
+    for (Index l = 0; l < lags; l += kLags) {
+      const Index begin = std::max(chunk, from(first + l));
+      const Index end = std::min(chunk + kChunk, to(first + l + kLags - 1));
+      if (end > begin) add_products(&x[begin], &y[begin + first + l], end - begin, &out[l]);
+    }
+  for (Index l = 0; l < lags; ++l) {
+    const Index lag = first + l, group = first + l / kLags * kLags;
+    const Index begin = from(group), end = std::max(begin, to(group + kLags - 1));
+    out[l] += product(x, y, lag, from(lag), std::min(begin, to(lag))) +
+              product(x, y, lag, std::max(end, from(lag)), to(lag));
+  }
+  out.resize(count);
+  return out;
+}
+
+std::vector<Eigen::MatrixXd> lagged_grams(const Eigen::MatrixXd& rows, Eigen::Index most_lag) {
+  constexpr Index kPart = 1 << 14;  // rows that are worth a thread
+  const Index parts = std::max<Index>(1, (rows.rows() - most_lag + kPart - 1) / kPart);
+  std::vector<LaggedGrams> grams(static_cast<std::size_t>(parts), LaggedGrams(rows, most_lag));
+  parallel_for(grams.size(), [&](std::size_t part) {
+    const Index first = most_lag + static_cast<Index>(part) * kPart;
+    grams[part].add(first, std::min(rows.rows(), first + kPart));
+  });
+  std::vector<Eigen::MatrixXd> out;
+  for (Index lag = 0; lag <= most_lag; ++lag) {
+    out.push_back(grams[0].sum(lag));
+    for (std::size_t part = 1; part < grams.size(); ++part) out.back() += grams[part].sum(lag);
+  }
+  return out;
+}
+
+}  // namespace slideway
