@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
+#include "slideway/base/wide.hpp"
 #include "slideway/effects/effect.hpp"
 
 namespace slideway {
@@ -35,6 +36,12 @@ CarriageReading carriage_reading(const Stations& stations, int body, double pitc
 
 // False for the slope of a face: no instrument of the project reads it.
 bool sees_carriage(const Setup& setup);
+
+// out = a b + c d
+inline void sum_of_products(const double* a, const double* b, const double* c, const double* d,
+                            Eigen::Index count, double* out) {
+  for (Eigen::Index i = 0; i < count; ++i) out[i] = b[i] * a[i] + d[i] * c[i];
+}
 
 // Fills `out` with what every kind of reading shows of the loci `basis(x, value, slope)`, which
 // sets a column of f_j(x) and one of f_j'(x) for each column of out, and for `unused` before the
@@ -76,8 +83,11 @@ void fill_from_locus(const Stations& stations, const CarriageReading& reading, B
     } else {
       const Eigen::ArrayXd height = along(reading.height, r);
       const Eigen::ArrayXd pitch = along(reading.pitch, r) * ratio;
-      rows = value.rightCols(out.cols()).colwise() * height +
-             slope.rightCols(out.cols()).colwise() * pitch;
+      wide([&] {
+        for (Eigen::Index j = 0; j < out.cols(); ++j)
+          sum_of_products(height.data(), value.col(unused + j).data(), pitch.data(),
+                          slope.col(unused + j).data(), count, out.col(j).data() + first);
+      });
     }
   }
 }

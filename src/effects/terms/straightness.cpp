@@ -6,6 +6,7 @@
 #include "../linear_effect.hpp"
 #include "../locus.hpp"
 #include "../request.hpp"
+#include "slideway/base/wide.hpp"
 
 namespace slideway {
 namespace {
@@ -95,16 +96,14 @@ class Straightness : public LinearEffect {
                Eigen::Ref<Eigen::MatrixXd> out) const override {
     const auto legendre = [this](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value,
                                  Eigen::ArrayXXd& slope) {
-      const Eigen::ArrayXd u = (x - interval_.centre) / interval_.half;
       value.col(0) = 1.0;
       slope.col(0) = 0.0;
       if (value.cols() == 1) return;
-      value.col(1) = u;
+      value.col(1) = (x - interval_.centre) / interval_.half;
       slope.col(1) = rise_[0];
-      for (Eigen::Index k = 1; k + 1 < value.cols(); ++k) {
-        value.col(k + 1) = ahead_[k] * u * value.col(k) - back_[k] * value.col(k - 1);
-        slope.col(k + 1) = slope.col(k - 1) + rise_[k] * value.col(k);
-      }
+      wide([&] {
+        for (Eigen::Index k = 1; k + 1 < value.cols(); ++k) add_degree(k, value, slope);
+      });
     };
     fill_from_locus(stations, carriage_reading(stations, body_, 1.0), legendre, out, first_);
   }
@@ -120,6 +119,18 @@ class Straightness : public LinearEffect {
   }
 
  private:
+  // Column k + 1 of P_k(u) and of its derivative by x, from those before; u is column 1.
+  void add_degree(Eigen::Index k, Eigen::ArrayXXd& value, Eigen::ArrayXXd& slope) const {
+    const double ahead = ahead_[k], back = back_[k], rise = rise_[k];
+    const double *const u = value.col(1).data(), *const now = value.col(k).data();
+    const double *const before = value.col(k - 1).data(), *const sloped = slope.col(k - 1).data();
+    double *const next = value.col(k + 1).data(), *const slopes = slope.col(k + 1).data();
+    for (Eigen::Index i = 0; i < value.rows(); ++i) {
+      next[i] = ahead * u[i] * now[i] - back * before[i];
+      slopes[i] = sloped[i] + rise * now[i];
+    }
+  }
+
   int body_;
   int first_;
   Interval interval_;
