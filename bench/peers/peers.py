@@ -1,6 +1,6 @@
 """slideway beside PyWavelets, NumPy, SciPy, pandas and lmfit, in one run: peers.py BIN OUT.md
-[LARGEST]. Both sides are held against one another before any time is taken. Times are processor
-time (user and system, all threads), of several runs the median; ratios above 1 are ours."""
+[LARGEST]. Both sides are held against one another before any time is taken. Times are elapsed time,
+of several runs the median, so the machine must have nothing else to do; ratios above 1 are ours."""
 import json
 import os
 import pathlib
@@ -32,17 +32,17 @@ def repetitions(n):
 
 
 def timed(n, work):
-    """Median processor time of work(), s"""
+    """Median time of work(), s"""
     times = []
     for _ in range(repetitions(n)):
-        start = time.process_time()
+        start = time.perf_counter()
         work()
-        times.append(time.process_time() - start)
+        times.append(time.perf_counter() - start)
     return statistics.median(times)
 
 
 def run_timed(n, command):
-    """(median processor time in s, smallest wall time in s, largest memory in MB) of a process"""
+    """(median time in s, median processor time in s, largest memory in MB) of a process"""
     processor, wall, memory = [], [], 0
     for _ in range(repetitions(n)):
         start = time.perf_counter()
@@ -52,11 +52,11 @@ def run_timed(n, command):
         assert status == 0, command
         processor.append(usage.ru_utime + usage.ru_stime)
         memory = max(memory, usage.ru_maxrss / 1024)
-    return statistics.median(processor), min(wall), memory
+    return statistics.median(wall), statistics.median(processor), memory
 
 
 def ours(program, benchmark):
-    """{name: median processor time in s} of a benchmark program at the sizes of this run"""
+    """{name: median time in s} of a benchmark program at the sizes of this run"""
     pattern = f"{benchmark}/(.*/)?({'|'.join(map(str, SIZES))})/process_time"
     out = subprocess.run(
         [BIN / program, f"--benchmark_filter={pattern}", "--benchmark_format=json",
@@ -64,7 +64,7 @@ def ours(program, benchmark):
         check=True, capture_output=True, text=True)  # fmt: skip
     unit = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3}
     return {
-        re.sub("/(process_time|real_time)", "", b["run_name"]): b["cpu_time"] * unit[b["time_unit"]]
+        re.sub("/(process_time|real_time)", "", b["run_name"]): b["real_time"] * unit[b["time_unit"]]
         for b in json.loads(out.stdout)["benchmarks"]
         if b.get("aggregate_name") == "median"
     }
@@ -138,24 +138,24 @@ def wavelets():
 
 def tables():
     mine = ours("table_bench", "BM_ReadTable")
-    lines = []
+    size = {n: BENCH_BYTES(n) for n in SIZES}
     for n in SIZES:
         _, path = profile(n)
-        size = os.path.getsize(path) / 1e6
+        share = os.path.getsize(path) / size[n]
         for peer, read in {
             "numpy.loadtxt": lambda: np.loadtxt(path, delimiter=",", skiprows=1),
             "pandas": lambda: pandas.read_csv(path),
             "pandas, round_trip": lambda: pandas.read_csv(path, float_precision="round_trip"),
         }.items():
-            bench = mine[f"BM_ReadTable/{n}"] * size * 1e6 / BENCH_BYTES(n)
-            add("CSV, two columns (per byte)", n, peer, timed(n, read), bench, "faster")
-        lines.append((n, BENCH_BYTES(n) / mine[f"BM_ReadTable/{n}"] / 1e6))
-    return lines
+            add("CSV, two columns (per byte)", n, peer, timed(n, read),
+                mine[f"BM_ReadTable/two_threads/{n}"] * share, "faster")  # fmt: skip
+    return [(name, {n: size[n] / mine[f"BM_ReadTable/{name}/{n}"] / 1e6 for n in SIZES})
+            for name in ("one_thread", "two_threads")]  # fmt: skip
 
 
 def BENCH_BYTES(n):
     """what bench/table_bench.cpp writes for n rows, by its label"""
-    out = subprocess.run([BIN / "table_bench", f"--benchmark_filter=BM_ReadTable/{n}/",
+    out = subprocess.run([BIN / "table_bench", f"--benchmark_filter=BM_ReadTable/two_threads/{n}/",
                           "--benchmark_format=json", "--benchmark_min_time=0.001"],
                          check=True, capture_output=True, text=True)  # fmt: skip
     bench = json.loads(out.stdout)["benchmarks"][0]
@@ -219,8 +219,8 @@ def whole_jobs():
     limit = {20_000: ">= 20", 1_000_000: ">= 12", 10_000_000: ">= 12"}
     for n in SIZES:
         problem, path = profile(n)
-        mine, wall, memory = run_timed(n, [BIN / "slideway", "identify", problem, "--no-trace"])
-        lines.append((n, mine, wall, memory))
+        mine, processor, memory = run_timed(n, [BIN / "slideway", "identify", problem, "--no-trace"])
+        lines.append((n, mine, processor, memory))
         for peer in ("loadtxt", "pandas"):
             theirs, *_ = run_timed(n, [sys.executable, HERE / "job.py", path, peer])
             add("whole identify --no-trace", n, f"job.py, {peer}", theirs, mine, limit[n])
@@ -247,13 +247,13 @@ def main():
         for stage, n, peer, theirs, mine, ratio, wanted in rows:
             print(f"| {stage} | {n:.0e} | {peer} | {theirs:.3g} | {mine:.3g} | {ratio:.1f} | "
                   f"{wanted} |", file=out)  # fmt: skip
-        print("\n| whole job, N | processor time, s | smallest wall time, s | memory, MB |\n"
-              "|---|---|---|---|", file=out)  # fmt: skip
-        for n, mine, wall, memory in whole:
-            print(f"| {n:.0e} | {mine:.3g} | {wall:.3g} | {memory:.0f} |", file=out)
-        print("\n| CSV with checksum, N | MB/s of processor time |\n|---|---|", file=out)
-        for n, rate in csv:
-            print(f"| {n:.0e} | {rate:.0f} |", file=out)
+        print("\n| whole job, N | s | processor time, s | memory, MB |\n|---|---|---|---|", file=out)
+        for n, mine, processor, memory in whole:
+            print(f"| {n:.0e} | {mine:.3g} | {processor:.3g} | {memory:.0f} |", file=out)
+        print("\n| CSV, MB/s |", *(f"{n:.0e} |" for n in SIZES), file=out)
+        print("|---|" + "---|" * len(SIZES), file=out)
+        for name, rates in csv:
+            print(f"| {name} |", *(f"{rates[n]:.0f} |" for n in SIZES), file=out)
 
 
 main()
