@@ -12,7 +12,7 @@ namespace slideway {
 namespace {
 
 constexpr int kMaxOrder = 6;
-constexpr Eigen::Index kValuesPerOrder = 10;  // residual values asked for per AR coefficient
+constexpr int kValuesPerOrder = 10;    // residual values asked for per AR coefficient
 constexpr double kRefuted = 10.0;      // likelihood gain (as -2 ln) that overrules a declaration
 constexpr double kLargestAtanh = 5.0;  // |π| < 0.9999: a hum sampled finely comes close to 1
 
@@ -235,6 +235,16 @@ Noise white(double deviation) {
   return noise;
 }
 
+/// Values of a residual beyond what the columns take.
+int spare(const LinearProfile& profile) {
+  return static_cast<int>(std::max<Eigen::Index>(
+      profile.residual.size() - profile.nuisances.cols() - profile.columns.cols(), 1));
+}
+
+double white_variance(const LinearProfile& profile) {
+  return profile.residual.squaredNorm() / spare(profile);
+}
+
 /// State of the estimation: noise parameters of each profile and the information they give.
 class Estimator {
  public:
@@ -263,9 +273,7 @@ class Estimator {
   void start(std::size_t i) {
     const LinearProfile& profile = profiles_[i];
     const Eigen::Index n = profile.residual.size();
-    const Eigen::Index spare = n - profile.nuisances.cols() - profile.columns.cols();
-    const int most =
-        static_cast<int>(std::clamp<Eigen::Index>(spare / kValuesPerOrder - 1, 0, kMaxOrder));
+    const int most = std::clamp(spare(profile) / kValuesPerOrder - 1, 0, kMaxOrder);
     std::vector<double> partial =
         Autoregression::burg({profile.residual.data(), static_cast<std::size_t>(n)}, most);
     partial.resize(order_by_bic(partial, n));
@@ -275,9 +283,8 @@ class Estimator {
     likelihood_.emplace_back(profile, static_cast<int>(partial.size()));
     Eigen::VectorXd x(partial.size() + 1);
     for (std::size_t j = 0; j < partial.size(); ++j) x[j] = std::atanh(partial[j]);
-    const double variance =
-        profile.residual.squaredNorm() / static_cast<double>(std::max<Eigen::Index>(spare, 1));
-    x[x.size() - 1] = 0.5 * std::log(variance / Autoregression(partial).variance_ratio());
+    x[x.size() - 1] =
+        0.5 * std::log(white_variance(profile) / Autoregression(partial).variance_ratio());
     parameters_[i] = x;
     information_[i] = likelihood_[i].information(x, nullptr);
   }
@@ -303,13 +310,16 @@ class Estimator {
 
   [[nodiscard]] Noise conclude(std::size_t i) const {
     Noise noise = make_noise(parameters_[i]);
-    if (noise.correlation.order() > 0 && noise.correlation.long_run_ratio() < 1.0)
-      noise = white(noise.standard_deviation());
-    const Eigen::Index d = noise.correlation.order() + 1;
     const Eigen::MatrixXd rest = others(i);
     const auto cost = [&](const Eigen::VectorXd& x) { return likelihood_[i](x, rest); };
-    noise.covariance =
-        covariance(cost, parameters_[i], profiles_[i].residual.size()).bottomRightCorner(d, d);
+    if (noise.correlation.order() > 0 && noise.correlation.long_run_ratio() < 1.0) {
+      // Its own spread may be that of frequencies the columns have taken, which nobody has seen.
+      noise = white(std::sqrt(white_variance(profiles_[i])));
+      noise.covariance.setConstant(1, 1, 0.5 / spare(profiles_[i]));  // of ln σ
+    } else {
+      noise.covariance = covariance(cost, parameters_[i], profiles_[i].residual.size());
+    }
+    const auto d = static_cast<Eigen::Index>(noise.covariance.rows());
     const std::optional<double>& declared = profiles_[i].declared;
     if (!declared) return noise;
     const auto n = static_cast<double>(profiles_[i].residual.size());

@@ -16,7 +16,7 @@ constexpr Eigen::Index kValuesPerCosine = 10;
 constexpr Eigen::Index kLeastSpare = 6;  // values beyond what is free, else the fit's noise
 constexpr double kRounding = 1e-13;      // of the values: no noise, only rounding
 constexpr int kLeastOrder = 1;           // BIC on the fine band alone overlooks a short correlation
-constexpr int kMostLines = 6;
+constexpr int kMostLines = 12;
 constexpr double kFalseLine = 1e-3;       // chance that a spectrum of noise is given one line
 constexpr Eigen::Index kNeighbours = 15;  // on either side, for the level of a spectrum
 constexpr double kNoseRadius = 2.0;       // mm, of a large finishing tool
@@ -42,25 +42,42 @@ Eigen::MatrixXd line(Eigen::Index n, double cycles_per_value) {
   return out;
 }
 
-double power(const Eigen::VectorXd& values, double cycles_per_value) {
+/// Spectral power of the values, of each half of a diameter by itself: what the cut has laid down
+/// runs there and back. Of one half if `middle` is 0.
+double power(const Eigen::VectorXd& values, Eigen::Index middle, double cycles_per_value) {
   const std::complex<double> turn = std::polar(1.0, -2.0 * kPi * cycles_per_value);
-  std::complex<double> phase = 1.0, sum = 0.0;
+  std::complex<double> phase = 1.0, far = 0.0, near = 0.0;
   for (Eigen::Index i = 0; i < values.size(); ++i) {
-    sum += values[i] * phase;
+    (i < middle ? far : near) += values[i] * phase;
     phase *= turn;
   }
-  return std::norm(sum);
+  return std::norm(far) + std::norm(near);
+}
+
+/// Frequency near `frequency` where the power is largest, to a thousandth of a cycle a profile.
+double sharpened(const Eigen::VectorXd& values, Eigen::Index middle, double frequency) {
+  const auto n = static_cast<double>(values.size());
+  for (double step = 0.1; step > 5e-4; step /= 10.0) {
+    const double centre = frequency;
+    double largest = -1.0;
+    for (int i = -10; i <= 10; ++i) {
+      const double f = centre + i * step / n, size = power(values, middle, f);
+      if (size > largest) largest = size, frequency = f;
+    }
+  }
+  return frequency;
 }
 
 /// Frequency (cycles per value) of a line that stands out of the spectrum around it, or 0. The
 /// spectrum of smooth noise over its local level is exponential; the level is the median of the
 /// neighbours over ln 2.
-double outstanding_line(const Eigen::VectorXd& values) {
+/// @param middle  first value of the near half of a diameter, or 0
+double outstanding_line(const Eigen::VectorXd& values, Eigen::Index middle) {
   const Eigen::Index n = values.size(), count = (n - 1) / 2;
   if (count < 4 * kNeighbours) return 0.0;
   Eigen::VectorXd spectrum(count);
   for (Eigen::Index k = 0; k < count; ++k)
-    spectrum[k] = power(values, static_cast<double>(k + 1) / static_cast<double>(n));
+    spectrum[k] = power(values, 0, static_cast<double>(k + 1) / static_cast<double>(n));
   double best = std::log(static_cast<double>(count) / kFalseLine);
   Eigen::Index peak = -1;
   for (Eigen::Index k = 0; k < count; ++k) {
@@ -73,28 +90,25 @@ double outstanding_line(const Eigen::VectorXd& values) {
     if (spectrum[k] > best * level) best = spectrum[k] / level, peak = k;
   }
   if (peak < 0) return 0.0;
-  double frequency = 0.0, largest = -1.0;
-  for (int step = -8; step <= 8; ++step) {
-    const double f = (static_cast<double>(peak + 1) + step / 10.0) / static_cast<double>(n);
-    const double size = power(values, f);
-    if (size > largest) largest = size, frequency = f;
-  }
-  return frequency;
+  return sharpened(values, middle, static_cast<double>(peak + 1) / static_cast<double>(n));
 }
 
-/// The line, and on a face each half of a diameter with a phase of its own: what the cut has laid
-/// down runs there and back.
-Eigen::MatrixXd line_on(const Observation& observation, double cycles_per_value) {
+/// First low-band value of the near half of a diameter; 0 where there is no far one.
+Eigen::Index near_half(const Observation& observation) {
   const Setup& setup = observation.profile->setup;
-  Eigen::MatrixXd out = line(observation.values.size(), cycles_per_value);
-  if (setup.kind != Kind::face) return out;
-  out.conservativeResize(Eigen::NoChange, 4);
+  if (setup.kind != Kind::face) return 0;
   const std::vector<double> positions =
       observation.low_band.positions(observation.profile->positions);
-  for (Eigen::Index i = 0; i < out.rows(); ++i) {
-    const bool is_far = positions[static_cast<std::size_t>(i)] < setup.center_mm;
-    out.row(i).tail(2) = is_far ? Eigen::RowVector2d::Zero() : out.row(i).head<2>().eval();
-  }
+  return std::ranges::lower_bound(positions, setup.center_mm) - positions.begin();
+}
+
+/// The line, each half of a diameter with a phase of its own.
+Eigen::MatrixXd line_on(Eigen::Index values, Eigen::Index middle, double cycles_per_value) {
+  Eigen::MatrixXd out = line(values, cycles_per_value);
+  if (middle == 0) return out;
+  out.conservativeResize(Eigen::NoChange, 4);
+  out.rightCols(2) = out.leftCols(2);
+  out.topRightCorner(middle, 2).setZero();
   return out;
 }
 
@@ -104,9 +118,19 @@ void append(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
   columns = std::move(out);
 }
 
-LinearProfile linear_profile(const Eigen::MatrixXd& free, Eigen::VectorXd residual,
+/// An orthonormal basis and what the columns add to it.
+Eigen::MatrixXd extended(Eigen::MatrixXd basis, Eigen::MatrixXd columns) {
+  constexpr double kNew = 1e-6;  // of a column: less is rounding
+  const Eigen::RowVectorXd whole = columns.colwise().norm();
+  for (int pass = 0; pass < 2; ++pass) columns -= basis * (basis.transpose() * columns).eval();
+  for (Eigen::Index j = 0; j < columns.cols(); ++j)
+    if (columns.col(j).norm() <= kNew * whole[j]) columns.col(j).setZero();
+  append(basis, orthonormal(std::move(columns)));
+  return basis;
+}
+
+LinearProfile linear_profile(Eigen::MatrixXd basis, Eigen::VectorXd residual,
                              const std::optional<double>& declared) {
-  Eigen::MatrixXd basis = orthonormal(free);
   residual -= basis * (basis.transpose() * residual).eval();
   return {std::move(basis), Eigen::MatrixXd(residual.size(), 0), std::move(residual), declared,
           kLeastOrder};
@@ -124,7 +148,7 @@ std::optional<LinearProfile> from_repeats(const Linearisation& linear, std::size
       (linear.residuals[i] - mean / count) * std::sqrt(count / (count - 1.0));
   constexpr double kCopy = 1e-9;  // of the values: one file given twice is no repeat
   if (deviation.norm() <= kCopy * observation.values.norm()) return std::nullopt;
-  return linear_profile(observation.nuisances, deviation,
+  return linear_profile(orthonormal(observation.nuisances), deviation,
                         observation.profile->standard_uncertainty);
 }
 
@@ -138,15 +162,17 @@ LinearProfile from_fine_band(const Linearisation& linear, std::size_t i,
   append(free, slow_cosines(n, slow_cosine_count(n)));
   append(free, loose);
   if (!suspect.empty()) append(free, suspect[i]);
+  Eigen::MatrixXd basis = orthonormal(std::move(free));
+  const Eigen::Index middle = near_half(observation);
   for (int found = 0; found < kMostLines; ++found) {
-    const Eigen::MatrixXd basis = orthonormal(free);
     const Eigen::VectorXd rest =
         linear.residuals[i] - basis * (basis.transpose() * linear.residuals[i]);
-    const double frequency = outstanding_line(rest);
+    const double frequency = outstanding_line(rest, middle);
     if (frequency == 0.0) break;
-    append(free, line_on(observation, frequency));
+    basis = extended(std::move(basis), line_on(n, middle, frequency));
   }
-  return linear_profile(free, linear.residuals[i], observation.profile->standard_uncertainty);
+  return linear_profile(std::move(basis), linear.residuals[i],
+                        observation.profile->standard_uncertainty);
 }
 
 Eigen::MatrixXd unit_columns(Eigen::Index rows, const std::vector<Eigen::Index>& at) {

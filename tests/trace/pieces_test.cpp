@@ -80,6 +80,36 @@ TEST(Whitened, ResidualLiesOutsideAnOrthonormalBasis) {
   EXPECT_LT((b.transpose() * data.residual()).norm(), kRounding * data.residual().norm());
 }
 
+/// Noise of the low band of the test's faces, mm: exponentially correlated noise averaged over 32
+/// samples of 1 µm, σ² 2 (L/T)² (T/L - 1 + exp(-T/L)) with L = 0.1 mm and T = 0.032 mm, and white
+/// noise over 32.
+const double kLowBandNoise = [] {
+  const double ratio = 0.032 / 0.1;
+  const double kept = 2.0 / (ratio * ratio) * (ratio - 1.0 + std::exp(-ratio));
+  return std::sqrt(std::pow(turning::kFaceNoise, 2) * kept +
+                   std::pow(turning::kFaceWhiteNoise, 2) / 32.0);
+}();
+
+// A line that is left free only in part makes a noise of it; one that is left free leaves the noise
+// model a gap in the spectrum it may put any noise into. Both made a cut count for nothing.
+TEST(BackgroundNoise, IsTheInstrumentsBesideFeedMarksAndAStrongLine) {
+  for (const std::uint64_t seed : {111U, 114U, 3U, 4U})
+    for (const char* name : {"clean", "slide_periodic"}) {
+      RandomStream random(seed, name);
+      const turning::Hidden hidden = turning::make_hidden(name, 30.0 * turning::kFaceNoise, random);
+      const Problem problem = turning::face_problem();
+      const std::vector<Profile> profiles = turning::make_faces(hidden, 3, kSharp, seed);
+      const Fitted declared = fit_declared(problem, profiles);
+      const Eigen::MatrixXd loose = loose_values(declared.model, declared.fit, declared.fit.noise);
+      for (const Noise& noise : background_noise(declared.fit, loose)) {
+        const double found = noise.standard_deviation() / std::sqrt(32.0);
+        EXPECT_GT(found, 0.7 * kLowBandNoise) << name << ' ' << seed;  // some 100 free values
+        // What the nose makes of the line stays.
+        EXPECT_LT(found, (hidden.tool ? 2.5 : 1.3) * kLowBandNoise) << name << ' ' << seed;
+      }
+    }
+}
+
 TEST(Projection, GainIsTheFallOfTheSumOfSquares) {
   const Bench bench;
   const Whitened data = bench.white();
