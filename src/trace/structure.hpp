@@ -12,8 +12,7 @@ namespace slideway {
 struct LackOfFit {
   double p_value = 1.0;
   double ratio = 1.0;  // square found over square expected
-  /// Structure, not noise: p below 0.001, and more than twice what is expected; below the band it
-  /// was measured in, the spectrum of the noise is an extrapolation.
+  /// Structure, not noise: p below 0.001, and more than twice what is expected.
   [[nodiscard]] bool significant() const { return p_value < 1e-3 && ratio > 2.0; }
 };
 LackOfFit lack_of_fit(const Whitened& data, const Linearisation& linear);
