@@ -1,6 +1,7 @@
 #include "background.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 
@@ -118,15 +119,54 @@ void append(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
   columns = std::move(out);
 }
 
-/// An orthonormal basis and what the columns add to it.
-Eigen::MatrixXd extended(Eigen::MatrixXd basis, Eigen::MatrixXd columns) {
+/// An orthonormal basis of what the columns add to two others.
+Eigen::MatrixXd beyond(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& more,
+                       Eigen::MatrixXd columns) {
   constexpr double kNew = 1e-6;  // of a column: less is rounding
   const Eigen::RowVectorXd whole = columns.colwise().norm();
-  for (int pass = 0; pass < 2; ++pass) columns -= basis * (basis.transpose() * columns).eval();
+  for (int pass = 0; pass < 2; ++pass)
+    for (const Eigen::MatrixXd* taken : {&basis, &more})
+      columns -= *taken * (taken->transpose() * columns).eval();
   for (Eigen::Index j = 0; j < columns.cols(); ++j)
     if (columns.col(j).norm() <= kNew * whole[j]) columns.col(j).setZero();
-  append(basis, orthonormal(std::move(columns)));
-  return basis;
+  return orthonormal(std::move(columns));
+}
+
+/// What the basis leaves of the residual, without the columns and without lines that stand out of
+/// the spectrum. Those are not left free as the basis is: noise could then be put into the gaps
+/// they make in the spectrum, where nobody would miss it. What they take of the noise's size is
+/// given back.
+/// @param middle  as outstanding_line()
+Eigen::VectorXd without_lines(const Eigen::VectorXd& residual, const Eigen::MatrixXd& basis,
+                              const Eigen::MatrixXd& columns, Eigen::Index middle) {
+  const Eigen::Index n = residual.size(), seen = n - basis.cols();
+  Eigen::MatrixXd known(n, 0);
+  Eigen::VectorXd rest = residual - basis * (basis.transpose() * residual);
+  const auto take_out = [&](const Eigen::MatrixXd& more) {
+    const Eigen::MatrixXd own = beyond(basis, known, more);
+    rest -= own * (own.transpose() * rest);
+    append(known, own);
+  };
+  take_out(columns);
+  for (int found = 0; found < kMostLines; ++found) {
+    const double frequency = outstanding_line(rest, middle);
+    if (frequency == 0.0) break;
+    take_out(line_on(n, middle, frequency));
+  }
+  if (seen > known.cols())
+    rest *= std::sqrt(static_cast<double>(seen) / static_cast<double>(seen - known.cols()));
+  return rest;
+}
+
+/// Columns that lie in the basis for the most part, and those that do not.
+std::pair<Eigen::MatrixXd, Eigen::MatrixXd> parted(const Eigen::MatrixXd& basis,
+                                                   const Eigen::MatrixXd& columns) {
+  std::array<std::vector<Eigen::Index>, 2> parts;
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    const double inside = (basis.transpose() * columns.col(j)).squaredNorm();
+    parts[inside < 0.5 * columns.col(j).squaredNorm() ? 1 : 0].push_back(j);
+  }
+  return {columns(Eigen::all, parts[0]), columns(Eigen::all, parts[1])};
 }
 
 LinearProfile linear_profile(Eigen::MatrixXd basis, Eigen::VectorXd residual,
@@ -157,21 +197,15 @@ LinearProfile from_fine_band(const Linearisation& linear, std::size_t i,
                              const std::vector<Eigen::MatrixXd>& suspect) {
   const Observation& observation = *linear.observations[i];
   const Eigen::Index n = observation.values.size();
-  Eigen::MatrixXd free = observation.nuisances;
-  append(free, linear.columns[i]);
+  Eigen::MatrixXd free = observation.nuisances, columns = linear.columns[i];
   append(free, slow_cosines(n, slow_cosine_count(n)));
   append(free, loose);
-  if (!suspect.empty()) append(free, suspect[i]);
+  if (!suspect.empty()) append(columns, suspect[i]);
+  const auto [slow, lines] = parted(orthonormal(free), columns);
+  append(free, slow);
   Eigen::MatrixXd basis = orthonormal(std::move(free));
-  const Eigen::Index middle = near_half(observation);
-  for (int found = 0; found < kMostLines; ++found) {
-    const Eigen::VectorXd rest =
-        linear.residuals[i] - basis * (basis.transpose() * linear.residuals[i]);
-    const double frequency = outstanding_line(rest, middle);
-    if (frequency == 0.0) break;
-    basis = extended(std::move(basis), line_on(n, middle, frequency));
-  }
-  return linear_profile(std::move(basis), linear.residuals[i],
+  Eigen::VectorXd rest = without_lines(linear.residuals[i], basis, lines, near_half(observation));
+  return linear_profile(std::move(basis), std::move(rest),
                         observation.profile->standard_uncertainty);
 }
 

@@ -7,8 +7,9 @@ namespace slideway {
 /// Noise of every fitted profile from what no effect can reach, so that a missing effect is not
 /// taken for noise:
 /// - profiles that repeat one another: from their deviations from their mean;
-/// - else from the residual with a band of slow cosines, with lines that stand out of the spectrum,
-///   and with `suspect` left free (restricted likelihood: what they take is not missed).
+/// - else from the residual without the model, `suspect` and lines that stand out of the spectrum,
+///   with a band of slow cosines and those columns left free that are as slow (restricted
+///   likelihood: what they take is not missed).
 ///
 /// A profile of too few values for that keeps the noise the fit found.
 ///
