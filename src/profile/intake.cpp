@@ -73,12 +73,13 @@ bool PlainSamples::convert(const Conversion& convert, std::span<const double> po
     scaled(convert.position, positions.data(), positions_);
     scaled(convert.to_mm, positions_.data(), positions_);
     scaled(convert.value, values.data(), values_);
-    for (std::size_t i = 0; i < kCount; ++i)  // not of NaN, which stands for a missing value
-      plain += (std::abs(positions_[i]) <= kLargest) & (std::abs(values_[i]) <= kLargest);
+    for (const Samples* samples : {&positions_, &values_})
+      for (const double sample : *samples)  // not a NaN, which stands for a missing value
+        plain += std::abs(sample) <= kLargest;
     for (std::size_t i = 1; i < kCount; ++i)
       plain += sign * (positions_[i] - positions_[i - 1]) > 0.0;
   });
-  return plain == 2 * kCount;
+  return plain == 3 * kCount;
 }
 
 void PlainSamples::scaled(const UnitScale& scale, const double* from, Samples& to) {
