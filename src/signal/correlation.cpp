@@ -206,15 +206,18 @@ double effective_observations(std::span<const double> x, std::span<const double>
   const Eigen::VectorXd dy = centred(y);
   const double scale = dx.squaredNorm() * dy.squaredNorm();
   const auto n = static_cast<double>(dx.size());
-  constexpr Eigen::Index kDirect = 32;  // few lags are cheaper than a transform
-  const std::vector<double> first_x = lagged_products(view(dx), view(dx), 0, kDirect);
-  const std::vector<double> first_y = lagged_products(view(dy), view(dy), 0, kDirect);
-  std::vector<std::complex<double>> products;
+  constexpr Eigen::Index kDirect = 32, kAtOnce = 8;  // few lags are cheaper than a transform
+  std::vector<double> some_x, some_y;
+  std::vector<std::complex<double>> all;
   double sum = 0.0;
   for (Eigen::Index k = 1; k < dx.size() && scale > 0.0; ++k) {
-    if (k == kDirect) products = all_lagged_products(dx, dy);
-    const double product =
-        k < kDirect ? first_x[k] * first_y[k] : products[k].real() * products[k].imag();
+    const Eigen::Index i = (k - 1) % kAtOnce;
+    if (k <= kDirect && i == 0) {
+      some_x = lagged_products(view(dx), view(dx), k, kAtOnce);
+      some_y = lagged_products(view(dy), view(dy), k, kAtOnce);
+    }
+    if (k == kDirect + 1) all = all_lagged_products(dx, dy);
+    const double product = k <= kDirect ? some_x[i] * some_y[i] : all[k].real() * all[k].imag();
     if (product <= 0.0) break;
     sum += (1.0 - static_cast<double>(k) / n) * product / scale;
   }
