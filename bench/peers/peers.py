@@ -42,8 +42,8 @@ def timed(n, work):
 
 
 def run_timed(n, command):
-    """(median time in s, median processor time in s, largest memory in MB) of a process"""
-    processor, wall, memory = [], [], 0
+    """(median time in s, median processor time in s) of a process"""
+    processor, wall = [], []
     for _ in range(repetitions(n)):
         start = time.perf_counter()
         child = subprocess.Popen(command, stdout=subprocess.DEVNULL)
@@ -51,8 +51,7 @@ def run_timed(n, command):
         wall.append(time.perf_counter() - start)
         assert status == 0, command
         processor.append(usage.ru_utime + usage.ru_stime)
-        memory = max(memory, usage.ru_maxrss / 1024)
-    return statistics.median(wall), statistics.median(processor), memory
+    return statistics.median(wall), statistics.median(processor)
 
 
 def ours(program, benchmark):
@@ -219,10 +218,10 @@ def whole_jobs():
     limit = {20_000: ">= 20", 1_000_000: ">= 12", 10_000_000: ">= 12"}
     for n in SIZES:
         problem, path = profile(n)
-        mine, processor, memory = run_timed(n, [BIN / "slideway", "identify", problem, "--no-trace"])
-        lines.append((n, mine, processor, memory))
+        mine, processor = run_timed(n, [BIN / "slideway", "identify", problem, "--no-trace"])
+        lines.append((n, mine, processor))
         for peer in ("loadtxt", "pandas"):
-            theirs, *_ = run_timed(n, [sys.executable, HERE / "job.py", path, peer])
+            theirs, _ = run_timed(n, [sys.executable, HERE / "job.py", path, peer])
             add("whole identify --no-trace", n, f"job.py, {peer}", theirs, mine, limit[n])
     return lines
 
@@ -247,9 +246,9 @@ def main():
         for stage, n, peer, theirs, mine, ratio, wanted in rows:
             print(f"| {stage} | {n:.0e} | {peer} | {theirs:.3g} | {mine:.3g} | {ratio:.1f} | "
                   f"{wanted} |", file=out)  # fmt: skip
-        print("\n| whole job, N | s | processor time, s | memory, MB |\n|---|---|---|---|", file=out)
-        for n, mine, processor, memory in whole:
-            print(f"| {n:.0e} | {mine:.3g} | {processor:.3g} | {memory:.0f} |", file=out)
+        print("\n| whole job, N | s | processor time, s |\n|---|---|---|", file=out)
+        for n, mine, processor in whole:
+            print(f"| {n:.0e} | {mine:.3g} | {processor:.3g} |", file=out)
         print("\n| CSV, MB/s |", *(f"{n:.0e} |" for n in SIZES), file=out)
         print("|---|" + "---|" * len(SIZES), file=out)
         for name, rates in csv:
