@@ -135,7 +135,7 @@ Eigen::MatrixXd beyond(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& more
 /// What the basis leaves of the residual, without the columns and without lines that stand out of
 /// the spectrum. Those are not left free as the basis is: noise could then be put into the gaps
 /// they make in the spectrum, where nobody would miss it. What they take of the noise's size is
-/// given back.
+/// given back. Zeros if too little is left to know a noise by.
 /// @param middle  as outstanding_line()
 Eigen::VectorXd without_lines(const Eigen::VectorXd& residual, const Eigen::MatrixXd& basis,
                               const Eigen::MatrixXd& columns, Eigen::Index middle) {
@@ -153,9 +153,9 @@ Eigen::VectorXd without_lines(const Eigen::VectorXd& residual, const Eigen::Matr
     if (frequency == 0.0) break;
     take_out(line_on(n, middle, frequency));
   }
-  if (seen > known.cols())
-    rest *= std::sqrt(static_cast<double>(seen) / static_cast<double>(seen - known.cols()));
-  return rest;
+  const Eigen::Index left = seen - known.cols();
+  if (left < kLeastSpare) return Eigen::VectorXd::Zero(n);
+  return rest * std::sqrt(static_cast<double>(seen) / static_cast<double>(left));
 }
 
 /// Columns that lie in the basis for the most part, and those that do not.
