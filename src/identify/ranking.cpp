@@ -13,6 +13,7 @@
 #include "slideway/base/text.hpp"
 #include "slideway/format/table.hpp"
 #include "slideway/signal/correlation.hpp"
+#include "slideway/signal/view.hpp"
 
 namespace slideway {
 namespace {
@@ -25,10 +26,6 @@ constexpr double kSignificant = 0.05;
 // Smaller leads come and go with the next profile.
 constexpr double kClearRest = 0.8;  // of the variance the next effect leaves unexplained
 constexpr double kClearShare = 0.2;
-
-std::span<const double> view(const Eigen::VectorXd& values) {
-  return {values.data(), static_cast<std::size_t>(values.size())};
-}
 
 int most_lags(std::size_t n) { return static_cast<int>(std::min(kMostLags, n / 4)); }
 

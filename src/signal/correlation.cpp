@@ -10,6 +10,7 @@
 
 #include "slideway/base/distribution.hpp"
 #include "slideway/signal/lagged_products.hpp"
+#include "slideway/signal/view.hpp"
 
 namespace slideway {
 namespace {
@@ -83,10 +84,6 @@ struct RunningSums {
   }
   Eigen::VectorXd sum, squares;
 };
-
-std::span<const double> view(const Eigen::VectorXd& d) {
-  return {d.data(), static_cast<std::size_t>(d.size())};
-}
 
 // The next size whose transform is quick: a product of 2, 3 and 5.
 std::size_t quick_size(std::size_t least) {

@@ -5,6 +5,7 @@
 
 #include "slideway/signal/bands.hpp"
 #include "slideway/signal/correlation.hpp"
+#include "slideway/signal/view.hpp"
 
 namespace slideway {
 namespace {
@@ -15,10 +16,6 @@ constexpr std::size_t kStretches = 250;  // of a wavelet band
 constexpr std::size_t kMostLags = 200;
 constexpr int kPerDecade = 100;  // frequencies
 constexpr double kTwoSided95 = 1.96;
-
-std::span<const double> view(const Eigen::VectorXd& values) {
-  return {values.data(), static_cast<std::size_t>(values.size())};
-}
 
 std::vector<double> taken(const Eigen::VectorXd& values, const std::vector<std::size_t>& indices,
                           double unit) {
