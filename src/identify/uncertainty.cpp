@@ -94,7 +94,7 @@ Uncertainty assess(const Linearisation& linear, const std::vector<double>& weigh
     both << k, z;
     const Eigen::MatrixXd together = covariance_under(noise[i], both);
     out.covariance += together.bottomRightCorner(r, r);
-    if (!noise[i].declared && noise[i].covariance.size() > 0) {
+    if (noise[i].is_estimated()) {
       out.noise.push_back(noise_effect(noise[i], z, together.bottomRightCorner(r, r)));
       const Eigen::MatrixXd share = z.transpose() * columns;
       out.covariance += 2.0 * weight_variance(noise[i]) * (share - share * share);

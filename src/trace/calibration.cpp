@@ -15,7 +15,7 @@ constexpr std::uint64_t kSeed = 20120712;
 
 /// Noise parameters as their estimate's covariance has them.
 Noise drawn(const Noise& noise, RandomStream& random) {
-  if (noise.declared || noise.covariance.size() == 0) return noise;
+  if (!noise.is_estimated()) return noise;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(noise.covariance);
   Eigen::VectorXd deviation(noise.covariance.rows());
   for (double& value : deviation) value = random.normal();

@@ -15,7 +15,8 @@ namespace {
 
 constexpr Eigen::Index kResamples = 99;
 // Relative standard uncertainty of an estimated noise's power below the band it was measured in,
-// beyond that of its parameters: so p-values of clean faces come out uniform (docs/quality.md).
+// beyond that of its parameters. With it the p-values of 300 clean faces of bench/quality are below
+// 0.05 in 5.7 %, below 0.01 in 2.3 %; without, in 16 % and 7 %.
 constexpr double kBelow = 0.25;
 constexpr Eigen::Index kCosines = 24;
 constexpr double kLengths[] = {0.03, 0.05, 0.1, 0.2, 0.4, 0.8};  // of the clock's range
@@ -155,8 +156,6 @@ void locate(const Profile& profile, const std::vector<double>& positions,
   out.dominant_period_mm = dominant_period(profile, values);
 }
 
-bool is_estimated(const Noise& noise) { return !noise.declared && noise.covariance.size() > 0; }
-
 }  // namespace
 
 Structure find_structure(const Model& model, const Whitened& data, const Linearisation& linear) {
@@ -234,7 +233,8 @@ LackOfFit lack_of_fit(const Whitened& data, const Linearisation& linear) {
       (basis.transpose() * null_residuals(data, kResamples)).colwise().squaredNorm().transpose();
   const double mean = null.mean();
   double variance = (null.array() - mean).square().sum() / static_cast<double>(kResamples - 1);
-  if (std::ranges::any_of(data.noise(), is_estimated)) variance += std::pow(kBelow * mean, 2);
+  if (std::ranges::any_of(data.noise(), &Noise::is_estimated))
+    variance += std::pow(kBelow * mean, 2);
   if (!(variance > 0.0)) return {};
   return {gamma_tail(mean * mean / variance, found * mean / variance), found / mean};
 }

@@ -18,6 +18,7 @@ struct Noise {
   Eigen::MatrixXd covariance;  // of (atanh π_1 ... atanh π_p, ln innovation); empty if declared,
                                // 0 across a limit they stand at
 
+  [[nodiscard]] bool is_estimated() const { return !declared && covariance.size() > 0; }
   [[nodiscard]] double standard_deviation() const;
 
   /// Standard deviation of white noise that would leave smooth parameters as uncertain as this one
