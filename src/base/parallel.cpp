@@ -39,4 +39,11 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& wor
     if (failure) std::rethrow_exception(failure);
 }
 
+void parallel_parts(std::size_t count, std::size_t size,
+                    const std::function<void(std::size_t, std::size_t, std::size_t)>& work) {
+  parallel_for(parts_of(count, size), [&](std::size_t part) {
+    work(part, part * size, std::min(count, (part + 1) * size));
+  });
+}
+
 }  // namespace slideway

@@ -49,9 +49,9 @@ Part combined(const Part& a, const Part& b) {
 }  // namespace
 
 Statistics statistics_of(std::span<const double> values) {
-  std::vector<Part> parts((values.size() + kPart - 1) / kPart);
-  parallel_for(parts.size(), [&](std::size_t p) {
-    parts[p] = part_of(values.subspan(p * kPart, std::min(kPart, values.size() - p * kPart)));
+  std::vector<Part> parts(parts_of(values.size(), kPart));
+  parallel_parts(values.size(), kPart, [&](std::size_t p, std::size_t first, std::size_t last) {
+    parts[p] = part_of(values.subspan(first, last - first));
   });
   Part all = parts[0];
   for (std::size_t p = 1; p < parts.size(); ++p) all = combined(all, parts[p]);

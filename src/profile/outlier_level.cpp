@@ -96,9 +96,9 @@ std::uint64_t Level::count_above(double least, std::size_t from, std::size_t to)
 // Whether any error is larger.
 bool Level::any_above(double least) const {
   const std::size_t first = outermost(), last = values.size() - first;
-  std::vector<char> above(parts_of(last - first));
-  parallel_for(above.size(), [&](std::size_t part) {
-    const std::size_t from = first + part * kPart, to = std::min(last, from + kPart);
+  std::vector<char> above(parts_of(last - first, kPart));
+  parallel_parts(last - first, kPart, [&](std::size_t part, std::size_t begin, std::size_t end) {
+    const std::size_t from = first + begin, to = first + end;
     std::uint64_t count = 0;
     if (uniform)
       count = count_above(least, from, to);

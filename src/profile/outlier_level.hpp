@@ -11,7 +11,6 @@ namespace slideway {
 inline constexpr std::size_t kPart = 1 << 16;      // samples looked at by one thread at a time
 inline constexpr std::size_t kScaleFrom = 2048;    // errors: the scale of more is that of a part
 inline constexpr double kMad = 1.482602218505602;  // normal deviation over its median size
-inline std::size_t parts_of(std::size_t count) { return (count + kPart - 1) / kPart; }
 
 // REQUIRES values; they change their order.
 double median(std::vector<double>& values);

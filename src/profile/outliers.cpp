@@ -66,10 +66,10 @@ struct Extremes {
 
 Extremes extremes_of(std::span<const double> positions, std::span<const double> values) {
   const std::size_t n = values.size();
-  std::vector<Extremes> parts(parts_of(n - 1));
-  parallel_for(parts.size(), [&](std::size_t part) {
+  std::vector<Extremes> parts(parts_of(n - 1, kPart));
+  parallel_parts(n - 1, kPart, [&](std::size_t part, std::size_t first, std::size_t last) {
     Extremes all;
-    for (std::size_t i = part * kPart + 1; i < std::min(n, (part + 1) * kPart + 1); ++i) {
+    for (std::size_t i = first + 1; i < last + 1; ++i) {
       const double step = positions[i] - positions[i - 1];
       const double change = std::abs(values[i] - values[i - 1]);
       all.least_step = std::min(all.least_step, step);
@@ -118,8 +118,8 @@ void Search::fill_level(int halvings) {
   if (block == 1) return;
   level_positions_.resize(uniform_ ? 0 : n);
   level_values_.resize(n);
-  parallel_for(parts_of(n), [&](std::size_t part) {
-    for (std::size_t j = part * kPart; j < std::min(n, (part + 1) * kPart); ++j) {
+  parallel_parts(n, kPart, [&](std::size_t /*part*/, std::size_t first, std::size_t last) {
+    for (std::size_t j = first; j < last; ++j) {
       if (!uniform_) level_positions_[j] = mean(positions_, j * block, block);
       level_values_[j] = mean(clean_, j * block, block);
     }

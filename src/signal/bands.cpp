@@ -83,13 +83,13 @@ class LongSignal {
     const Index first = (end_ << levels_) + shift_ % 2;
     const Index count = (size() - 2 * first) / 2 * 2;
     copy_ends(first, first + count, out);
-    const Index tasks = (count + kTask - 1) / kTask;
-    parallel_for(static_cast<std::size_t>(tasks), [&](std::size_t task) {
+    const auto make = [&](std::size_t /*task*/, std::size_t begin, std::size_t end) {
       Scratch scratch;
-      const Index begin = static_cast<Index>(task) * kTask, end = std::min(count, begin + kTask);
-      for (Index at = begin; at < end; at += kPart)
-        make_part(first + at, first + std::min(end, at + kPart), scratch, out);
-    });
+      const Index last = first + static_cast<Index>(end);
+      for (Index at = first + static_cast<Index>(begin); at < last; at += kPart)
+        make_part(at, std::min(last, at + kPart), scratch, out);
+    };
+    parallel_parts(static_cast<std::size_t>(count), kTask, make);
     return out;
   }
 

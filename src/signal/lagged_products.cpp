@@ -105,12 +105,12 @@ std::vector<double> lagged_products(std::span<const double> x, std::span<const d
 }
 
 std::vector<Eigen::MatrixXd> lagged_grams(const Eigen::MatrixXd& rows, Eigen::Index most_lag) {
-  constexpr Index kPart = 1 << 14;  // rows that are worth a thread
-  const Index parts = std::max<Index>(1, (rows.rows() - most_lag + kPart - 1) / kPart);
-  std::vector<LaggedGrams> grams(static_cast<std::size_t>(parts), LaggedGrams(rows, most_lag));
-  parallel_for(grams.size(), [&](std::size_t part) {
-    const Index first = most_lag + static_cast<Index>(part) * kPart;
-    grams[part].add(first, std::min(rows.rows(), first + kPart));
+  constexpr std::size_t kPart = 1 << 14;  // rows that are worth a thread
+  const auto count = static_cast<std::size_t>(rows.rows() - most_lag);
+  std::vector<LaggedGrams> grams(std::max<std::size_t>(1, parts_of(count, kPart)),
+                                 LaggedGrams(rows, most_lag));
+  parallel_parts(count, kPart, [&](std::size_t part, std::size_t first, std::size_t last) {
+    grams[part].add(most_lag + static_cast<Index>(first), most_lag + static_cast<Index>(last));
   });
   std::vector<Eigen::MatrixXd> out;
   for (Index lag = 0; lag <= most_lag; ++lag) {

@@ -39,14 +39,13 @@ void check_size(const LowBandOptions& options, std::size_t samples) {
 bool is_uniform(std::span<const double> positions) {
   constexpr std::size_t kPart = 1 << 16;
   const double mean = mean_step(positions), most = kUniform * std::abs(mean);
-  std::vector<char> uniform_part((positions.size() + kPart - 2) / kPart);
-  parallel_for(uniform_part.size(), [&](std::size_t part) {
-    const std::size_t first = part * kPart + 1;
-    const std::size_t last = std::min(positions.size(), first + kPart);
+  const std::size_t steps = positions.size() - 1;
+  std::vector<char> uniform_part(parts_of(steps, kPart));
+  parallel_parts(steps, kPart, [&](std::size_t part, std::size_t first, std::size_t last) {
     std::uint64_t uniform = 0;
     wide([&] {
       for (std::size_t i = first; i < last; ++i)
-        uniform += std::abs(positions[i] - positions[i - 1] - mean) <= most;
+        uniform += std::abs(positions[i + 1] - positions[i] - mean) <= most;
     });
     uniform_part[part] = uniform == last - first;
   });

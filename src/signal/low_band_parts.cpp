@@ -76,13 +76,12 @@ Eigen::MatrixXd apply_in_parts(const LowBand& low_band, Eigen::Index samples, Ei
     return low_band.apply(columns);
   }
   Eigen::MatrixXd out(values, count);
-  const Eigen::Index tasks = (parts + kPerTask - 1) / kPerTask;
-  parallel_for(static_cast<std::size_t>(tasks), [&](std::size_t task) {
+  const auto transform = [&](std::size_t /*task*/, std::size_t first, std::size_t last) {
     Part part(low_band, samples, fill);
-    const auto first = static_cast<Eigen::Index>(task) * kPerTask;
-    for (Eigen::Index i = first; i < std::min(parts, first + kPerTask); ++i)
+    for (auto i = static_cast<Eigen::Index>(first); i < static_cast<Eigen::Index>(last); ++i)
       part.transform(i * size, i + 1 == parts ? values : (i + 1) * size, out);
-  });
+  };
+  parallel_parts(static_cast<std::size_t>(parts), kPerTask, transform);
   return out;
 }
 
