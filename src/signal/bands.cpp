@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <functional>
 
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/wide.hpp"
+#include "slideway/signal/decomposition.hpp"
 #include "upsample.hpp"
 
 namespace slideway {
@@ -29,15 +31,6 @@ void to_full_length(const Wavelet& wavelet, Boundary boundary, std::span<const s
   }
 }
 
-// a_(j-1) = a_j + d_j
-void add_details(Bands& bands, Index first, Index last) {
-  for (std::size_t j = bands.details.size() - 1; j > 0; --j) {
-    const double *coarse = bands.approximations[j].data(), *detail = bands.details[j].data();
-    double* const out = bands.approximations[j - 1].data();
-    for (Index i = first; i < last; ++i) out[i] = coarse[i] + detail[i];
-  }
-}
-
 void resize(Bands& bands, std::size_t levels, std::size_t n) {
   for (auto* each : {&bands.approximations, &bands.details}) {
     each->resize(levels);
@@ -55,7 +48,9 @@ Bands whole_bands(const Wavelet& wavelet, Boundary boundary, const Decomposition
   for (std::size_t j = 0; j < parts.details.size(); ++j)
     to_full_length(wavelet, boundary, lengths.first(j + 1), {}, parts.details[j], scratch,
                    bands.details[j]);
-  add_details(bands, 0, static_cast<Index>(parts.lengths[0]));
+  for (std::size_t j = parts.details.size() - 1; j > 0; --j)  // a_(j-1) = a_j + d_j
+    std::ranges::transform(bands.approximations[j], bands.details[j],
+                           bands.approximations[j - 1].begin(), std::plus<>());
   return bands;
 }
 
@@ -74,7 +69,7 @@ class LongSignal {
         end_(2 * half_ + 2),
         left_out_((size() >> std::min(levels_, kMostLevels)) - 4 * end_) {}
 
-  [[nodiscard]] bool is_long() const { return size() >= 4 * kPart && left_out_ > 0; }
+  [[nodiscard]] bool is_long() const { return size() >= kLong && left_out_ > 0; }
 
   [[nodiscard]] Bands bands() const {
     Bands out;
@@ -94,16 +89,15 @@ class LongSignal {
   }
 
  private:
-  static constexpr Index kPart = 4096, kTask = 16 * kPart;  // samples
+  static constexpr Index kPart = 1024, kTask = 64 * kPart, kLong = 16 * kPart;  // samples
   static constexpr Index kMostLevels = 32;  // of a signal of more samples than memory holds
 
   [[nodiscard]] Index size() const { return static_cast<Index>(parts_.lengths[0]); }
 
   // Without the blocks that are left out behind the first 2 end_, of one level.
-  [[nodiscard]] std::vector<double> shortened(std::span<const double> coefficients,
-                                              Index level) const {
+  [[nodiscard]] Band shortened(std::span<const double> coefficients, Index level) const {
     const Index before = (2 * end_) << (levels_ - level), gap = left_out_ << (levels_ - level);
-    std::vector<double> out(coefficients.begin(), coefficients.begin() + before);
+    Band out(coefficients.begin(), coefficients.begin() + before);
     out.insert(out.end(), coefficients.begin() + before + gap, coefficients.end());
     return out;
   }
@@ -129,34 +123,43 @@ class LongSignal {
 
   void make_part(Index first, Index last, Scratch& scratch, Bands& out) const {
     restore(wavelet_.reconstruct_low, parts_.approximation, levels_, first, last, scratch,
-            out.approximations.back().data());
-    for (Index j = 1; j <= levels_; ++j)
-      restore(wavelet_.reconstruct_high, parts_.details[j - 1], j, first, last, scratch,
-              out.details[j - 1].data());
-    wide([&] { add_details(out, first, last); });
+            Set{out.approximations.back().data() + first});
+    for (Index j = levels_; j > 0; --j) {
+      double* const detail = out.details[j - 1].data() + first;
+      const auto put = [&](auto with) {
+        restore(wavelet_.reconstruct_high, parts_.details[j - 1], j, first, last, scratch, with);
+      };
+      if (j > 1)  // a_(j-1) = a_j + d_j
+        put(SetAndSum{detail, out.approximations[j - 1].data() + first,
+                      out.approximations[j - 2].data() + first});
+      else
+        put(Set{detail});
+    }
   }
 
-  // Samples first ... last - 1 of the band that coefficients of a level make. Of level k - 1 the
-  // samples 2 i - shift and 2 i + 1 - shift need the coefficients i - half + 1 ... i of level k.
+  // Puts samples first ... last - 1 of the band that coefficients of a level make. Of level k - 1
+  // the samples 2 i - shift and 2 i + 1 - shift need the coefficients i - half + 1 ... i of level
+  // k.
+  template <typename Put>
   void restore(std::span<const double> filter, std::span<const double> coefficients, Index level,
-               Index first, Index last, Scratch& scratch, double* band) const {
-    std::array<Index, kMostLevels> from{first}, to{last};
+               Index first, Index last, Scratch& scratch, const Put& put) const {
+    std::array<Index, kMostLevels + 1> from, to;
+    from[0] = first;
+    to[0] = last;
     for (Index k = 1; k <= level; ++k) {
       from[k] = (from[k - 1] + shift_) / 2 - half_ + 1;
       to[k] = (to[k - 1] - 1 + shift_) / 2 + 1;
     }
     const double* c = coefficients.data() + from[level];
-    for (Index k = level; k > 0; --k) {
+    for (Index k = level; k > 1; --k) {
       const Index pair = from[k] + half_ - 1, count = to[k] - pair, begin = 2 * pair - shift_;
-      double* made = band + first;
-      if (k > 1) {
-        scratch[k % 2].resize(static_cast<std::size_t>(2 * count));
-        made = scratch[k % 2].data();
-      }
-      wide([&] { fill_pairs<false>(filter, c + half_ - 1, count, made); });
-      c = made + (from[k - 1] - begin);
+      Band& finer = scratch[k % 2];
+      finer.resize(static_cast<std::size_t>(2 * count));
+      wide([&] { put_pairs(filter, c + half_ - 1, count, Set{finer.data()}); });
+      c = finer.data() + (from[k - 1] - begin);
       filter = wavelet_.reconstruct_low;
     }
+    wide([&] { put_pairs(filter, c + half_ - 1, (last - first) / 2, put); });
   }
 
   const Wavelet& wavelet_;

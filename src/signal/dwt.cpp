@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <type_traits>
 
+#include "downsample.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/wide.hpp"
 #include "upsample.hpp"
@@ -82,68 +84,22 @@ class Extension {
   Boundary boundary_;
 };
 
-// The filters of one level, high only if there is one, and where their outputs go.
-struct Pair {
-  const double *low, *high;
-  double *low_out, *high_out;
-};
-
-// out[o] = Σ_j filter[j] x[2 o + taps - 1 - j]. Taps = 0: their number is known at run time only.
-template <int Taps, bool High>
-void convolve(const Pair& pair, Index taps, const double* x, Index count) {
-  if constexpr (Taps > 0) taps = Taps;
-  const double *low = pair.low, *high = pair.high;
-  double *low_out = pair.low_out, *high_out = pair.high_out;
-  for (Index o = 0; o < count; ++o, x += 2) {
-    double low_sum = 0.0, high_sum = 0.0;
-    for (Index j = 0; j < taps; ++j) {
-      low_sum += low[j] * x[taps - 1 - j];
-      if constexpr (High) high_sum += high[j] * x[taps - 1 - j];
-    }
-    low_out[o] = low_sum;
-    if constexpr (High) high_out[o] = high_sum;
-  }
-}
-
-template <int Taps>
-void convolve(const Pair& pair, Index taps, const double* x, Index count) {
-  if (pair.high != nullptr)
-    convolve<Taps, true>(pair, taps, x, count);
-  else
-    convolve<Taps, false>(pair, taps, x, count);
-}
-
-void convolve(const Pair& pair, Index taps, const double* x, Index count) {
-  switch (taps) {
-    case 2:
-      return convolve<2>(pair, taps, x, count);
-    case 4:
-      return convolve<4>(pair, taps, x, count);
-    case 6:
-      return convolve<6>(pair, taps, x, count);
-    case 8:
-      return convolve<8>(pair, taps, x, count);
-    default:
-      return convolve<0>(pair, taps, x, count);
-  }
-}
-
 // Both filters, or the low one, and the dyadic decimation. The filters' window of output o is
 // x[start + 2 o] onwards; only windows that reach beyond an end ask for the extension.
 void downsample(const Wavelet& wavelet, Boundary boundary, std::span<const double> signal,
-                std::vector<double>& low, std::vector<double>* high) {
+                Band& low, Band* high) {
   const Index n = std::ssize(signal);
   const Index taps = wavelet.taps();
   low.resize(dwt_length(signal.size(), static_cast<int>(taps), boundary));
   if (high != nullptr) high->resize(low.size());
   const Index count = std::ssize(low);
-  const Index start = (boundary == Boundary::periodization ? taps / 2 : 1) - taps + 1;
+  const Index start = window_start(boundary, taps);
   const Index first_inside = std::min((1 - start) / 2, count);
   const Index end_inside = std::max(first_inside, (n - taps - start + 2) / 2);
   const auto outputs = [&](Index o) {
     const bool both = high != nullptr;
-    return Pair{wavelet.decompose_low.data(), both ? wavelet.decompose_high.data() : nullptr,
-                low.data() + o, both ? high->data() + o : nullptr};
+    return FilterPair{wavelet.decompose_low.data(), both ? wavelet.decompose_high.data() : nullptr,
+                      low.data() + o, both ? high->data() + o : nullptr};
   };
 
   std::vector<double> window(static_cast<std::size_t>(taps));
@@ -164,7 +120,7 @@ void downsample(const Wavelet& wavelet, Boundary boundary, std::span<const doubl
 // Sets the signal to the dyadic upsampling of c, or adds it. The transform is orthonormal on a
 // circle of twice as many samples as coefficients under periodization, hence the indices that wrap
 // there.
-template <bool Adds>
+template <typename Put>
 void upsample(std::span<const double> filter, Boundary boundary, std::span<const double> c,
               std::span<double> signal) {
   if (c.empty()) return;
@@ -177,7 +133,7 @@ void upsample(std::span<const double> filter, Boundary boundary, std::span<const
 
   const auto at_an_end = [&](Index m) {
     const Index i = (m + shift) / 2;
-    if (!Adds) signal[m] = 0.0;
+    if (std::is_same_v<Put, Set>) signal[m] = 0.0;
     for (Index j = 0; j < half; ++j) {
       const Index k = wraps ? floor_mod(i - j, size) : i - j;
       if (k >= 0 && k < size) signal[m] += f[2 * j + (m + shift) % 2] * c[k];
@@ -188,7 +144,7 @@ void upsample(std::span<const double> filter, Boundary boundary, std::span<const
   for (Index m = 0; m < std::min(n, 2 * first - shift); ++m) at_an_end(m);
   if (end > first)
     wide([&] {
-      fill_pairs<Adds>(filter, c.data() + first, end - first, signal.data() + 2 * first - shift);
+      put_pairs(filter, c.data() + first, end - first, Put{signal.data() + 2 * first - shift});
     });
   for (Index m = 2 * end - shift; m < n; ++m) at_an_end(m);
 }
@@ -218,8 +174,8 @@ std::size_t dwt_length(std::size_t n, int taps, Boundary boundary) {
   return (n + static_cast<std::size_t>(taps) - 1) / 2;
 }
 
-void dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> signal,
-         std::vector<double>& low, std::vector<double>* high) {
+void dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> signal, Band& low,
+         Band* high) {
   if (signal.empty()) throw DataError("signal: 0 samples; accepted: at least 1");
   downsample(wavelet, boundary, signal, low, high);
 }
@@ -227,28 +183,11 @@ void dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> sign
 void inverse_dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> low,
                  std::span<const double> high, std::span<double> signal) {
   if (low.empty() && high.empty()) std::ranges::fill(signal, 0.0);
-  upsample<false>(wavelet.reconstruct_low, boundary, low, signal);
+  upsample<Set>(wavelet.reconstruct_low, boundary, low, signal);
   if (low.empty())
-    upsample<false>(wavelet.reconstruct_high, boundary, high, signal);
+    upsample<Set>(wavelet.reconstruct_high, boundary, high, signal);
   else
-    upsample<true>(wavelet.reconstruct_high, boundary, high, signal);
-}
-
-Decomposition decompose(const Wavelet& wavelet, Boundary boundary, int levels,
-                        std::span<const double> signal) {
-  if (levels < 0)
-    throw UsageError("level " + std::to_string(levels) + ": accepted: 0 or a positive number");
-  Decomposition parts;
-  parts.details.resize(static_cast<std::size_t>(levels));
-  std::vector<double> low;
-  for (std::vector<double>& detail : parts.details) {
-    parts.lengths.push_back(signal.size());
-    dwt(wavelet, boundary, signal, low, &detail);
-    parts.approximation.swap(low);
-    signal = parts.approximation;
-  }
-  if (levels == 0) parts.approximation.assign(signal.begin(), signal.end());
-  return parts;
+    upsample<Add>(wavelet.reconstruct_high, boundary, high, signal);
 }
 
 }  // namespace slideway

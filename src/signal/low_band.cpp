@@ -95,7 +95,7 @@ void interpolate(std::span<const Eigen::Index> cell, std::span<const double> wei
 // Room for the grid and each level, so that a matrix of columns allocates once.
 struct LowBand::Workspace {
   std::vector<double> grid;
-  std::vector<std::vector<double>> levels;
+  std::vector<Band> levels;
 };
 
 LowBand::LowBand(const LowBandOptions& options, std::span<const double> positions)
@@ -153,7 +153,7 @@ void LowBand::apply(std::span<const double> signal, std::span<double> coefficien
 void LowBand::transform(std::span<const double> grid, std::span<double> coefficients,
                         Workspace& workspace) const {
   workspace.levels.resize(static_cast<std::size_t>(options_.level));
-  for (std::vector<double>& low : workspace.levels) {
+  for (Band& low : workspace.levels) {
     dwt(wavelet_, options_.boundary, grid, low, nullptr);
     grid = low;
   }

@@ -39,7 +39,7 @@ class Part {
       std::span<const double> band(columns_.col(j).data(),
                                    static_cast<std::size_t>(columns_.rows()));
       levels_.resize(static_cast<std::size_t>(low_band_.options().level));
-      for (std::vector<double>& low : levels_) {
+      for (Band& low : levels_) {
         dwt(wavelet_, low_band_.options().boundary, band, low, nullptr);
         band = low;
       }
@@ -56,7 +56,7 @@ class Part {
   const FillColumns& fill_;
   Eigen::Index block_, early_;
   Eigen::MatrixXd columns_;
-  std::vector<std::vector<double>> levels_;
+  std::vector<Band> levels_;
 };
 
 }  // namespace

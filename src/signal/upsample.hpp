@@ -13,37 +13,55 @@ inline std::ptrdiff_t upsampling_shift(Boundary boundary, std::ptrdiff_t half) {
   return boundary == Boundary::periodization ? half - 1 : 2 * half - 2;
 }
 
+// What becomes of the filtered signal's sample m.
+struct Set {
+  double* out;
+  void operator()(std::ptrdiff_t m, double value) const { out[m] = value; }
+};
+struct Add {
+  double* out;
+  void operator()(std::ptrdiff_t m, double value) const { out[m] += value; }
+};
+struct SetAndSum {
+  double* out;
+  const double* other;
+  double* sum;
+  void operator()(std::ptrdiff_t m, double value) const {
+    out[m] = value;
+    sum[m] = other[m] + value;
+  }
+};
+
 // Half = 0: half the taps are known at run time only.
-template <bool Adds, std::ptrdiff_t Half>
-void pairs_of(std::span<const double> filter, const double* c, std::ptrdiff_t count, double* out) {
+template <std::ptrdiff_t Half, typename Put>
+void put_pairs(std::span<const double> filter, const double* c, std::ptrdiff_t count, Put put) {
   const std::ptrdiff_t half = Half > 0 ? Half : std::ssize(filter) / 2;
   const double* f = filter.data();
   for (std::ptrdiff_t i = 0; i < count; ++i) {
-    double even = 0.0, odd = 0.0;
-    for (std::ptrdiff_t j = 0; j < half; ++j) {
+    double even = f[0] * c[i], odd = f[1] * c[i];
+    for (std::ptrdiff_t j = 1; j < half; ++j) {
       even += f[2 * j] * c[i - j];
       odd += f[2 * j + 1] * c[i - j];
     }
-    out[2 * i] = (Adds ? out[2 * i] : 0.0) + even;
-    out[2 * i + 1] = (Adds ? out[2 * i + 1] : 0.0) + odd;
+    put(2 * i, even);
+    put(2 * i + 1, odd);
   }
 }
 
-// out[2 i + p] = Σ_j filter[2 j + p] c[i - j], or adds that, for 0 <= i < count and p of 0 and 1.
-template <bool Adds>
-void fill_pairs(std::span<const double> filter, const double* c, std::ptrdiff_t count,
-                double* out) {
+// put(2 i + p, Σ_j filter[2 j + p] c[i - j]) for 0 <= i < count and p of 0 and 1.
+template <typename Put>
+void put_pairs(std::span<const double> filter, const double* c, std::ptrdiff_t count, Put put) {
   switch (filter.size()) {
     case 2:
-      return pairs_of<Adds, 1>(filter, c, count, out);
+      return put_pairs<1>(filter, c, count, put);
     case 4:
-      return pairs_of<Adds, 2>(filter, c, count, out);
+      return put_pairs<2>(filter, c, count, put);
     case 6:
-      return pairs_of<Adds, 3>(filter, c, count, out);
+      return put_pairs<3>(filter, c, count, put);
     case 8:
-      return pairs_of<Adds, 4>(filter, c, count, out);
+      return put_pairs<4>(filter, c, count, put);
     default:
-      return pairs_of<Adds, 0>(filter, c, count, out);
+      return put_pairs<0>(filter, c, count, put);
   }
 }
 

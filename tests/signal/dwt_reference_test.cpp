@@ -73,7 +73,7 @@ TEST(DwtReference, AgreesWithMatlab) {
       signal = row.values;
       continue;
     }
-    std::vector<double> low, high;
+    Band low, high;
     dwt(banks.at(row.words[0]), modes.at(row.words[2]), signal, low, &high);
     EXPECT_THAT(kind == "ma" ? low : high, Pointwise(DoubleNear(1e-10), row.values))
         << row.words[0] << " n " << row.words[1] << ' ' << row.words[2] << ' ' << kind;

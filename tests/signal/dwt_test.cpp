@@ -8,6 +8,7 @@
 
 #include "signal/noise.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/signal/decomposition.hpp"
 
 namespace slideway {
 namespace {
@@ -24,7 +25,7 @@ std::vector<Boundary> all_boundaries() {
   return all;
 }
 
-double energy(const std::vector<double>& x) {
+double energy(std::span<const double> x) {
   return std::inner_product(x.begin(), x.end(), x.begin(), 0.0);
 }
 
@@ -53,7 +54,7 @@ TEST(Boundary, RefusesOtherNamesAndSaysWhatIsAccepted) {
 
 TEST(Dwt, OfDb1IsScaledSumsAndDifferencesOfPairs) {
   const std::vector<double> signal{3.0, 1.0, -2.0, 4.0};
-  std::vector<double> low, high;
+  Band low, high;
   for (const Boundary each : all_boundaries()) {
     dwt(daubechies("db1"), each, signal, low, &high);
     const double root = std::sqrt(2.0);
@@ -63,12 +64,12 @@ TEST(Dwt, OfDb1IsScaledSumsAndDifferencesOfPairs) {
 }
 
 TEST(Dwt, RefusesASignalWithoutSamples) {
-  std::vector<double> low;
+  Band low;
   EXPECT_THROW(dwt(daubechies("db2"), Boundary::symmetric, {}, low, nullptr), DataError);
 }
 
 TEST(Dwt, IsUndoneByItsInverseForEveryWaveletBoundaryAndLength) {
-  std::vector<double> low, high, restored;
+  Band low, high, restored;
   for (int number = 1; number <= 19; ++number) {
     const Wavelet wavelet = daubechies("db" + std::to_string(number));
     for (const Boundary each : all_boundaries())
@@ -89,7 +90,7 @@ TEST(Dwt, IsUndoneByItsInverseForEveryWaveletBoundaryAndLength) {
 
 // The transform is orthonormal on a circle.
 TEST(Dwt, KeepsTheEnergyOfEvenLengthsUnderPeriodization) {
-  std::vector<double> low, high;
+  Band low, high;
   for (int number = 1; number <= 19; ++number)
     for (const std::size_t n : {2u, 6u, 38u, 40u, 1000u}) {
       const std::vector<double> signal = white_noise(n, "energy");
@@ -101,7 +102,7 @@ TEST(Dwt, KeepsTheEnergyOfEvenLengthsUnderPeriodization) {
 
 TEST(Dwt, DetailsOfPolynomialsBelowTheNumberVanishAwayFromTheEnds) {
   constexpr std::size_t kSamples = 200;
-  std::vector<double> low, high;
+  Band low, high;
   for (int number = 1; number <= 19; ++number) {
     const Wavelet wavelet = daubechies("db" + std::to_string(number));
     std::vector<double> signal(kSamples);
@@ -116,12 +117,32 @@ TEST(Dwt, DetailsOfPolynomialsBelowTheNumberVanishAwayFromTheEnds) {
 
 TEST(Dwt, OnePointBoundariesOfASingleSampleGoOnAsAConstant) {
   const Wavelet wavelet = daubechies("db3");
-  std::vector<double> expected, low;
+  Band expected, low;
   dwt(wavelet, Boundary::constant, std::vector{2.5}, expected, nullptr);
   for (const Boundary each : {Boundary::smooth, Boundary::reflect, Boundary::antireflect}) {
     dwt(wavelet, each, std::vector{2.5}, low, nullptr);
     EXPECT_EQ(low, expected);
   }
+}
+
+TEST(Decomposition, OfALongSignalIsThatOfOneLevelAfterAnother) {
+  for (const int number : {1, 2, 3, 4, 12})
+    for (const Boundary each : all_boundaries())
+      for (const std::size_t n : {70'001u, 200'035u})
+        for (const int levels : {1, 5, 8}) {
+          const Wavelet wavelet = daubechies("db" + std::to_string(number));
+          const std::vector<double> signal = white_noise(n, "decomposition");
+          const Decomposition found = decompose(wavelet, each, levels, signal);
+          Band low(signal.begin(), signal.end()), coarser, detail;
+          for (int j = 0; j < levels; ++j) {
+            EXPECT_EQ(found.lengths[j], low.size());
+            dwt(wavelet, each, low, coarser, &detail);
+            EXPECT_TRUE(found.details[j] == detail)
+                << wavelet.name << ' ' << name(each) << ' ' << n << " level " << j + 1;
+            low.swap(coarser);
+          }
+          EXPECT_TRUE(found.approximation == low) << wavelet.name << ' ' << name(each) << ' ' << n;
+        }
 }
 
 TEST(Bands, AddUpToTheSignalAndTelescope) {
@@ -144,12 +165,12 @@ TEST(Bands, AddUpToTheSignalAndTelescope) {
 }
 
 // Coefficients of level `level` of a signal of n samples, the rest being zeros.
-std::vector<double> at_full_length(const Wavelet& wavelet, Boundary boundary,
-                                   const Decomposition& parts, std::size_t level, bool is_detail) {
-  std::vector<double> low = is_detail ? std::vector<double>() : parts.approximation;
-  std::vector<double> high = is_detail ? parts.details[level - 1] : std::vector<double>();
+Band at_full_length(const Wavelet& wavelet, Boundary boundary, const Decomposition& parts,
+                    std::size_t level, bool is_detail) {
+  Band low = is_detail ? Band() : parts.approximation;
+  Band high = is_detail ? parts.details[level - 1] : Band();
   for (std::size_t j = level; j > 0; --j) {
-    std::vector<double> finer(parts.lengths[j - 1]);
+    Band finer(parts.lengths[j - 1]);
     inverse_dwt(wavelet, boundary, low, high, finer);
     low = std::move(finer);
     high.clear();
@@ -187,7 +208,8 @@ TEST(Bands, ApproximationOfDb1IsTheMeanOfEachBlock) {
 TEST(Bands, OfNoLevelAreNone) {
   const std::vector<double> signal{1.0, 2.0, 4.0};
   EXPECT_TRUE(reconstruct_bands(daubechies("db2"), Boundary::zero, 0, signal).details.empty());
-  EXPECT_EQ(decompose(daubechies("db2"), Boundary::zero, 0, signal).approximation, signal);
+  EXPECT_EQ(decompose(daubechies("db2"), Boundary::zero, 0, signal).approximation,
+            Band(signal.begin(), signal.end()));
   EXPECT_THROW(decompose(daubechies("db2"), Boundary::zero, -1, signal), UsageError);
 }
 

@@ -9,6 +9,7 @@
 #include "signal/noise.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/signal/bands.hpp"
+#include "slideway/signal/decomposition.hpp"
 
 namespace slideway {
 namespace {
@@ -53,8 +54,9 @@ TEST(LowBand, IsTheLastApproximationOfTheDecomposition) {
   const LowBand low_band({"db4", 3, Boundary::reflect}, uniform(1001));
   EXPECT_FALSE(low_band.resampled());
   EXPECT_EQ(low_band.samples(), 1001);
-  EXPECT_EQ(applied(low_band, signal),
-            decompose(daubechies("db4"), Boundary::reflect, 3, signal).approximation);
+  EXPECT_THAT(
+      applied(low_band, signal),
+      ElementsAreArray(decompose(daubechies("db4"), Boundary::reflect, 3, signal).approximation));
 }
 
 // With samples missing the rest keeps its grid: where none is missing, the coefficients are those

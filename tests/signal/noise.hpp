@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -17,7 +18,7 @@ inline std::vector<double> white_noise(std::size_t n, std::string_view stream) {
   return signal;
 }
 
-inline double largest(const std::vector<double>& values) {
+inline double largest(std::span<const double> values) {
   double size = 0.0;
   for (const double value : values) size = std::max(size, std::abs(value));
   return size;

@@ -4,12 +4,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <sstream>
 
 #include "base/temporary_folder.hpp"
 #include "signal/noise.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/signal/dwt.hpp"
+#include "slideway/signal/decomposition.hpp"
 
 namespace slideway {
 namespace {
@@ -82,12 +83,12 @@ std::vector<double> next_line(std::istream& text) {
 }
 
 // The taps of PyWavelets are right to some 1e-12; five levels leave 1e-10 of the largest value.
-void expect_near(const std::vector<double>& ours, const std::vector<double>& theirs) {
+void expect_near(std::span<const double> ours, const std::vector<double>& theirs) {
   EXPECT_THAT(ours, Pointwise(DoubleNear(1e-10 * std::max(1.0, largest(theirs))), theirs));
 }
 
-std::vector<double> rebuilt_with_halved_details(const Case& each, Decomposition parts) {
-  std::vector<double> signal;
+Band rebuilt_with_halved_details(const Case& each, Decomposition parts) {
+  Band signal;
   for (std::size_t j = parts.details.size(); j > 0; --j) {
     for (double& value : parts.details[j - 1]) value *= 0.5;
     signal.resize(parts.lengths[j - 1]);

@@ -1,25 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "slideway/signal/dwt.hpp"
 
 namespace slideway {
-
-/// Memory that a resize leaves as it is: setting it to zero would take as long as what is then
-/// written into it.
-template <typename Value>
-struct Unset : std::allocator<Value> {
-  template <typename Other, typename... Arguments>
-  void construct(Other* at, Arguments&&... arguments) {
-    if constexpr (sizeof...(Arguments) > 0)
-      std::construct_at(at, std::forward<Arguments>(arguments)...);
-  }
-};
-using Band = std::vector<double, Unset<double>>;
 
 /// The bands at full length: a_1 ... a_L and d_1 ... d_L, each of N samples; a_L + Σ_j d_j is the
 /// signal to 1e-13 of its size.

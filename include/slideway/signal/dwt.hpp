@@ -1,12 +1,28 @@
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "slideway/signal/daubechies.hpp"
 
 namespace slideway {
+
+/// Memory that a resize leaves as it is: setting it to zero would take as long as what is then
+/// written into it.
+template <typename Value>
+struct Unset : std::allocator<Value> {
+  template <typename Other, typename... Arguments>
+  void construct(Other* at, Arguments&&... arguments) {
+    if constexpr (sizeof...(Arguments) > 0)
+      std::construct_at(at, std::forward<Arguments>(arguments)...);
+  }
+};
+/// Samples or coefficients of a band.
+using Band = std::vector<double, Unset<double>>;
 
 /// How a signal goes on beyond its ends; the names of PyWavelets.
 enum class Boundary {
@@ -34,22 +50,12 @@ std::size_t dwt_length(std::size_t n, int taps, Boundary boundary);
 
 /// One level of the discrete wavelet transform. `low` and `high` are resized; `high` may be null.
 /// Any length n >= 1.
-void dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> signal,
-         std::vector<double>& low, std::vector<double>* high);
+void dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> signal, Band& low,
+         Band* high);
 
 /// One level of the inverse transform of low and high (either may be empty: then zeros), cut to
 /// the size of the signal (as it was before that level).
 void inverse_dwt(const Wavelet& wavelet, Boundary boundary, std::span<const double> low,
                  std::span<const double> high, std::span<double> signal);
-
-/// All levels of a signal: approximation of the last level and the details of each.
-struct Decomposition {
-  std::vector<double> approximation;         // a_L
-  std::vector<std::vector<double>> details;  // details[j-1] is d_j
-  std::vector<std::size_t> lengths;          // lengths[j] samples before level j+1; lengths[0] = N
-};
-
-Decomposition decompose(const Wavelet& wavelet, Boundary boundary, int levels,
-                        std::span<const double> signal);
 
 }  // namespace slideway
