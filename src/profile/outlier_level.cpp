@@ -51,9 +51,13 @@ double Level::uneven_error(std::size_t i) const {
   return z[0] - meet(-2 * d, before, 2 * d, after);
 }
 
-// The middle of all errors, and their scale.
 void Level::find_scale() {
-  const std::size_t first = outermost(), count = values.size() - 2 * first;
+  find_scale(values.size(), [this](std::size_t i) { return error(i); });
+}
+
+// The middle of all errors, and their scale.
+void Level::find_scale(std::size_t size, const std::function<double(std::size_t)>& error_of) {
+  const std::size_t first = outermost(), count = size - 2 * first;
   const std::size_t take = std::min(count, kScaleFrom);
   std::vector<double> part;
   double along = 0.0;
@@ -62,7 +66,7 @@ void Level::find_scale() {
     along += along + kGolden < 1.0 ? kGolden : kGolden - 1.0;
     const std::size_t i =
         first + (take == count ? k : static_cast<std::size_t>(along * static_cast<double>(count)));
-    if (judged(i)) part.push_back(error(i));
+    if (judged(i)) part.push_back(error_of(i));
   }
   if (!cubic && !part.empty()) middle = median(part);  // the curvature of the whole
   for (double& each : part) each -= middle;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -53,6 +54,7 @@ struct Level {
   }
   [[nodiscard]] double uneven_error(std::size_t i) const;
   void find_scale();
+  void find_scale(std::size_t size, const std::function<double(std::size_t)>& error_of);
   void find_errors();
   [[nodiscard]] std::uint64_t count_above(double least, std::size_t from, std::size_t to) const;
   [[nodiscard]] bool any_above(double least) const;

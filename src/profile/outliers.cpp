@@ -1,6 +1,7 @@
 #include "slideway/profile/outliers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -18,6 +19,13 @@ constexpr double kUniform = 1e-3;     // of the mean step
 constexpr double kGap = 1.9;          // steps
 constexpr double kGain = 1.4;         // of rounding in a prediction error
 
+// Pairs of means as the next means.
+void halve(std::vector<double>& means) {
+  for (std::size_t j = 0; 2 * j + 1 < means.size(); ++j)
+    means[j] = 0.5 * (means[2 * j] + means[2 * j + 1]);
+  means.resize(means.size() / 2);
+}
+
 double mean(std::span<const double> values, std::size_t first, std::size_t count) {
   double sum = 0.0;
   for (std::size_t i = first; i < first + count; ++i) sum += values[i];
@@ -32,16 +40,37 @@ double limit_of(double count) {
   return z;
 }
 
+// Means of 2^halvings samples, and how far away their neighbours are.
+struct Look {
+  int halvings = 0;
+  std::size_t lag = 1;
+};
+
+// A level, and what an error must be larger than.
+struct Threshold {
+  Level level;
+  double least = 0.0;
+};
+
 class Search {
  public:
   Search(std::span<const double> positions, std::span<const double> values);
-  void look(int halvings, std::size_t lag);
+  // What is looked at, coarse first.
+  [[nodiscard]] std::vector<Look> looks() const;
+  // Whether no look would find a candidate, in one reading and without memory for means. Only of
+  // profiles of even steps that are not short; false of others.
+  [[nodiscard]] bool nothing_stands_out() const;
+  void look(const Look& look);
   [[nodiscard]] bool is_short() const { return values_.size() < kShort; }
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] std::vector<Outlier> found() const;
 
  private:
+  [[nodiscard]] Level level_of(int halvings) const;
   void fill_level(int halvings);
+  [[nodiscard]] double limit() const { return limit_of(3.0 * static_cast<double>(size())); }
+  [[nodiscard]] bool any_above(std::vector<Threshold>& thresholds, std::size_t first,
+                               std::size_t last, std::vector<double>& means) const;
   void take_out(int halvings, std::size_t i, double error);
   [[nodiscard]] double between(std::size_t left, std::size_t right, std::size_t i) const;
 
@@ -106,17 +135,35 @@ Search::Search(std::span<const double> positions, std::span<const double> values
   scale_ = level_.scale;
 }
 
+std::vector<Look> Search::looks() const {
+  std::vector<Look> out;
+  for (int halvings = kCoarsest; halvings >= 0 && !is_short(); --halvings)
+    if ((size() >> halvings) >= kShort) out.push_back({halvings, 2});
+  out.push_back({0, 1});
+  return out;
+}
+
+// Without values.
+Level Search::level_of(int halvings) const {
+  Level out;
+  out.cubic = !is_short();
+  out.uniform = uniform_;
+  out.block = std::size_t{1} << halvings;
+  const auto block = static_cast<double>(out.block);
+  out.widest = kGap * step_ * block;
+  out.rounding = kGain * rounding_ / std::sqrt(block);
+  out.samples = positions_;
+  return out;
+}
+
 void Search::fill_level(int halvings) {
-  const std::size_t block = std::size_t{1} << halvings, n = size() / block;
-  level_.cubic = !is_short();
-  level_.uniform = uniform_;
-  level_.block = block;
-  level_.widest = kGap * step_ * static_cast<double>(block);
-  level_.rounding = kGain * rounding_ / std::sqrt(static_cast<double>(block));
-  level_.samples = level_.positions = positions_;
+  level_ = level_of(halvings);
+  level_.positions = positions_;
   level_.values = clean_;
+  const std::size_t block = level_.block, n = size() / block;
   if (block == 1) return;
   level_positions_.resize(uniform_ ? 0 : n);
+  level_values_.reserve(size() / 2);
   level_values_.resize(n);
   parallel_parts(n, kPart, [&](std::size_t /*part*/, std::size_t first, std::size_t last) {
     for (std::size_t j = first; j < last; ++j) {
@@ -128,12 +175,59 @@ void Search::fill_level(int halvings) {
   level_.values = level_values_;
 }
 
-void Search::look(int halvings, std::size_t lag) {
+bool Search::nothing_stands_out() const {
+  constexpr std::size_t kChunk = 1 << 13;  // samples whose means stay in the cache
+  if (!uniform_ || is_short()) return false;
+  std::vector<Threshold> thresholds;
+  for (const Look& look : looks()) {
+    Level level = level_of(look.halvings);
+    level.lag = look.lag;
+    level.find_scale(size() / level.block, [&](std::size_t i) {
+      std::array<double, 5> means{};
+      for (std::size_t k = 0; k < means.size(); ++k)
+        means[k] = mean(values_, (i + (k * look.lag) - 2 * look.lag) * level.block, level.block);
+      return Level::cubic_error(&means[2], 1);
+    });
+    thresholds.push_back({level, limit() * level.scale});
+  }
+  std::vector<char> found(parts_of(size(), kPart));
+  parallel_parts(size(), kPart, [&](std::size_t part, std::size_t first, std::size_t last) {
+    std::vector<Threshold> own = thresholds;
+    std::vector<double> means;
+    for (std::size_t at = first; at < last && found[part] == 0; at += kChunk)
+      found[part] = any_above(own, at, std::min(last, at + kChunk), means) ? 1 : 0;
+  });
+  return std::ranges::find(found, 1) == found.end();
+}
+
+// Whether a mean of samples first ... last - 1 is one to look at.
+bool Search::any_above(std::vector<Threshold>& thresholds, std::size_t first, std::size_t last,
+                       std::vector<double>& means) const {
+  constexpr std::size_t kMargin = std::size_t{4} << kCoarsest;  // samples that judge the outermost
+  const std::size_t from = first - std::min(first, kMargin), to = std::min(size(), last + kMargin);
+  means.assign(values_.begin() + static_cast<std::ptrdiff_t>(from),
+               values_.begin() + static_cast<std::ptrdiff_t>(to));
+  for (std::size_t block = 1; block <= thresholds.front().level.block; block *= 2) {
+    if (block > 1) halve(means);
+    for (Threshold& each : thresholds) {
+      if (each.level.block != block) continue;
+      each.level.values = means;
+      const std::size_t before = from / block, outermost = each.level.outermost();
+      const std::size_t begin = std::max(first / block, outermost);
+      const std::size_t end = std::min(last / block, size() / block - outermost);
+      if (end > begin && each.level.count_above(each.least, begin - before, end - before) > 0)
+        return true;
+    }
+  }
+  return false;
+}
+
+void Search::look(const Look& look) {
+  const auto [halvings, lag] = look;
   if (level_.values.size() != size() >> halvings) fill_level(halvings);
   level_.lag = lag;
   level_.find_scale();
-  const double limit = limit_of(3.0 * static_cast<double>(size()));  // errors of all levels
-  const double least = is_short() ? 0.0 : limit * level_.scale;
+  const double least = is_short() ? 0.0 : limit() * level_.scale;
   if (!level_.any_above(least)) return;
   level_.find_errors();
   std::vector<std::size_t> candidates;
@@ -146,7 +240,7 @@ void Search::look(int halvings, std::size_t lag) {
   for (const std::size_t i : candidates) {
     if (std::abs(level_.errors[i]) <= structure) break;
     const double error = level_.error(i) - level_.middle;  // now that larger ones are taken out
-    if (std::abs(error) > std::max(structure, limit * level_.scale_at(i, limit)) &&
+    if (std::abs(error) > std::max(structure, limit() * level_.scale_at(i, limit())) &&
         level_.missed_from_either_side(i, error))
       take_out(halvings, i, error);
   }
@@ -214,12 +308,8 @@ std::vector<Outlier> find_outliers(std::span<const double> positions,
                                    std::span<const double> values) {
   if (values.size() < kLeast) return {};
   Search search(positions, values);
-  if (!search.is_short()) {
-    for (int halvings = kCoarsest; halvings > 0; --halvings)
-      if ((search.size() >> halvings) >= kShort) search.look(halvings, 2);
-    search.look(0, 2);
-  }
-  search.look(0, 1);
+  if (search.nothing_stands_out()) return {};
+  for (const Look& look : search.looks()) search.look(look);
   return search.found();
 }
 
