@@ -85,6 +85,13 @@ struct RunningSums {
   Eigen::VectorXd sum, squares;
 };
 
+// Means of so many values each; of what is left at the end there is none.
+Eigen::VectorXd means(const Eigen::VectorXd& x, Eigen::Index block) {
+  if (block == 1) return x;
+  const Eigen::Index count = x.size() / block;
+  return x.head(count * block).reshaped(block, count).colwise().mean().transpose();
+}
+
 // The next size whose transform is quick: a product of 2, 3 and 5.
 std::size_t quick_size(std::size_t least) {
   for (std::size_t size = least;; ++size) {
@@ -199,24 +206,37 @@ std::vector<double> autocorrelation(std::span<const double> x, int max_lag) {
 }
 
 double effective_observations(std::span<const double> x, std::span<const double> y) {
+  constexpr Eigen::Index kDirect = 36, kAtOnce = 8;  // few lags are cheaper than a transform
+  constexpr Eigen::Index kLong = 1 << 14, kMeans = 8;
   const Eigen::VectorXd dx = centred(x);
   const Eigen::VectorXd dy = centred(y);
   const double scale = dx.squaredNorm() * dy.squaredNorm();
   const auto n = static_cast<double>(dx.size());
-  constexpr Eigen::Index kDirect = 32, kAtOnce = 8;  // few lags are cheaper than a transform
-  std::vector<double> some_x, some_y;
-  std::vector<std::complex<double>> all;
   double sum = 0.0;
-  for (Eigen::Index k = 1; k < dx.size() && scale > 0.0; ++k) {
+  // Adds what so many lags about this one have; false where the sum is cut.
+  const auto add = [&](Eigen::Index lag, Eigen::Index lags, double product) {
+    if (product <= 0.0) return false;
+    sum += static_cast<double>(lags) * (1.0 - static_cast<double>(lag) / n) * product / scale;
+    return true;
+  };
+  bool goes_on = scale > 0.0;
+  std::vector<double> some_x, some_y;
+  for (Eigen::Index k = 1; goes_on && k <= std::min(kDirect, dx.size() - 1); ++k) {
     const Eigen::Index i = (k - 1) % kAtOnce;
-    if (k <= kDirect && i == 0) {
+    if (i == 0) {
       some_x = lagged_products(view(dx), view(dx), k, kAtOnce);
       some_y = lagged_products(view(dy), view(dy), k, kAtOnce);
     }
-    if (k == kDirect + 1) all = all_lagged_products(dx, dy);
-    const double product = k <= kDirect ? some_x[i] * some_y[i] : all[k].real() * all[k].imag();
-    if (product <= 0.0) break;
-    sum += (1.0 - static_cast<double>(k) / n) * product / scale;
+    goes_on = add(k, 1, some_x[i] * some_y[i]);
+  }
+  if (goes_on && dx.size() > kDirect + 1) {
+    const Eigen::Index block = dx.size() > kLong ? kMeans : 1;
+    const Eigen::VectorXd mean_x = means(dx, block), mean_y = means(dy, block);
+    const std::vector<std::complex<double>> all = all_lagged_products(mean_x, mean_y);
+    // As many products of means are so much fewer than those of the values.
+    const auto squares = static_cast<double>(block * block);
+    for (Eigen::Index k = kDirect / block + 1; goes_on && k < mean_x.size(); ++k)
+      goes_on = add(k * block, block, squares * all[k].real() * all[k].imag());
   }
   return std::clamp(n / (1.0 + 2.0 * sum), std::min(3.0, n), n);
 }

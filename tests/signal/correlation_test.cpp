@@ -199,6 +199,19 @@ TEST(EffectiveObservations, IsBartlettsFormulaAtShortAndLongMemory) {
     }
 }
 
+// Beyond lag 36 eight lags have the product in their middle, half a lag off and smoothed over
+// fifteen: of a memory of 100 values that is below 1 % of the sum.
+TEST(EffectiveObservations, OfALongSeriesIsBartlettsFormulaForMeansAtLongLags) {
+  constexpr std::size_t kSamples = 20'000;
+  const std::vector<double> trend = slope(kSamples);
+  std::vector<double> noisy = white_noise(kSamples, "noisy");
+  for (std::size_t i = 0; i < kSamples; ++i) noisy[i] += 0.0002 * static_cast<double>(i);
+  for (const auto& x : {trend, noisy, first_order(kSamples, 0.99, "x")}) {
+    EXPECT_NEAR(effective_observations(x, x) / std::max(3.0, bartlett(x, x)), 1.0, 0.01);
+    EXPECT_NEAR(effective_observations(x, trend) / std::max(3.0, bartlett(x, trend)), 1.0, 0.01);
+  }
+}
+
 TEST(EffectiveObservations, OfFirstOrderSeriesTendsToTheKnownShare) {
   constexpr std::size_t kSamples = 100'000;
   const std::vector<double> x = first_order(kSamples, 0.8, "first");

@@ -38,7 +38,8 @@ std::vector<double> autocorrelation(std::span<const double> x, int max_lag);
 
 /// Number of independent observations the correlation of x and y rests on,
 ///   N / (1 + 2 Σ_k (1 - k/N) r_x(k) r_y(k))   (Bartlett),
-/// the sum cut at the first lag where the product is no longer positive; between 3 and N.
+/// the sum cut at the first lag where the product is no longer positive; between 3 and N. Of more
+/// than 16,384 values lags beyond 36 are those of means of 8.
 double effective_observations(std::span<const double> x, std::span<const double> y);
 
 /// Two-sided p-value of a correlation coefficient r on n (effective) observations, Student's t with
