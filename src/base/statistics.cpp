@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slideway/base/parallel.hpp"
+#include "slideway/base/wide.hpp"
 
 namespace slideway {
 namespace {
@@ -15,7 +16,7 @@ constexpr std::size_t kLanes = 4;       // independent sums
 
 struct Part {
   double count = 0.0, mean = 0.0, squares = 0.0;  // about the mean
-  double least = INFINITY, largest = -INFINITY;
+  double least = 0.0, largest = 0.0;
 };
 
 template <typename Term>
@@ -33,10 +34,21 @@ Part part_of(std::span<const double> values) {
   const double first = values[0];  // what is counted from it keeps its digits
   out.mean = first + sum_of(values, [&](double v) { return v - first; }) / out.count;
   out.squares = sum_of(values, [&](double v) { return (v - out.mean) * (v - out.mean); });
-  for (const double value : values) {
-    out.least = std::min(out.least, value);
-    out.largest = std::max(out.largest, value);
+  std::array<double, 2 * kLanes> least, largest;
+  least.fill(first);
+  largest.fill(first);
+  std::size_t i = 0;
+  for (; i + least.size() <= values.size(); i += least.size())
+    for (std::size_t k = 0; k < least.size(); ++k) {
+      least[k] = std::min(least[k], values[i + k]);
+      largest[k] = std::max(largest[k], values[i + k]);
+    }
+  for (; i < values.size(); ++i) {
+    least[0] = std::min(least[0], values[i]);
+    largest[0] = std::max(largest[0], values[i]);
   }
+  out.least = std::ranges::min(least);
+  out.largest = std::ranges::max(largest);
   return out;
 }
 
@@ -51,7 +63,7 @@ Part combined(const Part& a, const Part& b) {
 Statistics statistics_of(std::span<const double> values) {
   std::vector<Part> parts(parts_of(values.size(), kPart));
   parallel_parts(values.size(), kPart, [&](std::size_t p, std::size_t first, std::size_t last) {
-    parts[p] = part_of(values.subspan(first, last - first));
+    wide([&] { parts[p] = part_of(values.subspan(first, last - first)); });
   });
   Part all = parts[0];
   for (std::size_t p = 1; p < parts.size(); ++p) all = combined(all, parts[p]);

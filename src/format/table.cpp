@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kChunk = 1 << 18;  // bytes read at a time, up to the end of a line
-constexpr std::size_t kTogether = 16;    // chunks that are read at once
+constexpr std::size_t kTogether = 8;    // chunks that are read at once
 
 // The rows of a chunk. The memory serves the next one.
 struct Rows {
@@ -280,22 +280,33 @@ std::vector<std::span<const double>> Reader::columns_of(const Rows& rows) const 
 }
 
 // Where the chunks begin and the order of what is in them do not depend on the number of threads.
+// Rows are taken while those of the next chunks are read.
 Table Reader::read(const TakeRows& take) {
   Table table;
   table.names = dialect_.names;
   table.units = dialect_.units;
   table.decisions.push_back(dialect_.decision);
   const auto size = static_cast<double>(end_ - at_);
-  std::vector<Rows> rows(kTogether);
-  while (at_ < end_ && !targets_.empty()) {
+  struct Batch {
     std::vector<Reader> chunks;
-    while (at_ < end_ && chunks.size() < kTogether) chunks.push_back(take_chunk());
-    parallel_for(chunks.size(), [&](std::size_t i) { chunks[i].read_rows(rows[i]); });
-    for (std::size_t i = 0; i < chunks.size(); ++i) {
-      missing_ += chunks[i].missing_;
-      take({table, columns_of(rows[i]), static_cast<double>(chunks[i].end_ - first_) / size});
+    std::vector<Rows> rows = std::vector<Rows>(kTogether);
+  } taken, next;
+  const auto take_all = [&] {
+    for (std::size_t i = 0; i < taken.chunks.size(); ++i) {
+      const Reader& chunk = taken.chunks[i];
+      missing_ += chunk.missing_;
+      take({table, columns_of(taken.rows[i]), static_cast<double>(chunk.end_ - first_) / size});
     }
-  }
+  };
+  do {
+    next.chunks.clear();
+    while (at_ < end_ && next.chunks.size() < kTogether && !targets_.empty())
+      next.chunks.push_back(take_chunk());
+    parallel_for(next.chunks.size() + 1, [&](std::size_t i) {
+      i == 0 ? take_all() : next.chunks[i - 1].read_rows(next.rows[i - 1]);
+    });
+    std::swap(taken, next);
+  } while (!taken.chunks.empty());
   if (missing_ > 0)
     table.decisions.push_back(std::to_string(missing_) +
                               (missing_ == 1 ? " value is" : " values are") +

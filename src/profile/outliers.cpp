@@ -7,6 +7,7 @@
 
 #include "outlier_level.hpp"
 #include "slideway/base/parallel.hpp"
+#include "slideway/base/wide.hpp"
 
 namespace slideway {
 namespace {
@@ -93,20 +94,36 @@ struct Extremes {
   double largest = 0.0;          // value but the first
 };
 
+// Of samples first to last and those before them, in lanes that know nothing of one another.
+Extremes extremes_of(const double* positions, const double* values, std::size_t first,
+                     std::size_t last) {
+  using Lanes = std::array<double, 8>;
+  Lanes least_step, largest_step, resolution, largest{};
+  least_step.fill(INFINITY);
+  largest_step.fill(-INFINITY);
+  resolution.fill(INFINITY);
+  const auto add = [&](std::size_t k, std::size_t i) {
+    const double step = positions[i] - positions[i - 1];
+    const double change = std::abs(values[i] - values[i - 1]);
+    const double moved = change > 0.0 ? change : INFINITY;
+    least_step[k] = std::min(least_step[k], step);
+    largest_step[k] = std::max(largest_step[k], step);
+    resolution[k] = std::min(resolution[k], moved);
+    largest[k] = std::max(largest[k], std::abs(values[i]));
+  };
+  std::size_t i = first;
+  for (; i + largest.size() <= last + 1; i += largest.size())
+    for (std::size_t k = 0; k < largest.size(); ++k) add(k, i + k);
+  for (; i <= last; ++i) add(0, i);
+  return {std::ranges::min(least_step), std::ranges::max(largest_step),
+          std::ranges::min(resolution), std::ranges::max(largest)};
+}
+
 Extremes extremes_of(std::span<const double> positions, std::span<const double> values) {
   const std::size_t n = values.size();
   std::vector<Extremes> parts(parts_of(n - 1, kPart));
   parallel_parts(n - 1, kPart, [&](std::size_t part, std::size_t first, std::size_t last) {
-    Extremes all;
-    for (std::size_t i = first + 1; i < last + 1; ++i) {
-      const double step = positions[i] - positions[i - 1];
-      const double change = std::abs(values[i] - values[i - 1]);
-      all.least_step = std::min(all.least_step, step);
-      all.largest_step = std::max(all.largest_step, step);
-      all.resolution = std::min(all.resolution, change > 0.0 ? change : INFINITY);
-      all.largest = std::max(all.largest, std::abs(values[i]));
-    }
-    parts[part] = all;
+    wide([&] { parts[part] = extremes_of(positions.data(), values.data(), first + 1, last); });
   });
   Extremes out;
   for (const Extremes& part : parts)

@@ -12,14 +12,15 @@ namespace {
 using Index = std::ptrdiff_t;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr Index kLags = 8;  // at once
+constexpr Index kMany = 40, kFew = 8;  // lags at once; many keep the processor busy
 
 // out[l] += Σ x_t y_(t+l), t < count
+template <Index Lags>
 void add_products(const double* x, const double* y, Index count, double* out) {
-  std::array<double, kLags> sums{};
+  std::array<double, Lags> sums{};
   for (Index t = 0; t < count; ++t)
-    for (Index l = 0; l < kLags; ++l) sums[l] += x[t] * y[t + l];
-  for (Index l = 0; l < kLags; ++l) out[l] += sums[l];
+    for (Index l = 0; l < Lags; ++l) sums[l] += x[t] * y[t + l];
+  for (Index l = 0; l < Lags; ++l) out[l] += sums[l];
 }
 
 double product(std::span<const double> x, std::span<const double> y, Index lag, Index from,
@@ -84,21 +85,30 @@ std::vector<double> lagged_products(std::span<const double> x, std::span<const d
                                     Index first, std::size_t count) {
   constexpr Index kChunk = 4096;  // samples that stay in the cache for all lags
   const Index n = std::ssize(x), lags = static_cast<Index>(count);
-  std::vector<double> out((count + kLags - 1) / kLags * kLags);
+  std::vector<double> out((count + kFew - 1) / kFew * kFew);
   const auto from = [](Index lag) { return std::max<Index>(0, -lag); };
   const auto to = [n](Index lag) { return std::max<Index>(0, std::min(n, n - lag)); };
+  const auto at_once = [lags](Index l) { return l + kMany <= lags ? kMany : kFew; };
   // What all lags at once have, chunk by chunk; then what is left of each.
   for (Index chunk = 0; chunk < n; chunk += kChunk)
-    for (Index l = 0; l < lags; l += kLags) {
+    for (Index l = 0; l < lags; l += at_once(l)) {
       const Index begin = std::max(chunk, from(first + l));
-      const Index end = std::min(chunk + kChunk, to(first + l + kLags - 1));
-      if (end > begin) add_products(&x[begin], &y[begin + first + l], end - begin, &out[l]);
+      const Index end = std::min(chunk + kChunk, to(first + l + at_once(l) - 1));
+      if (end <= begin) continue;
+      const double *const now = &x[begin], *const later = &y[begin + first + l];
+      if (at_once(l) == kMany)
+        wide([&] { add_products<kMany>(now, later, end - begin, &out[l]); });
+      else
+        add_products<kFew>(now, later, end - begin, &out[l]);
     }
-  for (Index l = 0; l < lags; ++l) {
-    const Index lag = first + l, group = first + l / kLags * kLags;
-    const Index begin = from(group), end = std::max(begin, to(group + kLags - 1));
-    out[l] += product(x, y, lag, from(lag), std::min(begin, to(lag))) +
-              product(x, y, lag, std::max(end, from(lag)), to(lag));
+  for (Index group = 0; group < lags; group += at_once(group)) {
+    const Index begin = from(first + group);
+    const Index end = std::max(begin, to(first + group + at_once(group) - 1));
+    for (Index l = group; l < std::min(lags, group + at_once(group)); ++l) {
+      const Index lag = first + l;
+      out[l] += product(x, y, lag, from(lag), std::min(begin, to(lag))) +
+                product(x, y, lag, std::max(end, from(lag)), to(lag));
+    }
   }
   out.resize(count);
   return out;
