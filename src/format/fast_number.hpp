@@ -6,8 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <system_error>
+
+#include "decimal_scale.hpp"
 
 // Numbers straight from the bytes of a regular row. Nothing here looks for the end of the bytes:
 // it gets only lines that end with a newline, and all of it stops there.
@@ -125,28 +126,6 @@ inline const char* read_exponent(const char* at, std::ptrdiff_t& exponent) {
   return at;
 }
 
-// A quotient or product of up to 19 digits and a power of ten, with 64 bits: rounding once more to
-// 53 is correct unless those are a tie, which only the first rounding may have made. False for a
-// tie, or where a long double has other than 64 bits.
-inline bool scale_long(std::uint64_t mantissa, std::ptrdiff_t exponent, double& size) {
-  if constexpr (std::numeric_limits<long double>::digits == 64) {
-    static constexpr auto kPowers = [] {
-      std::array<long double, 28> powers{1.0L};  // exact up to here
-      for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = 10.0L * powers[i - 1];
-      return powers;
-    }();
-    if (exponent < -27 || exponent > 27) return false;
-    const auto exact = static_cast<long double>(mantissa);
-    const long double scaled =
-        exponent < 0 ? exact / kPowers[-exponent] : exact * kPowers[exponent];
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &scaled, 8);
-    size = static_cast<double>(scaled);
-    return (bits & 0x7ffU) != 0x400U;
-  }
-  return false;
-}
-
 inline const char* read_any_number(const char* start, const char* end, char decimal,
                                    double& value) {
   if (decimal != '.') return nullptr;
@@ -162,10 +141,9 @@ inline const char* read_any_number(const char* start, const char* end, char deci
   const char* zero = text[0] + (minus || *text[0] == '+');
   for (; digits.count > 19 && (*zero == '0' || *zero == decimal); ++zero)
     digits.count -= *zero == '0';
-  double size = 0.0;
-  if (digits.count > 19 || !scale_long(digits.mantissa, digits.exponent, size))
+  if (digits.count > 19 || digits.exponent < kLeastScale || digits.exponent > kLargestScale)
     return read_any_number(text[0], end, decimal, value);
-  value = minus ? -size : size;
+  value = scaled(digits.mantissa, digits.exponent) * kSigns[minus ? 1 : 0];
   return text[1];
 }
 

@@ -19,6 +19,7 @@ namespace slideway {
 class PlainRow {
  public:
   static constexpr std::ptrdiff_t kBefore = 17, kRoom = 64;  // bytes that are looked at
+  static constexpr unsigned kAtOnce = 16;                    // digits
 
   // REQUIRES kBefore bytes before `at` and kRoom from there on.
   PlainRow(const char* at, char decimal) : row_(at), decimal_(decimal) {
@@ -37,7 +38,7 @@ class PlainRow {
     const std::size_t minus = pass_sign(digit);
     const auto first = static_cast<unsigned>(digit - row_);
     others_ &= others_ - (first - at_);
-    unsigned end = next_end(), fraction = 0, count = end - first, unmoved = 16;
+    unsigned end = next_end(), fraction = 0, count = end - first, unmoved = 2 * kAtOnce;
     if (row_[end] == decimal_) {
       const unsigned point = end;
       others_ &= others_ - 1;
@@ -49,11 +50,18 @@ class PlainRow {
     if (row_[end + (is_crlf ? 1 : 0)] != mark || count == 0) return false;
     others_ &= others_ - 1;
     at_ = end + (is_crlf ? 2 : 1);
-    const std::uint64_t mantissa = count <= 16 ? digits(row_ + end, count, unmoved) : ~0ULL;
-    if (mantissa > kLargestExact)
+    std::uint64_t mantissa = 0;
+    if (count <= kAtOnce) {
+      mantissa = digits(row_ + end, count, unmoved);
+      if (mantissa <= kLargestExact) [[likely]] {
+        value = static_cast<double>(static_cast<std::int64_t>(mantissa)) / kPowersOfTen[fraction] *
+                kSigns[minus];
+        return true;
+      }
+    } else if (!long_digits(row_ + end, count, unmoved, mantissa) || fraction > -kLeastScale) {
       return read_number(text, row_ + kRoom, decimal_, value) != nullptr;
-    value = static_cast<double>(static_cast<std::int64_t>(mantissa)) / kPowersOfTen[fraction] *
-            kSigns[minus];
+    }
+    value = scaled(mantissa, -static_cast<std::ptrdiff_t>(fraction)) * kSigns[minus];
     return true;
   }
   [[nodiscard]] const char* at() const { return row_ + at_; }
@@ -64,11 +72,24 @@ class PlainRow {
     return static_cast<unsigned>(std::countr_zero(others_));
   }
 
-  // The 1 to 16 digits before `end`, with a mark among them before the last `unmoved`.
+  // 17 digits and more, zeros in front too; false if they are too many.
+  static bool long_digits(const char* end, unsigned count, unsigned unmoved,
+                          std::uint64_t& mantissa) {
+    constexpr std::uint64_t kRadix = 10'000'000'000'000'000U;
+    if (count > 2 * kAtOnce) return false;
+    const std::uint64_t before = unmoved < kAtOnce
+                                     ? digits(end - kAtOnce - 1, count - kAtOnce, kAtOnce)
+                                     : digits(end - kAtOnce, count - kAtOnce, unmoved - kAtOnce);
+    mantissa = before * kRadix + digits(end, kAtOnce, unmoved);
+    return before < ~std::uint64_t{0} / kRadix;
+  }
+
+  // The 1 to 16 digits before `end`, with a mark among them before the last `unmoved`; none if
+  // those are as many.
   static std::uint64_t digits(const char* end, unsigned count, unsigned unmoved) {
     static constexpr auto kLast = [] {  // from [n] on: a mask of the last n of 16 bytes
-      std::array<unsigned char, 32> masks{};
-      for (std::size_t i = 16; i < masks.size(); ++i) masks[i] = 0x0f;
+      std::array<unsigned char, 3 * kAtOnce> masks{};
+      for (std::size_t i = kAtOnce; i < masks.size(); ++i) masks[i] = 0x0f;
       return masks;
     }();
     const __m128i after = load(&kLast[unmoved]), all = load(&kLast[count]);

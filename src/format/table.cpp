@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kChunk = 1 << 18;  // bytes read at a time, up to the end of a line
-constexpr std::size_t kTogether = 8;    // chunks that are read at once
+constexpr std::size_t kTogether = 8;     // chunks that are read at once
 
 // The rows of a chunk. The memory serves the next one.
 struct Rows {

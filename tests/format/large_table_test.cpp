@@ -48,7 +48,7 @@ TEST(LargeTable, ReadsEveryRowInOrderAndRoundsAsStrtodDoes) {
   }
 }
 
-// As instruments and programs print: 1 to 17 digits, fixed or with an exponent, of sizes that
+// As instruments and programs print: 1 to 17 digits, or up to 23 behind the point, of sizes that
 // profiles have, or of any.
 std::string printed(std::mt19937_64& random) {
   double value =
@@ -60,7 +60,7 @@ std::string printed(std::mt19937_64& random) {
   std::array<char, 64> digits;
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
                                  fixed ? std::chars_format::fixed : std::chars_format::general,
-                                 static_cast<int>(random() % 17) + (fixed ? 0 : 1));
+                                 static_cast<int>(fixed ? random() % 24 : 1 + random() % 17));
   return {digits.data(), end.ptr};
 }
 
@@ -85,6 +85,29 @@ TEST(LargeTable, RoundsAMillionNumbersAsFromCharsDoes) {
               << number;
         }
     }
+}
+
+// Halfway between two doubles, and next to that: odd m of 54 bits over 2^q are m 5^q of 16 to 20
+// digits, q of them behind the point.
+TEST(LargeTable, RoundsTiesToEvenAsStrtodDoes) {
+  std::mt19937_64 random(3);
+  std::vector<std::string> numbers;
+  std::string text = "x,z\n";
+  for (int i = 0; i < 100'000; ++i) {
+    const std::size_t places = random() % 5;
+    std::uint64_t digits = (std::uint64_t{1} << 53U) + ((random() >> 11U) | 1U);
+    for (std::size_t k = 0; k < places; ++k) digits *= 5;
+    std::string number = std::to_string(digits + random() % 3 - 1);
+    if (places > 0) number.insert(number.size() - places, ".");
+    text += number + ",-" + number + "\n";
+    numbers.push_back(std::move(number));
+  }
+  const Table table = parse_table(text, kBoth);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const double expected = std::strtod(numbers[i].c_str(), nullptr);
+    ASSERT_EQ(table.columns[0][i], expected) << numbers[i];
+    ASSERT_EQ(table.columns[1][i], -expected) << numbers[i];
+  }
 }
 
 TEST(LargeTable, ReadsDecimalCommasAsPoints) {
