@@ -98,7 +98,7 @@ TEST(LargeTable, RoundsTiesToEvenAsStrtodDoes) {
     std::uint64_t digits = (std::uint64_t{1} << 53U) + ((random() >> 11U) | 1U);
     for (std::size_t k = 0; k < places; ++k) digits *= 5;
     std::string number = std::to_string(digits + random() % 3 - 1);
-    if (places > 0) number.insert(number.size() - places, ".");
+    if (places > 0) number.insert(number.end() - static_cast<std::ptrdiff_t>(places), '.');
     text += number + ",-" + number + "\n";
     numbers.push_back(std::move(number));
   }
