@@ -64,9 +64,10 @@ void set_residuals(const Model& model, const Estimate& estimate, Linearisation& 
   linear.residuals.clear();
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {
     const Observation& observation = *linear.observations[i];
-    Eigen::VectorXd residual =
-        observation.values - linear.columns[i].leftCols(model.amplitudes()) * estimate.amplitudes;
-    if (estimate.nuisances[i].size() > 0) residual -= observation.nuisances * estimate.nuisances[i];
+    Eigen::VectorXd residual = observation.values;
+    residual.noalias() -= linear.columns[i].leftCols(model.amplitudes()) * estimate.amplitudes;
+    if (estimate.nuisances[i].size() > 0)
+      residual.noalias() -= observation.nuisances * estimate.nuisances[i];
     linear.residuals.push_back(std::move(residual));
   }
   set_priors(model, estimate, linear);
@@ -136,7 +137,7 @@ void refit_nuisances(const Model& model, Estimate& estimate, Linearisation& line
     const Observation& observation = *linear.observations[i];
     if (observation.nuisances.cols() == 0) continue;
     estimate.nuisances[i] = fitted_nuisances(observation, linear.residuals[i]);
-    linear.residuals[i] -= observation.nuisances * estimate.nuisances[i];
+    linear.residuals[i].noalias() -= observation.nuisances * estimate.nuisances[i];
   }
 }
 

@@ -33,16 +33,16 @@ Eigen::VectorXd limited(Eigen::VectorXd parameters, Eigen::Index n) {
 /// columns: the cost of one evaluation does not depend on the number of rows.
 class LaggedProducts {
  public:
-  LaggedProducts(const Eigen::MatrixXd& columns, int max_order)
-      : head_(columns.topRows(max_order)) {
-    const Eigen::Index n = columns.rows();
+  LaggedProducts(const ColumnParts& columns, int max_order)
+      : head_(rows_of(columns, 0, max_order)) {
+    const Eigen::MatrixXd tail = rows_of(columns, columns.front().rows() - max_order, max_order);
     products_.assign(max_order + 1, std::vector<Eigen::MatrixXd>(max_order + 1));
     products_[0] = lagged_grams(columns, max_order);
     for (int a = 1; a <= max_order; ++a)
       for (int b = a; b <= max_order; ++b)
         products_[a][b] = products_[a - 1][b - 1] +
-                          columns.row(max_order - a).transpose() * columns.row(max_order - b) -
-                          columns.row(n - a).transpose() * columns.row(n - b);
+                          head_.row(max_order - a).transpose() * head_.row(max_order - b) -
+                          tail.row(max_order - a).transpose() * tail.row(max_order - b);
     for (int a = 0; a <= max_order; ++a)  // they only come in pairs
       for (int b = a + 1; b <= max_order; ++b)
         products_[a][b] += products_[a][b].transpose().eval();
@@ -86,9 +86,7 @@ class RestrictedLikelihood {
  public:
   RestrictedLikelihood(const LinearProfile& profile, int max_order)
       : n_(profile.residual.size()), m_(profile.nuisances.cols()), r_(profile.columns.cols()) {
-    Eigen::MatrixXd all(n_, m_ + r_ + 1);
-    all << profile.nuisances, profile.columns, profile.residual;
-    products_.emplace(all, max_order);
+    products_.emplace(ColumnParts{profile.nuisances, profile.columns, profile.residual}, max_order);
   }
 
   /// Information on (w, residual) this profile gives, nuisances eliminated; adds -2 ln L's own
@@ -371,7 +369,8 @@ std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,
   return Estimator(profiles, prior_information).run();
 }
 
-Eigen::MatrixXd covariance_under(const Noise& noise, const Eigen::MatrixXd& columns) {
+Eigen::MatrixXd covariance_under(const Noise& noise,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& columns) {
   return noise.innovation * noise.innovation * noise.correlation.gram(columns);
 }
 

@@ -20,7 +20,9 @@ Eigen::MatrixXd nuisance_basis(const Observation& observation) {
 }
 
 void project_out(const Eigen::MatrixXd& basis, Eigen::Ref<Eigen::MatrixXd> columns) {
-  if (basis.cols() > 0) columns -= basis * (basis.transpose() * columns).eval();
+  if (basis.cols() == 0) return;
+  const Eigen::MatrixXd along = basis.transpose() * columns;
+  columns.noalias() -= basis * along;
 }
 
 Eigen::Index parameter_index(const ModelTerm& term, const std::string& name) {

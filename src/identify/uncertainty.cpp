@@ -15,7 +15,8 @@ constexpr Eigen::Index kLarge = 1 << 14;  // low-band values that are worth a se
 constexpr double kInfinite = 1e6;  // degrees of freedom: above it k is 2, and they are rounding
 
 /// @param covariance  columns' Σ columns
-Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Eigen::MatrixXd& columns,
+Uncertainty::NoiseEffect noise_effect(const Noise& noise,
+                                      const Eigen::Ref<const Eigen::MatrixXd>& columns,
                                       const Eigen::MatrixXd& covariance) {
   constexpr double kStep = 1e-3;  // of atanh π
   Uncertainty::NoiseEffect out{noise.covariance, {}};
@@ -83,24 +84,23 @@ Uncertainty assess(const Linearisation& linear, const std::vector<double>& weigh
   std::vector<Eigen::MatrixXd> crosses, gains, own;
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {
     const Observation& observation = *linear.observations[i];
-    const Eigen::MatrixXd columns = linear.columns[i] * basis;
     const Eigen::MatrixXd& n = observation.nuisances;
     const Eigen::Index m = n.cols(), r = basis.cols();
-    Eigen::MatrixXd z = columns / (weights[i] * weights[i]);
-    project_out(linear.nuisance_bases[i], z);
-    Eigen::MatrixXd k(n.rows(), m);
-    if (m > 0) k = n * (n.transpose() * n).inverse();
+    const double square = weights[i] * weights[i];
     Eigen::MatrixXd both(n.rows(), m + r);
-    both << k, z;
+    auto k = both.leftCols(m), z = both.rightCols(r);
+    if (m > 0) k.noalias() = n * (n.transpose() * n).inverse();
+    z.noalias() = linear.columns[i] * (basis / square);
+    project_out(linear.nuisance_bases[i], z);
     const Eigen::MatrixXd together = covariance_under(noise[i], both);
     out.covariance += together.bottomRightCorner(r, r);
     if (noise[i].is_estimated()) {
       out.noise.push_back(noise_effect(noise[i], z, together.bottomRightCorner(r, r)));
-      const Eigen::MatrixXd share = z.transpose() * columns;
+      const Eigen::MatrixXd share = square * (z.transpose() * z);
       out.covariance += 2.0 * weight_variance(noise[i]) * (share - share * share);
     }
     crosses.emplace_back(together.topRightCorner(m, r));
-    gains.emplace_back(k.transpose() * columns);
+    gains.emplace_back(k.transpose() * linear.columns[i] * basis);
     own.emplace_back(together.topLeftCorner(m, m));
   }
   for (std::size_t i = 0; i < gains.size(); ++i) {

@@ -90,7 +90,7 @@ void Autoregression::colour(Eigen::Ref<Eigen::MatrixXd> rows) const {
 
 // Z'Z, where Z, the transposed inverse of whiten() on X, is made from its end, a block of rows at a
 // time: row t, before it is scaled, is x_t + Σ_j φ_j z_(t+j), with φ of the predictor of t + j.
-Eigen::MatrixXd Autoregression::gram(const Eigen::MatrixXd& x) const {
+Eigen::MatrixXd Autoregression::gram(const Eigen::Ref<const Eigen::MatrixXd>& x) const {
   constexpr Eigen::Index kRows = 256;  // that stay in the cache
   constexpr Eigen::Index kAtOnce = 4;  // columns
   const Eigen::Index p = order(), width = (x.cols() + kAtOnce - 1) / kAtOnce * kAtOnce;

@@ -30,13 +30,29 @@ double product(std::span<const double> x, std::span<const double> y, Index lag, 
   return sum;
 }
 
+Index columns_of(const ColumnParts& parts) {
+  Index columns = 0;
+  for (const auto& part : parts) columns += part.cols();
+  return columns;
+}
+
+template <typename Rows>
+void set_rows(const ColumnParts& parts, Index first, Rows&& rows) {
+  Index column = 0;
+  for (const auto& part : parts) {
+    rows.middleCols(column, part.cols()) = part.middleRows(first, rows.rows());
+    column += part.cols();
+  }
+}
+
 // Sums of a block of rows, tile by tile: what a tile adds up stays in the registers.
 class LaggedGrams {
  public:
-  LaggedGrams(const Eigen::MatrixXd& rows, Index most_lag)
-      : rows_(rows),
+  LaggedGrams(const ColumnParts& parts, Index most_lag)
+      : parts_(parts),
         most_lag_(most_lag),
-        width_((rows.cols() + kTile - 1) / kTile * kTile),
+        columns_(columns_of(parts)),
+        width_((columns_ + kTile - 1) / kTile * kTile),
         block_(RowMajor::Zero(kRows + most_lag, width_)),
         sums_(static_cast<std::size_t>(most_lag) + 1, RowMajor::Zero(width_, width_)) {}
 
@@ -44,8 +60,7 @@ class LaggedGrams {
   void add(Index first, Index last) {
     for (; first < last; first += kRows) {
       const Index count = std::min(kRows, last - first);
-      block_.topLeftCorner(count + most_lag_, rows_.cols()) =
-          rows_.middleRows(first - most_lag_, count + most_lag_);
+      set_rows(parts_, first - most_lag_, block_.topLeftCorner(count + most_lag_, columns_));
       const double* now = block_.row(most_lag_).data();
       wide([&] {
         for (Index lag = 0; lag <= most_lag_; ++lag)
@@ -57,7 +72,7 @@ class LaggedGrams {
   }
 
   [[nodiscard]] Eigen::MatrixXd sum(Index lag) const {
-    return sums_[lag].topLeftCorner(rows_.cols(), rows_.cols());
+    return sums_[lag].topLeftCorner(columns_, columns_);
   }
 
  private:
@@ -73,8 +88,8 @@ class LaggedGrams {
       for (Index j = 0; j < kTile; ++j) out[i * width_ + j] += sums[i][j];
   }
 
-  const Eigen::MatrixXd& rows_;
-  Index most_lag_, width_;
+  const ColumnParts& parts_;
+  Index most_lag_, columns_, width_;
   RowMajor block_;
   std::vector<RowMajor> sums_;
 };
@@ -114,11 +129,17 @@ std::vector<double> lagged_products(std::span<const double> x, std::span<const d
   return out;
 }
 
-std::vector<Eigen::MatrixXd> lagged_grams(const Eigen::MatrixXd& rows, Eigen::Index most_lag) {
+Eigen::MatrixXd rows_of(const ColumnParts& parts, Eigen::Index first, Eigen::Index count) {
+  Eigen::MatrixXd out(count, columns_of(parts));
+  set_rows(parts, first, out);
+  return out;
+}
+
+std::vector<Eigen::MatrixXd> lagged_grams(const ColumnParts& parts, Eigen::Index most_lag) {
   constexpr std::size_t kPart = 1 << 14;  // rows that are worth a thread
-  const auto count = static_cast<std::size_t>(rows.rows() - most_lag);
+  const auto count = static_cast<std::size_t>(parts.front().rows() - most_lag);
   std::vector<LaggedGrams> grams(std::max<std::size_t>(1, parts_of(count, kPart)),
-                                 LaggedGrams(rows, most_lag));
+                                 LaggedGrams(parts, most_lag));
   parallel_parts(count, kPart, [&](std::size_t part, std::size_t first, std::size_t last) {
     grams[part].add(most_lag + static_cast<Index>(first), most_lag + static_cast<Index>(last));
   });

@@ -54,6 +54,7 @@ std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,
                                   const Eigen::MatrixXd& prior_information);
 
 /// columns' Σ columns, where Σ is the noise's covariance matrix.
-Eigen::MatrixXd covariance_under(const Noise& noise, const Eigen::MatrixXd& columns);
+Eigen::MatrixXd covariance_under(const Noise& noise,
+                                 const Eigen::Ref<const Eigen::MatrixXd>& columns);
 
 }  // namespace slideway

@@ -38,7 +38,7 @@ class Autoregression {
   void colour(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
   /// X' R X, where R is the covariance of the noise with unit innovations.
-  [[nodiscard]] Eigen::MatrixXd gram(const Eigen::MatrixXd& x) const;
+  [[nodiscard]] Eigen::MatrixXd gram(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
 
   /// ln det of the correlation structure: Σ_t ln(relative_variance) over n rows.
   [[nodiscard]] double log_determinant(Eigen::Index n) const;

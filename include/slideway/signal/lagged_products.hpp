@@ -12,8 +12,14 @@ namespace slideway {
 std::vector<double> lagged_products(std::span<const double> x, std::span<const double> y,
                                     std::ptrdiff_t first, std::size_t count);
 
+/// A matrix as matrices of as many rows, side by side.
+using ColumnParts = std::vector<Eigen::Ref<const Eigen::MatrixXd>>;
+
+/// So many rows of them, as one matrix.
+Eigen::MatrixXd rows_of(const ColumnParts& parts, Eigen::Index first, Eigen::Index count);
+
 /// Σ_t x_t' x_(t-k) of a matrix with rows x_t, over t from most_lag on, for k = 0 ... most_lag.
 /// REQUIRES 0 <= most_lag <= rows.
-std::vector<Eigen::MatrixXd> lagged_grams(const Eigen::MatrixXd& rows, Eigen::Index most_lag);
+std::vector<Eigen::MatrixXd> lagged_grams(const ColumnParts& parts, Eigen::Index most_lag);
 
 }  // namespace slideway
