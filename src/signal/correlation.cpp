@@ -139,17 +139,19 @@ RunningCoefficient running_pearson(std::span<const double> x, std::span<const do
 
 RunningCoefficient running_pearson(std::span<const double> x, const FillSeries& fill,
                                    std::size_t points) {
+  constexpr std::size_t kBlock = 4096;  // pairs that stay in the cache
   RunningCoefficient running;
   points = std::min(points, x.size());
   std::optional<CoMoments> moments;
   std::vector<double> y;
   std::size_t done = 0;
   for (std::size_t k = 1; k <= points; ++k) {
-    y.resize(k * x.size() / points - done);
-    fill(done, y);
-    if (!moments) moments.emplace(x.front(), y.front());
-    moments->add(x.subspan(done, y.size()), y);
-    done += y.size();
+    for (const std::size_t end = k * x.size() / points; done < end; done += y.size()) {
+      y.resize(std::min(kBlock, end - done));
+      fill(done, y);
+      if (!moments) moments.emplace(x.front(), y.front());
+      moments->add(x.subspan(done, y.size()), y);
+    }
     running.samples.push_back(done);
     running.coefficient.push_back(moments->coefficient());
   }
