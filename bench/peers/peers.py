@@ -220,7 +220,7 @@ def whole_jobs():
         problem, path = profile(n)
         mine, processor = run_timed(n, [BIN / "slideway", "identify", problem, "--no-trace"])
         lines.append((n, mine, processor))
-        for peer in ("loadtxt", "pandas"):
+        for peer in ("loadtxt", "pandas", "lmfit"):
             theirs, _ = run_timed(n, [sys.executable, HERE / "job.py", path, peer])
             add("whole identify --no-trace", n, f"job.py, {peer}", theirs, mine, limit[n])
     return lines

@@ -255,10 +255,11 @@ class Estimator {
   }
 
   std::vector<Noise> run() {
-    constexpr int kSweeps = 3;  // the profiles are coupled only through a few shared parameters
+    // The profiles are coupled only through a few shared parameters.
+    const int sweeps = profiles_.size() > 1 ? 3 : 1;
     constexpr double kSettled = 1e-6;
     double moved = INFINITY;
-    for (int sweep = 0; sweep < kSweeps && moved > kSettled; ++sweep) {
+    for (int sweep = 0; sweep < sweeps && moved > kSettled; ++sweep) {
       moved = 0.0;
       for (std::size_t i = 0; i < profiles_.size(); ++i) moved = std::max(moved, refine(i));
     }
