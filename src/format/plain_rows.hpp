@@ -50,18 +50,12 @@ class PlainRow {
     if (row_[end + (is_crlf ? 1 : 0)] != mark || count == 0) return false;
     others_ &= others_ - 1;
     at_ = end + (is_crlf ? 2 : 1);
-    std::uint64_t mantissa = 0;
-    if (count <= kAtOnce) {
-      mantissa = digits(row_ + end, count, unmoved);
-      if (mantissa <= kLargestExact) [[likely]] {
-        value = static_cast<double>(static_cast<std::int64_t>(mantissa)) / kPowersOfTen[fraction] *
-                kSigns[minus];
-        return true;
-      }
-    } else if (!long_digits(row_ + end, count, unmoved, mantissa) || fraction > -kLeastScale) {
-      return read_number(text, row_ + kRoom, decimal_, value) != nullptr;
-    }
-    value = scaled(mantissa, -static_cast<std::ptrdiff_t>(fraction)) * kSigns[minus];
+    if (count > kAtOnce) return read_long(text, end, count, unmoved, fraction, value);
+    const std::uint64_t mantissa = digits(row_ + end, count, unmoved);
+    value = kSigns[minus] *
+            (mantissa <= kLargestExact
+                 ? static_cast<double>(static_cast<std::int64_t>(mantissa)) / kPowersOfTen[fraction]
+                 : scaled(mantissa, -static_cast<std::ptrdiff_t>(fraction)));
     return true;
   }
   [[nodiscard]] const char* at() const { return row_ + at_; }
@@ -72,16 +66,23 @@ class PlainRow {
     return static_cast<unsigned>(std::countr_zero(others_));
   }
 
-  // 17 digits and more, zeros in front too; false if they are too many.
-  static bool long_digits(const char* end, unsigned count, unsigned unmoved,
-                          std::uint64_t& mantissa) {
+  // A number of 17 digits and more before `end`, zeros in front too.
+  [[gnu::noinline]] bool read_long(const char* text, unsigned end, unsigned count, unsigned unmoved,
+                                   unsigned fraction, double& value) const {
     constexpr std::uint64_t kRadix = 10'000'000'000'000'000U;
-    if (count > 2 * kAtOnce) return false;
-    const std::uint64_t before = unmoved < kAtOnce
-                                     ? digits(end - kAtOnce - 1, count - kAtOnce, kAtOnce)
-                                     : digits(end - kAtOnce, count - kAtOnce, unmoved - kAtOnce);
-    mantissa = before * kRadix + digits(end, kAtOnce, unmoved);
-    return before < ~std::uint64_t{0} / kRadix;
+    const char* const digits_end = row_ + end;
+    if (count <= 2 * kAtOnce && fraction <= -kLeastScale) {
+      const std::uint64_t before =
+          unmoved < kAtOnce ? digits(digits_end - kAtOnce - 1, count - kAtOnce, kAtOnce)
+                            : digits(digits_end - kAtOnce, count - kAtOnce, unmoved - kAtOnce);
+      if (before < ~std::uint64_t{0} / kRadix) {
+        const std::uint64_t mantissa = before * kRadix + digits(digits_end, kAtOnce, unmoved);
+        value =
+            scaled(mantissa, -static_cast<std::ptrdiff_t>(fraction)) * kSigns[*text == '-' ? 1 : 0];
+        return true;
+      }
+    }
+    return read_number(text, row_ + kRoom, decimal_, value) != nullptr;
   }
 
   // The 1 to 16 digits before `end`, with a mark among them before the last `unmoved`; none if
