@@ -23,8 +23,9 @@ namespace slideway {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kChunk = 1 << 18;  // bytes read at a time, up to the end of a line
-constexpr std::size_t kTogether = 8;     // chunks that are read at once
+// Bytes read at a time, up to the end of a line; fewer of a text that is read at once.
+constexpr std::size_t kLargestChunk = 1 << 18, kLeastChunk = kLargestChunk / 4;
+constexpr std::size_t kTogether = 8;  // chunks that are read at once
 
 // The rows of a chunk. The memory serves the next one.
 struct Rows {
@@ -58,7 +59,7 @@ class Reader {
   const char* after_plain_row(const char* at, double& first, double& second) const;
   void read_plain_rows(const char* regular_end, Rows& rows);
   void read_rows(Rows& rows);
-  Reader take_chunk();
+  Reader take_chunk(std::size_t size);
   [[nodiscard]] std::vector<std::span<const double>> columns_of(const Rows& rows) const;
   [[nodiscard]] bool is_padding(char c) const {
     return c == ' ' || c == '\r' || (c == '\t' && dialect_.delimiter != '\t');
@@ -260,11 +261,11 @@ void Reader::read_rows(Rows& rows) {
   }
 }
 
-// A reader of the next lines, which this one passes.
-Reader Reader::take_chunk() {
+// A reader of the next lines, of so many bytes, which this one passes.
+Reader Reader::take_chunk(std::size_t size) {
   Reader chunk = *this;
-  if (static_cast<std::size_t>(end_ - at_) > kChunk)
-    chunk.end_ = std::min(end_, at_ + kChunk + rest_of_line(at_ + kChunk).size() + 1);
+  if (static_cast<std::size_t>(end_ - at_) > size)
+    chunk.end_ = std::min(end_, at_ + size + rest_of_line(at_ + size).size() + 1);
   at_ = chunk.end_;
   return chunk;
 }
@@ -286,22 +287,24 @@ Table Reader::read(const TakeRows& take) {
   table.names = dialect_.names;
   table.units = dialect_.units;
   table.decisions.push_back(dialect_.decision);
-  const auto size = static_cast<double>(end_ - at_);
+  const auto bytes = static_cast<std::size_t>(end_ - at_);
+  const std::size_t chunk = std::clamp(bytes / kTogether, kLeastChunk, kLargestChunk);
   struct Batch {
     std::vector<Reader> chunks;
     std::vector<Rows> rows = std::vector<Rows>(kTogether);
   } taken, next;
   const auto take_all = [&] {
     for (std::size_t i = 0; i < taken.chunks.size(); ++i) {
-      const Reader& chunk = taken.chunks[i];
-      missing_ += chunk.missing_;
-      take({table, columns_of(taken.rows[i]), static_cast<double>(chunk.end_ - first_) / size});
+      const Reader& part = taken.chunks[i];
+      missing_ += part.missing_;
+      take({table, columns_of(taken.rows[i]),
+            static_cast<double>(part.end_ - first_) / static_cast<double>(bytes)});
     }
   };
   do {
     next.chunks.clear();
     while (at_ < end_ && next.chunks.size() < kTogether && !targets_.empty())
-      next.chunks.push_back(take_chunk());
+      next.chunks.push_back(take_chunk(chunk));
     parallel_for(next.chunks.size() + 1, [&](std::size_t i) {
       i == 0 ? take_all() : next.chunks[i - 1].read_rows(next.rows[i - 1]);
     });
