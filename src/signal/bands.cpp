@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 
+#include "middle.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/wide.hpp"
 #include "slideway/signal/decomposition.hpp"
@@ -54,9 +55,8 @@ Bands whole_bands(const Wavelet& wavelet, Boundary boundary, const Decomposition
   return bands;
 }
 
-// The bands of a long signal. Its ends are those of a short one, from whose middle `left_out_`
-// blocks of 2^L samples are missing; between them nothing knows of the boundary, and all bands of a
-// part are made while it is in the cache.
+// The bands of a long signal. Its ends are those of one without its middle; between them nothing
+// knows of the boundary, and all bands of a part are made while it is in the cache.
 class LongSignal {
  public:
   LongSignal(const Wavelet& wavelet, Boundary boundary, const Decomposition& parts)
@@ -66,16 +66,15 @@ class LongSignal {
         levels_(static_cast<Index>(parts.details.size())),
         half_(wavelet.taps() / 2),
         shift_(upsampling_shift(boundary, half_)),
-        end_(2 * half_ + 2),
-        left_out_((size() >> std::min(levels_, kMostLevels)) - 4 * end_) {}
+        middle_(wavelet.taps(), levels_, parts.lengths[0]) {}
 
-  [[nodiscard]] bool is_long() const { return size() >= kLong && left_out_ > 0; }
+  [[nodiscard]] bool is_long() const { return size() >= kLong && middle_.left_out() > 0; }
 
   [[nodiscard]] Bands bands() const {
     Bands out;
     resize(out, static_cast<std::size_t>(levels_), static_cast<std::size_t>(size()));
     // Behind the samples that know of an end, where pairs of samples begin.
-    const Index first = (end_ << levels_) + shift_ % 2;
+    const Index first = (middle_.end() << levels_) + shift_ % 2;
     const Index count = (size() - 2 * first) / 2 * 2;
     copy_ends(first, first + count, out);
     const auto make = [&](std::size_t /*task*/, std::size_t begin, std::size_t end) {
@@ -90,25 +89,16 @@ class LongSignal {
 
  private:
   static constexpr Index kPart = 1024, kTask = 64 * kPart, kLong = 16 * kPart;  // samples
-  static constexpr Index kMostLevels = 32;  // of a signal of more samples than memory holds
 
   [[nodiscard]] Index size() const { return static_cast<Index>(parts_.lengths[0]); }
 
-  // Without the blocks that are left out behind the first 2 end_, of one level.
-  [[nodiscard]] Band shortened(std::span<const double> coefficients, Index level) const {
-    const Index before = (2 * end_) << (levels_ - level), gap = left_out_ << (levels_ - level);
-    Band out(coefficients.begin(), coefficients.begin() + before);
-    out.insert(out.end(), coefficients.begin() + before + gap, coefficients.end());
-    return out;
-  }
-
   void copy_ends(Index first, Index last, Bands& out) const {
     Decomposition parts;
-    parts.approximation = shortened(parts_.approximation, levels_);
+    parts.approximation = middle_.shortened(parts_.approximation, 0);
     for (Index j = 1; j <= levels_; ++j) {
-      parts.details.push_back(shortened(parts_.details[j - 1], j));
+      parts.details.push_back(middle_.shortened(parts_.details[j - 1], levels_ - j));
       parts.lengths.push_back(parts_.lengths[j - 1] -
-                              static_cast<std::size_t>(left_out_ << (levels_ - j + 1)));
+                              static_cast<std::size_t>(middle_.left_out() << (levels_ - j + 1)));
     }
     const Bands ends = whole_bands(wavelet_, boundary_, parts);
     const auto copy = [&](const std::vector<Band>& from, std::vector<Band>& to) {
@@ -143,7 +133,7 @@ class LongSignal {
   template <typename Put>
   void restore(std::span<const double> filter, std::span<const double> coefficients, Index level,
                Index first, Index last, Scratch& scratch, const Put& put) const {
-    std::array<Index, kMostLevels + 1> from, to;
+    std::array<Index, Middle::kMostLevels + 1> from, to;
     from[0] = first;
     to[0] = last;
     for (Index k = 1; k <= level; ++k) {
@@ -166,8 +156,7 @@ class LongSignal {
   Boundary boundary_;
   const Decomposition& parts_;
   Index levels_, half_, shift_;
-  Index end_;       // blocks of 2^L samples that know of an end
-  Index left_out_;  // blocks
+  Middle middle_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "downsample.hpp"
+#include "middle.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/wide.hpp"
@@ -28,9 +29,9 @@ Decomposition whole_decomposition(const Wavelet& wavelet, Boundary boundary, int
   return parts;
 }
 
-// The decomposition of a long signal. Coefficients near its ends are those of a short signal, from
-// whose middle `left_out_` blocks of 2^L samples are missing; between them nothing knows of the
-// boundary, and a part goes through all levels while it is in the cache.
+// The decomposition of a long signal. Coefficients near its ends are those of one without its
+// middle; between them nothing knows of the boundary, and a part goes through all levels while it
+// is in the cache.
 class LongTransform {
  public:
   LongTransform(const Wavelet& wavelet, Boundary boundary, int levels,
@@ -41,34 +42,30 @@ class LongTransform {
         signal_(signal),
         taps_(wavelet.taps()),
         start_(window_start(boundary, taps_)),
-        end_(taps_ + 2),
-        blocks_(std::ssize(signal) >> std::min<Index>(levels, kMostLevels)),
-        left_out_(blocks_ - 4 * end_) {}
+        middle_(taps_, levels, signal.size()) {}
 
   [[nodiscard]] bool is_long() const {
-    return levels_ > 0 && levels_ <= kMostLevels && std::ssize(signal_) >= kLong && left_out_ > 0;
+    return std::ssize(signal_) >= kLong && middle_.left_out() > 0;
   }
 
   [[nodiscard]] Decomposition decomposition() const {
-    const Index kept = (2 * end_) << levels_, gap = left_out_ << levels_;
-    std::vector<double> shortened(signal_.begin(), signal_.begin() + kept);
-    shortened.insert(shortened.end(), signal_.begin() + kept + gap, signal_.end());
-    const Decomposition ends = whole_decomposition(wavelet_, boundary_, levels_, shortened);
+    const Decomposition ends =
+        whole_decomposition(wavelet_, boundary_, levels_, middle_.shortened(signal_, levels_));
 
     Decomposition out;
     out.details.resize(ends.details.size());
     for (int j = 1; j <= levels_; ++j) {
-      out.lengths.push_back(ends.lengths[j - 1] + (left_out_ << (levels_ - j + 1)));
+      out.lengths.push_back(ends.lengths[j - 1] + (middle_.left_out() << (levels_ - j + 1)));
       copy_ends(ends.details[j - 1], levels_ - j, out.details[j - 1]);
     }
     copy_ends(ends.approximation, 0, out.approximation);
 
     const Index size = std::max<Index>(kPart >> levels_, 4 * taps_);
-    const auto count = static_cast<std::size_t>(blocks_ - 2 * end_);
+    const auto count = static_cast<std::size_t>(middle_.blocks() - 2 * middle_.end());
     const auto transform = [&](std::size_t /*task*/, std::size_t begin, std::size_t end) {
       Scratch scratch;
-      const Index last = end_ + static_cast<Index>(end);
-      for (Index at = end_ + static_cast<Index>(begin); at < last; at += size)
+      const Index last = middle_.end() + static_cast<Index>(end);
+      for (Index at = middle_.end() + static_cast<Index>(begin); at < last; at += size)
         transform_part(at, std::min(last, at + size), scratch, out);
     };
     parallel_parts(count, static_cast<std::size_t>(kPartsOfTask * size), transform);
@@ -77,23 +74,22 @@ class LongTransform {
 
  private:
   static constexpr Index kPart = 4096, kPartsOfTask = 16, kLong = 1 << 16;  // samples
-  static constexpr Index kMostLevels = 24;  // of a signal of 2^16 samples and more to have a middle
 
   using Scratch = std::array<Band, 2>;
 
   // Coefficients of one level, 2^finer of them a block.
   void copy_ends(const Band& ends, int finer, Band& out) const {
-    const Index count = end_ << finer, gap = left_out_ << finer;
+    const Index count = middle_.end() << finer, gap = middle_.left_out() << finer;
     out.resize(ends.size() + static_cast<std::size_t>(gap));
     std::copy_n(ends.begin(), count, out.begin());
-    const Index behind = (blocks_ - end_) << finer;
+    const Index behind = (middle_.blocks() - middle_.end()) << finer;
     std::copy(ends.begin() + (behind - gap), ends.end(), out.begin() + behind);
   }
 
   // Blocks first ... last - 1. Of level k - 1 the outputs from ... to - 1 of level k need
   // 2 from + start ... 2 (to - 1) + start + taps - 1, which are more than the part's own.
   void transform_part(Index first, Index last, Scratch& scratch, Decomposition& out) const {
-    std::array<Index, kMostLevels + 1> from, to;
+    std::array<Index, Middle::kMostLevels + 1> from, to;
     from[levels_] = first;
     to[levels_] = last;
     for (int k = levels_; k > 0; --k) {
@@ -126,9 +122,7 @@ class LongTransform {
   int levels_;
   std::span<const double> signal_;
   Index taps_, start_;
-  Index end_;       // blocks of 2^L samples that know of an end
-  Index blocks_;    // of the signal
-  Index left_out_;  // blocks
+  Middle middle_;
 };
 
 }  // namespace

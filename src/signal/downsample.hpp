@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "known_taps.hpp"
 #include "slideway/signal/dwt.hpp"
 
 namespace slideway {
@@ -18,7 +19,7 @@ struct FilterPair {
 };
 
 // out[o] = Σ_j filter[j] x[2 o + taps - 1 - j]. Taps = 0: their number is known at run time only.
-template <int Taps, bool High>
+template <std::ptrdiff_t Taps, bool High>
 void convolve(const FilterPair& pair, std::ptrdiff_t taps, const double* x, std::ptrdiff_t count) {
   if constexpr (Taps > 0) taps = Taps;
   const double *low = pair.low, *high = pair.high;
@@ -34,28 +35,14 @@ void convolve(const FilterPair& pair, std::ptrdiff_t taps, const double* x, std:
   }
 }
 
-template <int Taps>
-void convolve(const FilterPair& pair, std::ptrdiff_t taps, const double* x, std::ptrdiff_t count) {
-  if (pair.high != nullptr)
-    convolve<Taps, true>(pair, taps, x, count);
-  else
-    convolve<Taps, false>(pair, taps, x, count);
-}
-
 inline void convolve(const FilterPair& pair, std::ptrdiff_t taps, const double* x,
                      std::ptrdiff_t count) {
-  switch (taps) {
-    case 2:
-      return convolve<2>(pair, taps, x, count);
-    case 4:
-      return convolve<4>(pair, taps, x, count);
-    case 6:
-      return convolve<6>(pair, taps, x, count);
-    case 8:
-      return convolve<8>(pair, taps, x, count);
-    default:
-      return convolve<0>(pair, taps, x, count);
-  }
+  with_known_taps(taps, [&](auto known) {
+    if (pair.high != nullptr)
+      convolve<known(), true>(pair, taps, x, count);
+    else
+      convolve<known(), false>(pair, taps, x, count);
+  });
 }
 
 }  // namespace slideway

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <span>
 
+#include "known_taps.hpp"
 #include "slideway/signal/dwt.hpp"
 
 namespace slideway {
@@ -32,10 +33,10 @@ struct SetAndSum {
   }
 };
 
-// Half = 0: half the taps are known at run time only.
-template <std::ptrdiff_t Half, typename Put>
+// Taps = 0: their number is known at run time only.
+template <std::ptrdiff_t Taps, typename Put>
 void put_pairs(std::span<const double> filter, const double* c, std::ptrdiff_t count, Put put) {
-  const std::ptrdiff_t half = Half > 0 ? Half : std::ssize(filter) / 2;
+  const std::ptrdiff_t half = (Taps > 0 ? Taps : std::ssize(filter)) / 2;
   const double* f = filter.data();
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     double even = f[0] * c[i], odd = f[1] * c[i];
@@ -51,18 +52,8 @@ void put_pairs(std::span<const double> filter, const double* c, std::ptrdiff_t c
 // put(2 i + p, Σ_j filter[2 j + p] c[i - j]) for 0 <= i < count and p of 0 and 1.
 template <typename Put>
 void put_pairs(std::span<const double> filter, const double* c, std::ptrdiff_t count, Put put) {
-  switch (filter.size()) {
-    case 2:
-      return put_pairs<1>(filter, c, count, put);
-    case 4:
-      return put_pairs<2>(filter, c, count, put);
-    case 6:
-      return put_pairs<3>(filter, c, count, put);
-    case 8:
-      return put_pairs<4>(filter, c, count, put);
-    default:
-      return put_pairs<0>(filter, c, count, put);
-  }
+  with_known_taps(std::ssize(filter),
+                  [&](auto known) { put_pairs<known()>(filter, c, count, put); });
 }
 
 }  // namespace slideway

@@ -17,7 +17,7 @@ struct Decomposition {
 
 /// The discrete wavelet transform over so many levels; long signals are transformed in parts, on
 /// all threads.
-/// @throws UsageError for a negative level, DataError for a signal without samples.
+/// @throws UsageError for a negative level, DataError for one or more of a signal without samples.
 Decomposition decompose(const Wavelet& wavelet, Boundary boundary, int levels,
                         std::span<const double> signal);
 
