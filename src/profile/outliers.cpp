@@ -69,7 +69,10 @@ class Search {
  private:
   [[nodiscard]] Level level_of(int halvings) const;
   void fill_level(int halvings);
-  [[nodiscard]] double limit() const { return limit_of(3.0 * static_cast<double>(size())); }
+  // For the errors of all levels.
+  [[nodiscard]] double limit_of_errors() const {
+    return limit_of(3.0 * static_cast<double>(size()));
+  }
   [[nodiscard]] bool any_above(std::vector<Threshold>& thresholds, std::size_t first,
                                std::size_t last, std::vector<double>& means) const;
   void take_out(int halvings, std::size_t i, double error);
@@ -195,6 +198,7 @@ void Search::fill_level(int halvings) {
 bool Search::nothing_stands_out() const {
   constexpr std::size_t kChunk = 1 << 13;  // samples whose means stay in the cache
   if (!uniform_ || is_short()) return false;
+  const double limit = limit_of_errors();
   std::vector<Threshold> thresholds;
   for (const Look& look : looks()) {
     Level level = level_of(look.halvings);
@@ -205,7 +209,7 @@ bool Search::nothing_stands_out() const {
         means[k] = mean(values_, (i + (k * look.lag) - 2 * look.lag) * level.block, level.block);
       return Level::cubic_error(&means[2], 1);
     });
-    thresholds.push_back({level, limit() * level.scale});
+    thresholds.push_back({level, limit * level.scale});
   }
   std::vector<char> found(parts_of(size(), kPart));
   parallel_parts(size(), kPart, [&](std::size_t part, std::size_t first, std::size_t last) {
@@ -244,7 +248,8 @@ void Search::look(const Look& look) {
   if (level_.values.size() != size() >> halvings) fill_level(halvings);
   level_.lag = lag;
   level_.find_scale();
-  const double least = is_short() ? 0.0 : limit() * level_.scale;
+  const double limit = limit_of_errors();
+  const double least = is_short() ? 0.0 : limit * level_.scale;
   if (!level_.any_above(least)) return;
   level_.find_errors();
   std::vector<std::size_t> candidates;
@@ -257,7 +262,7 @@ void Search::look(const Look& look) {
   for (const std::size_t i : candidates) {
     if (std::abs(level_.errors[i]) <= structure) break;
     const double error = level_.error(i) - level_.middle;  // now that larger ones are taken out
-    if (std::abs(error) > std::max(structure, limit() * level_.scale_at(i, limit())) &&
+    if (std::abs(error) > std::max(structure, limit * level_.scale_at(i, limit)) &&
         level_.missed_from_either_side(i, error))
       take_out(halvings, i, error);
   }
