@@ -11,6 +11,7 @@ if reader == "loadtxt":
     x, z = np.loadtxt(path, delimiter=",", skiprows=1, unpack=True)
 else:
     import pandas
+    from scipy import stats
 
     data = pandas.read_csv(path)
     x, z = data["x_mm"].to_numpy(), data["z_um"].to_numpy()
@@ -22,8 +23,6 @@ for shape in (x, x**2):
     if reader == "loadtxt":
         print(np.corrcoef(z, shape)[0, 1])
     else:
-        from scipy import stats
-
         print(stats.pearsonr(z, shape)[0])
 
 low = parts[0]
