@@ -52,7 +52,7 @@ void write_csv(const std::filesystem::path& path, const std::string& comment,
   std::ofstream out(path, std::ios::binary);
   out << text;
   out.flush();
-  if (!out) throw std::runtime_error(path.string() + ": can not be written");
+  if (!out) throw std::runtime_error(path.string() + ": cannot be written");
 }
 
 /// 0, 1/per_mm, 2/per_mm, ... mm, times `step`: exactly the decimals that get printed.

@@ -57,7 +57,7 @@ std::string read_all(int file, const fs::path& path) {
     else if (count == 0)
       return bytes;
     else if (errno != EINTR)
-      throw DataError(path.string() + ": can not be read: " + cause(errno));
+      throw DataError(path.string() + ": cannot be read: " + cause(errno));
   }
 }
 
@@ -134,7 +134,7 @@ FileBytes::FileBytes(const fs::path& path) {
   Descriptor file;
   struct stat status {};
   if (file.open(path, O_RDONLY) != 0 || ::fstat(file.number(), &status) != 0)
-    throw DataError(path.string() + ": can not be read: " + cause(errno));
+    throw DataError(path.string() + ": cannot be read: " + cause(errno));
   if (S_ISDIR(status.st_mode)) throw DataError(path.string() + ": is a directory, expected a file");
   if (S_ISREG(status.st_mode) && status.st_size > 0) {
     size_ = static_cast<std::size_t>(status.st_size);
@@ -197,7 +197,7 @@ void make_directory(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (fs::is_directory(path)) return;
-  throw std::runtime_error(path.string() + ": can not be made a directory: " +
+  throw std::runtime_error(path.string() + ": cannot be made a directory: " +
                            (error ? error.message() : cause(ENOTDIR)));
 }
 
@@ -307,7 +307,7 @@ int write_all(int file, std::string_view bytes) {
 }
 
 void fail_to_write(const fs::path& path, int error) {
-  throw std::runtime_error(path.string() + ": can not be written: " + cause(error));
+  throw std::runtime_error(path.string() + ": cannot be written: " + cause(error));
 }
 
 }  // namespace slideway

@@ -139,7 +139,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> acc
   std::tuple<std::size_t, std::size_t> least(word.size() / 3 + 1, 0);
   const std::string* nearest = nullptr;
   for (const std::string& candidate : accepted) {
-    // Edits can not be fewer than the difference in length.
+    // Edits cannot be fewer than the difference in length.
     if (candidate.size() > word.size() + word.size() / 3) continue;
     const std::tuple distance(edit_distance(lower, lower_case(candidate)),
                               edit_distance(word, candidate));

@@ -54,7 +54,7 @@ class Command {
   /// All further arguments that need no "--".
   void add_inputs(const char* name, std::vector<std::string>* values);
 
-  /// Checks what the options' own types can not. @throws UsageError
+  /// Checks what the options' own types cannot. @throws UsageError
   virtual void check(const boost::program_options::variables_map& given);
 
   /// @throws UsageError  "identify: what is wrong"

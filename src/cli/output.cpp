@@ -19,7 +19,7 @@ void print(std::string_view text) {
   std::cout.write(text.data(), static_cast<std::streamsize>(text.size()));
   std::cout.flush();
   if (!std::cout)
-    throw std::runtime_error("standard output: can not be written: " +
+    throw std::runtime_error("standard output: cannot be written: " +
                              std::generic_category().message(errno != 0 ? errno : EIO));
 }
 

@@ -40,7 +40,7 @@ std::size_t read_count(std::string_view field, const std::string& place);
 std::vector<double> read_numbers(std::string_view text, std::size_t count, const std::string& place,
                                  std::span<const std::string_view> missing = {});
 
-/// @throws DataError if `bytes` can not hold so many values of at least `size` bytes each
+/// @throws DataError if `bytes` cannot hold so many values of at least `size` bytes each
 void check_count(std::size_t count, std::size_t bytes, std::size_t size, const std::string& place);
 
 /// A number stored with its lowest byte first, at the start of the bytes.

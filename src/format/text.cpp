@@ -63,7 +63,7 @@ Trace TextFormat::read_in_parts(std::string_view bytes, const TraceRequest& requ
 }
 
 std::string TextFormat::write(const Trace& trace) const {
-  if (trace.positions.empty()) throw UsageError("a trace without points can not be written");
+  if (trace.positions.empty()) throw UsageError("a trace without points cannot be written");
   const auto name = [](const std::string& letter, const std::string& unit) {
     return unit.empty() ? letter : letter + "_" + unit;
   };

@@ -12,7 +12,7 @@ namespace slideway {
 namespace {
 
 [[noreturn]] void refuse(std::string_view format, const std::string& why) {
-  throw UsageError("can not write " + std::string(format) + ": " + why);
+  throw UsageError("cannot write " + std::string(format) + ": " + why);
 }
 
 bool is_even(const std::vector<double>& positions, double spacing) {
@@ -45,7 +45,7 @@ void check_complete(const Trace& trace, std::string_view format) {
                                     [](double value) { return std::isnan(value); });
   if (missing != trace.values.end())
     refuse(format, "point " + std::to_string(missing - trace.values.begin() + 1) +
-                       " is missing, which the format can not say; X3P, SDF and text can");
+                       " is missing, which the format cannot say; X3P, SDF and text can");
 }
 
 double spacing_from_zero(const Trace& trace, std::string_view format) {

@@ -86,7 +86,7 @@ void check_size(const zip_stat_t& entry, std::size_t most, const std::string& pl
 }
 
 [[noreturn]] void fail_to_write(const std::string& why) {
-  throw std::runtime_error("zip archive can not be written: " + why);
+  throw std::runtime_error("zip archive cannot be written: " + why);
 }
 
 std::string contents(zip_source_t* source) {

@@ -14,7 +14,7 @@ struct Source {
 
 /// The covariance with the noise of one profile only (none: that of the priors alone), weights
 /// held.
-Eigen::MatrixXd with_noise_of(const Fit& fit, std::optional<std::size_t> profile) {
+Eigen::MatrixXd with_noise_of(const Solution& fit, std::optional<std::size_t> profile) {
   std::vector<Noise> noise = fit.noise;
   for (std::size_t i = 0; i < noise.size(); ++i) {
     noise[i].declared = true;
@@ -23,7 +23,7 @@ Eigen::MatrixXd with_noise_of(const Fit& fit, std::optional<std::size_t> profile
   return assess(fit.linear, fit.weights, noise, fit.rank.basis).covariance;
 }
 
-std::vector<Source> sources_of(const Fit& fit) {
+std::vector<Source> sources_of(const Solution& fit) {
   const Eigen::MatrixXd priors = with_noise_of(fit, std::nullopt);
   std::vector<Source> out;
   Eigen::MatrixXd rest = fit.uncertainty.covariance - priors;
@@ -42,7 +42,7 @@ std::vector<Source> sources_of(const Fit& fit) {
 
 }  // namespace
 
-std::vector<Budget> uncertainty_budget(const Model& model, const Fit& fit) {
+std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit) {
   const std::vector<Source> sources = sources_of(fit);
   std::vector<Budget> out;
   for (const ModelTerm& term : model.terms)

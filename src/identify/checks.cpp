@@ -37,7 +37,7 @@ const ModelTerm* find_term(const Model& model, const std::string& name) {
   return nullptr;
 }
 
-Polynomial polynomial(const ModelTerm* term, const Fit& fit, std::size_t first_power) {
+Polynomial polynomial(const ModelTerm* term, const Solution& fit, std::size_t first_power) {
   Polynomial out;
   if (!term) return out;
   out.coefficients.assign(first_power, 0.0);
@@ -47,7 +47,7 @@ Polynomial polynomial(const ModelTerm* term, const Fit& fit, std::size_t first_p
 }
 
 /// Largest |exact - first order| of the volumetric error's height at the fitted values, mm.
-std::optional<double> neglected_height(const Model& model, const Fit& fit) {
+std::optional<double> neglected_height(const Model& model, const Solution& fit) {
   const Polynomial straightness = polynomial(find_term(model, "straightness"), fit, 0);
   const Polynomial vertical = polynomial(find_term(model, "vertical_straightness"), fit, 1);
   const ModelTerm* squareness = find_term(model, "squareness");
@@ -99,7 +99,7 @@ bool is_curved(const FitResult& out) {
   });
 }
 
-void check_plausibility(const Model& model, const Fit& fit, FitResult& out) {
+void check_plausibility(const Model& model, const Solution& fit, FitResult& out) {
   const ModelTerm* term = find_term(model, "straightness");
   const double travel = model.range.slide_max - model.range.slide_min;
   if (!term || !(travel > 0.0)) return;
@@ -118,7 +118,7 @@ void check_plausibility(const Model& model, const Fit& fit, FitResult& out) {
   out.notes.push_back(out.implausible + ": look for another cause before blaming the slide");
 }
 
-void explain_scaling(const Fit& fit, FitResult& out) {
+void explain_scaling(const Solution& fit, FitResult& out) {
   const bool estimated = std::any_of(fit.noise.begin(), fit.noise.end(),
                                      [](const Noise& noise) { return !noise.declared; });
   const bool correlated = std::any_of(fit.noise.begin(), fit.noise.end(), [](const Noise& noise) {
@@ -135,7 +135,7 @@ void explain_scaling(const Fit& fit, FitResult& out) {
             "from Student's t for 95.45 %");
 }
 
-void explain_long_correlation(const Fit& fit, FitResult& out) {
+void explain_long_correlation(const Solution& fit, FitResult& out) {
   for (std::size_t i = 0; i < fit.noise.size(); ++i) {
     const Profile& profile = *fit.linear.observations[i]->profile;
     const auto n = static_cast<double>(fit.linear.observations[i]->values.size());
@@ -149,7 +149,7 @@ void explain_long_correlation(const Fit& fit, FitResult& out) {
 
 }  // namespace
 
-void add_checks(const Model& model, const Fit& fit, FitResult& out) {
+void add_checks(const Model& model, const Solution& fit, FitResult& out) {
   if (const std::optional<double> gap = neglected_height(model, fit))
     out.neglected_um = *gap / kMicrometre;
   explain_scaling(fit, out);

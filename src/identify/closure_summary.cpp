@@ -26,7 +26,7 @@ std::string suspicion(const std::vector<std::string>& suspects) {
   if (suspects.empty()) return "no line alone is to blame: without any one the rest does not close";
   if (suspects.size() == 1) return "without '" + suspects[0] + "' the rest closes";
   return "the rest closes without any one of " + joined(suspects) +
-         ": the lines can not tell which is to blame";
+         ": the lines cannot tell which is to blame";
 }
 
 // The closure furthest from 0 in its uncertainties; REQUIRES a limit.

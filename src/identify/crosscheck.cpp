@@ -39,8 +39,7 @@ std::string disagreement(const SquarenessCheck& check) {
           significant(indirect, 2) + " rad makes " + significant(*check.indirect_amplitude_um, 2) +
           " µm, while the face shows " + significant(*check.fit_amplitude_um, 2) + " µm";
   if (fit > indirect)
-    text +=
-        "; the squareness that was measured can not have made this face: look for another cause";
+    text += "; the squareness that was measured cannot have made this face: look for another cause";
   return text;
 }
 

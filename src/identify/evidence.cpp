@@ -23,7 +23,7 @@ void clear_along(const NullDirections& null, Eigen::Ref<Eigen::MatrixXd> rows) {
 
 }  // namespace
 
-Evidence evidence(const Model& model, const Fit& fit) {
+Evidence evidence(const Model& model, const Solution& fit) {
   Linearisation data = fit.linear;
   data.prior_rows.resize(0, model.amplitudes() + model.shapes());
   data.prior_residuals.resize(0);

@@ -96,7 +96,7 @@ Eigen::VectorXd parameter_scale(const Eigen::MatrixXd& jacobian, const Eigen::Ve
 }
 
 /// Moves along the null directions to where their own parameters are 0: no prediction changes.
-void fix_gauge(const Model& model, Fit& fit) {
+void fix_gauge(const Model& model, Solution& fit) {
   for (std::size_t d = 0; d < fit.null.own.size(); ++d) {
     const double value = fit.parameters.values[fit.null.own[d]];
     fit.estimate.amplitudes -= value * fit.null.amplitudes.col(d).head(model.amplitudes());
@@ -108,9 +108,9 @@ void fix_gauge(const Model& model, Fit& fit) {
 
 }  // namespace
 
-Fit fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
+Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   require_enough_data(model);
-  Fit out;
+  Solution out;
   out.weights = first_weights(model);
   const Estimate start = initial_estimate(model, shapes);
   out.linear = linearise(model, start);
@@ -141,12 +141,12 @@ Fit fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   return out;
 }
 
-Fitted fitted(Model model, const std::optional<Eigen::VectorXd>& shapes) {
-  Fit made = fit(model, shapes);
+FittedModel fitted(Model model, const std::optional<Eigen::VectorXd>& shapes) {
+  Solution made = fit(model, shapes);
   return {std::move(model), std::move(made)};
 }
 
-Fitted fit_declared(const Problem& problem, const std::vector<Profile>& profiles) {
+FittedModel fit_declared(const Problem& problem, const std::vector<Profile>& profiles) {
   return fitted(build_model(problem, profiles));
 }
 

@@ -89,7 +89,7 @@ std::string advice(const std::vector<std::string>& names, const Model& model) {
            "autocollimator against the spindle axis), or measure the squareness itself (run-out, "
            "Eq. 21)";
   if (of("straightness") && model.terms.size() > 1)
-    return "one profile can not tell them apart: read the straightness along the slide (kind = "
+    return "one profile cannot tell them apart: read the straightness along the slide (kind = "
            "\"slide\"), give a prior, or cut with another feed or direction";
   return "measure more of the travel, or more profiles that differ in feed, direction, overhang or "
          "Z";

@@ -95,7 +95,7 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles, Sc
 }
 
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
-                const Fitted& declared, Scope scope) {
+                const FittedModel& declared, Scope scope) {
   Result result = summarise_data(problem, profiles);
   result.wavelet = problem.low_band.wavelet;
   result.level = problem.low_band.level;

@@ -8,7 +8,7 @@
 namespace slideway {
 
 /// The root table of a TOML file.
-/// @throws UsageError  "path: ..." if it can not be read, "path:line: ..." if it is no TOML
+/// @throws UsageError  "path: ..." if it cannot be read, "path:line: ..." if it is no TOML
 TomlValue read_toml(const std::filesystem::path& path);
 
 /// What a text is in TOML, on line 0: std::monostate if it is no value, or a date.

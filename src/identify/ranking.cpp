@@ -36,7 +36,7 @@ struct Signal {
   Eigen::VectorXd low_band;
 };
 
-Eigen::VectorXd low_band_signal(const Model& model, const Fit& fit, const ModelTerm& term,
+Eigen::VectorXd low_band_signal(const Model& model, const Solution& fit, const ModelTerm& term,
                                 const Observation& observation, const Eigen::VectorXd& amplitudes) {
   const auto fitted = std::ranges::find(fit.linear.observations, &observation);
   if (fitted == fit.linear.observations.end())
@@ -47,7 +47,7 @@ Eigen::VectorXd low_band_signal(const Model& model, const Fit& fit, const ModelT
 }
 
 /// A part of the trace at a time: a signal of full length is as large as the profile.
-Signal signal_of(const Model& model, const Fit& fit, const ModelTerm& term,
+Signal signal_of(const Model& model, const Solution& fit, const ModelTerm& term,
                  const Observation& observation) {
   const auto shape = shapes_of(term, fit.estimate.shapes);
   Eigen::VectorXd amplitudes =
@@ -157,7 +157,7 @@ std::string doubt(const Lead& correlation, const Lead& share, const Identifiabil
 
 }  // namespace
 
-RankingResult rank_effects(const Model& model, const Fit& fit) {
+RankingResult rank_effects(const Model& model, const Solution& fit) {
   RankingResult out;
   for (const Observation& observation : model.observations) {
     std::vector<const ModelTerm*> terms;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = 8192;  // cuts hours apart have no phase in common
 
-/// Stations of the low-band values of a fitted profile: what is finer can not be told apart.
+/// Stations of the low-band values of a fitted profile: what is finer cannot be told apart.
 struct CoarseProfile {
   const Profile* profile = nullptr;
   std::vector<double> positions;

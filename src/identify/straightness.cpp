@@ -104,7 +104,7 @@ Eigen::MatrixXd locus(const Model& model, const ModelTerm& term, const Eigen::Ve
 }
 
 /// All but offset and slope, which the reference line takes.
-bool is_determined(const ModelTerm& term, const Fit& fit) {
+bool is_determined(const ModelTerm& term, const Solution& fit) {
   const std::vector<Parameter>& parameters = term.effect->parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p)
     if (!fit.null.identifiable[term.first_parameter + static_cast<Eigen::Index>(p)] &&
@@ -121,7 +121,8 @@ std::vector<ReferenceLine> reference_lines(const Eigen::VectorXd& positions,
           least_squares(positions, heights), minimum_zone(positions, heights)};
 }
 
-std::optional<IdentifiedStraightness> identified_straightness(const Model& model, const Fit& fit,
+std::optional<IdentifiedStraightness> identified_straightness(const Model& model,
+                                                              const Solution& fit,
                                                               const MoreVariance& more) {
   const auto term = std::find_if(model.terms.begin(), model.terms.end(),
                                  [](const ModelTerm& each) { return each.name == "straightness"; });

@@ -33,7 +33,7 @@ ResidualSummary residual_summary(const Observation& observation, const Eigen::Ve
           is_slope(observation) ? "urad" : "um"};
 }
 
-void add_parameters(const Model& model, const Fit& fit, FitResult& out) {
+void add_parameters(const Model& model, const Solution& fit, FitResult& out) {
   for (const ModelTerm& term : model.terms) {
     const std::vector<Parameter>& parameters = term.effect->parameters();
     for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -57,7 +57,7 @@ void add_parameters(const Model& model, const Fit& fit, FitResult& out) {
   }
 }
 
-void add_correlations(const Model& model, const Fit& fit, FitResult& out) {
+void add_correlations(const Model& model, const Solution& fit, FitResult& out) {
   const Eigen::MatrixXd rows = fit.parameters.jacobian * fit.uncertainty.basis;
   const Eigen::MatrixXd covariance = rows * fit.uncertainty.covariance * rows.transpose();
   const std::vector<std::string> names = model.parameter_names();
@@ -71,7 +71,7 @@ void add_correlations(const Model& model, const Fit& fit, FitResult& out) {
     }
 }
 
-void add_identifiability(const Model& model, const Fit& fit, Identifiability& out) {
+void add_identifiability(const Model& model, const Solution& fit, Identifiability& out) {
   const std::vector<std::string> names = model.parameter_names();
   out.parameters = names.size();
   out.rank = names.size() - fit.null.own.size();
@@ -97,7 +97,7 @@ void add_identifiability(const Model& model, const Fit& fit, Identifiability& ou
   }
 }
 
-void add_noise(const Fit& fit, FitResult& out) {
+void add_noise(const Solution& fit, FitResult& out) {
   for (std::size_t i = 0; i < fit.noise.size(); ++i) {
     const Noise& noise = fit.noise[i];
     const Observation& observation = *fit.linear.observations[i];
@@ -133,7 +133,7 @@ void add_noise(const Fit& fit, FitResult& out) {
       static_cast<double>(fit.linear.prior_rows.rows() - fit.rank.basis.cols());
 }
 
-void add_residuals(const Model& model, const Fit& fit, FitResult& out) {
+void add_residuals(const Model& model, const Solution& fit, FitResult& out) {
   struct Sum {
     double squares = 0.0, samples = 0.0;
     [[nodiscard]] std::optional<double> rms(double unit) const {
@@ -162,7 +162,7 @@ void add_residuals(const Model& model, const Fit& fit, FitResult& out) {
   out.rms_urad = slopes.rms(kMicroradian);
 }
 
-void add_contributions(const Model& model, const Fit& fit, FitResult& out) {
+void add_contributions(const Model& model, const Solution& fit, FitResult& out) {
   for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
     const Observation& observation = *fit.linear.observations[i];
     const std::size_t first = out.contributions.size();
@@ -183,7 +183,7 @@ void add_contributions(const Model& model, const Fit& fit, FitResult& out) {
   }
 }
 
-void add_nuisances(const Fit& fit, FitResult& out) {
+void add_nuisances(const Solution& fit, FitResult& out) {
   for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
     const Observation& observation = *fit.linear.observations[i];
     for (std::size_t j = 0; j < observation.nuisance_names.size(); ++j) {
@@ -202,7 +202,7 @@ void add_nuisances(const Fit& fit, FitResult& out) {
 
 }  // namespace
 
-FitResult summarise(const Model& model, const Fit& fit) {
+FitResult summarise(const Model& model, const Solution& fit) {
   FitResult out;
   out.converged = fit.converged;
   if (!fit.converged) out.message = fit.message;

@@ -157,7 +157,7 @@ void add_lines(const std::vector<Profile>& profiles, ClosureNet& net) {
     if (profiles[i].setup.quantity == Quantity::slope &&
         largest_step(profiles[i].positions) > kGap * median_step(profiles[i].positions))
       net.notes.push_back("'" + profiles[i].name +
-                          "' is not closed: heights can not be summed over a gap in its slopes");
+                          "' is not closed: heights cannot be summed over a gap in its slopes");
     else
       net.lines.push_back(std::move(line));
   }

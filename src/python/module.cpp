@@ -199,7 +199,7 @@ PYBIND11_MODULE(_slideway, module) {
   register_error<UsageError>(module, "UsageError",
                              "The problem, or an argument, is wrong: what, and what is accepted.");
   register_error<DataError>(module, "DataError",
-                            "Numbers or a data file can not be used: what is wrong, and where.");
+                            "Numbers or a data file cannot be used: what is wrong, and where.");
   module.def("analyse", &analysed, py::arg("problem"), py::arg("profiles"), py::arg("data"),
              py::arg("ranks_only"), py::arg("closes_loop"));
   module.def("simulate", &simulated, py::arg("problem"), py::arg("seed"), py::arg("data"));

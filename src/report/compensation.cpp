@@ -119,7 +119,7 @@ void refuse_whole(const Analysis& analysis) {
       refuse("several carriages move along X; accepted: a machine with one");
   if (analysis.trace && analysis.trace->verdict == "not_identifiable")
     refuse(
-        "the closed loop's verdict is not_identifiable: the data can not tell what made the form");
+        "the closed loop's verdict is not_identifiable: the data cannot tell what made the form");
 }
 
 /// Sets E_ZX, or says why not. @return the slope of its reference line.

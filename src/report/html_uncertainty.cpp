@@ -105,7 +105,7 @@ std::string uncertainty(const Node& report) {
   return html_section("uncertainty", "Uncertainty", out);
 }
 
-// --- what can not be determined -----------------------------------------------------------------
+// --- what cannot be determined -----------------------------------------------------------------
 
 std::string in_words(const Node& combination) {
   std::string out;
@@ -132,7 +132,7 @@ std::string identifiability(const Node& report) {
                html_pair(sum["value"].number(), sum["expanded_uncertainty"].number()),
                html_unit(sum)});
   return html_section(
-      "identifiability", "What can not be determined",
+      "identifiability", "What cannot be determined",
       "<p>" +
           std::string(lost.empty() ? "All parameters of the declared model are determined: rank "
                                    : "The declared model has rank ") +

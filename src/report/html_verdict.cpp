@@ -50,7 +50,7 @@ Verdict verdict_of(const Node& report) {
     return {"Not converged", "bad",
             "The fit did not converge: no number of this report can be relied on."};
   if (!report.has("trace"))
-    return {"Fitted", "plain",
+    return {"FittedModel", "plain",
             "The declared model was fitted; whether an effect is missing was not asked."};
   const Node trace = report["trace"];
   const std::string& verdict = trace["verdict"].verbatim();
@@ -66,12 +66,12 @@ Verdict verdict_of(const Node& report) {
   if (verdict == "ambiguous")
     return {"Ambiguous", "warn",
             "The declared model lacks an effect: " + found(trace) +
-                ". These data can not tell which." + falls};
+                ". These data cannot tell which." + falls};
   const std::string beside = found(trace);
   if (verdict == "not_identifiable")
     return {"Not identifiable", "bad",
             (beside.empty() ? "" : "The declared model lacked " + beside + "." + falls + " ") +
-                "A form is there of which these data can not tell what makes it."};
+                "A form is there of which these data cannot tell what makes it."};
   if (verdict != "unnamed") trace["verdict"].fail("one of this program's verdicts");
   const std::string size = trace.has("unnamed") ? html_size(trace["unnamed"], "rms") + " rms" : "";
   return {"Unnamed", "bad",

@@ -263,7 +263,7 @@ std::string identifiability(const FitResult& fit) {
                            number(what.condition, 3);
   if (what.unidentifiable.empty()) return heading("All parameters are determined (" + rank + ")");
   const auto names = short_names(fit);
-  std::string text = heading("What these data can not determine (" + rank + ")");
+  std::string text = heading("What these data cannot determine (" + rank + ")");
   for (const UndeterminedDirection& direction : what.unidentifiable) {
     text += item(in_words(direction.combination, names));
     if (!direction.advice.empty()) text += paragraph("    ", direction.advice);

@@ -42,9 +42,9 @@ std::string verdict(const TraceResult& trace) {
            probability(trace.lack_of_fit_p) + "; structure is what is below 0.001).";
   if (trace.verdict == "explained") return "an effect was missing and is named:";
   if (trace.verdict == "ambiguous")
-    return "an effect is missing, and these data can not tell it from its rivals:";
+    return "an effect is missing, and these data cannot tell it from its rivals:";
   if (trace.verdict == "not_identifiable")
-    return "the form is there, but these data can not tell what makes it:";
+    return "the form is there, but these data cannot tell what makes it:";
   return trace.rounds.empty()
              ? "structure is left that no effect of the catalogue explains: UNNAMED."
              : "structure is left that no effect of the catalogue explains: UNNAMED, beside:";

@@ -72,7 +72,7 @@ struct Planned {
 };
 
 Planned plan(const Problem& problem, const std::vector<Profile>& profiles, const Model& model,
-             const Fit& fit, const Measurement& measurement) {
+             const Solution& fit, const Measurement& measurement) {
   Planned out{profiles, {model.machine, model.range, {}, {}}, {}};
   out.profiles.push_back(measurement.profile);
   Problem bare = problem;
@@ -136,7 +136,7 @@ double predicted_separation(const Planned& planned, const Whitened& data, const 
 }  // namespace
 
 std::string separating_measurement(const Problem& problem, const std::vector<Profile>& profiles,
-                                   const Model& model, const Fit& fit, const Whitened& data,
+                                   const Model& model, const Solution& fit, const Whitened& data,
                                    const Refined& effect, const Refined& rival) {
   // The other profiles differ from the first in the few things that are tried.
   const Profile& like = *fitted_observations(model).front()->profile;

@@ -16,7 +16,7 @@ namespace slideway {
 ///
 /// @param model  with what has been accepted, but for `effect`
 std::string separating_measurement(const Problem& problem, const std::vector<Profile>& profiles,
-                                   const Model& model, const Fit& fit, const Whitened& data,
+                                   const Model& model, const Solution& fit, const Whitened& data,
                                    const Refined& effect, const Refined& rival);
 
 }  // namespace slideway

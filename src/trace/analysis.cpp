@@ -33,7 +33,7 @@ void add_widening(const TraceResult& trace, std::vector<Budget>& budgets) {
 Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
                  const AnalysisOptions& options, const Progress& progress) {
   try {
-    const Fitted declared = fit_declared(problem, profiles);
+    const FittedModel declared = fit_declared(problem, profiles);
     Analysis analysis{identify(problem, profiles, declared, options.scope), {}, {}, {}};
     if (options.with_evidence) analysis.evidence = evidence(declared.model, declared.fit);
     ClosedLoop loop;

@@ -237,7 +237,7 @@ double lost_radius(const Model& model, const Observation& observation, const Eig
 }
 
 /// What the effects of the model that are steep at the centre put into a low band.
-Eigen::VectorXd centred_curve(const Model& model, const Fit& fit, std::size_t i) {
+Eigen::VectorXd centred_curve(const Model& model, const Solution& fit, std::size_t i) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(fit.linear.residuals[i].size());
   for (const ModelTerm& term : model.terms)
     if (is_centred(*term.effect)) {
@@ -268,7 +268,7 @@ Eigen::MatrixXd slow_cosines(Eigen::Index n, Eigen::Index count) {
   return out;
 }
 
-double lost_centre(const Model& model, const Fit& fit) {
+double lost_centre(const Model& model, const Solution& fit) {
   double lost = 0.0;
   for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
     const Observation& observation = *fit.linear.observations[i];
@@ -292,8 +292,8 @@ void leave_out_centre(Model& model, double radius_mm) {
   }
 }
 
-Eigen::MatrixXd loose_values(const Model& model, const Fit& fit, const std::vector<Noise>& noise,
-                             const Eigen::VectorXd& suspect) {
+Eigen::MatrixXd loose_values(const Model& model, const Solution& fit,
+                             const std::vector<Noise>& noise, const Eigen::VectorXd& suspect) {
   std::vector<Eigen::Index> rows;
   Eigen::Index first = 0;
   for (std::size_t o = 0; o < fit.linear.observations.size(); ++o) {
@@ -325,7 +325,7 @@ Eigen::MatrixXd loose_values(const Model& model, const Fit& fit, const std::vect
   return unit_columns(first + fit.linear.prior_rows.rows(), rows);
 }
 
-std::vector<Noise> background_noise(const Fit& fit, const Eigen::MatrixXd& loose,
+std::vector<Noise> background_noise(const Solution& fit, const Eigen::MatrixXd& loose,
                                     const std::vector<Eigen::MatrixXd>& suspect) {
   std::vector<Eigen::Index> first{0};
   for (const Observation* observation : fit.linear.observations)

@@ -15,7 +15,7 @@ namespace slideway {
 ///
 /// @param loose    loose_values() of the model
 /// @param suspect  per fitted observation: low-band columns of the effect under suspicion, or none
-std::vector<Noise> background_noise(const Fit& fit, const Eigen::MatrixXd& loose,
+std::vector<Noise> background_noise(const Solution& fit, const Eigen::MatrixXd& loose,
                                     const std::vector<Eigen::MatrixXd>& suspect = {});
 
 /// Unit columns, stacked as Whitened has its rows, for the low-band values that no column
@@ -27,12 +27,12 @@ std::vector<Noise> background_noise(const Fit& fit, const Eigen::MatrixXd& loose
 ///
 /// @param noise    per fitted observation
 /// @param suspect  stacked low band of an effect that is steep at the centre, or empty
-Eigen::MatrixXd loose_values(const Model& model, const Fit& fit, const std::vector<Noise>& noise,
-                             const Eigen::VectorXd& suspect = {});
+Eigen::MatrixXd loose_values(const Model& model, const Solution& fit,
+                             const std::vector<Noise>& noise, const Eigen::VectorXd& suspect = {});
 
 /// Radius out to which effects of the model are steeper at the centre than the tool's nose follows,
 /// mm; 0: nowhere.
-double lost_centre(const Model& model, const Fit& fit);
+double lost_centre(const Model& model, const Solution& fit);
 
 /// Leaves the low-band values of all faces within the radius free, each a nuisance of its own.
 void leave_out_centre(Model& model, double radius_mm);

@@ -32,7 +32,7 @@ Eigen::VectorXd positions_of(const Profile& profile) {
 /// One profile in one fitted model.
 class View {
  public:
-  View(const Fitted& fitted, std::size_t which)
+  View(const FittedModel& fitted, std::size_t which)
       : fitted_(fitted), observation_(fitted.model.observations[which]) {}
 
   [[nodiscard]] const Observation& observation() const { return observation_; }
@@ -85,7 +85,7 @@ class View {
     return fitted_.fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
   }
 
-  const Fitted& fitted_;
+  const FittedModel& fitted_;
   const Observation& observation_;
 };
 
@@ -113,7 +113,7 @@ void add_series(const View& before, const std::optional<View>& after, double uni
   out.residual_after = taken(rest_after, indices, unit);
 }
 
-void add_effects(const Fitted& fitted, const View& last, double unit, ProfileCurves& out) {
+void add_effects(const FittedModel& fitted, const View& last, double unit, ProfileCurves& out) {
   std::vector<Eigen::VectorXd> signals, low;
   for (const ModelTerm& term : fitted.model.terms) {
     out.effects.push_back(term.name);
@@ -191,9 +191,9 @@ void add_bands(const Observation& observation, double unit, ProfileCurves& out) 
 
 }  // namespace
 
-Details make_details(const Problem& problem, const Fitted& before, const Fitted* after,
+Details make_details(const Problem& problem, const FittedModel& before, const FittedModel* after,
                      const MoreVariance& more) {
-  const Fitted& last = after ? *after : before;
+  const FittedModel& last = after ? *after : before;
   Details out;
   out.problem = problem;
   for (std::size_t i = 0; i < before.model.observations.size(); ++i) {

@@ -50,7 +50,7 @@ std::string shape_text(const Candidate& candidate, std::span<const double> shape
 }
 
 /// Share of a candidate's column each parameter of the model takes, as a column of its own.
-std::string made_by(const Model& model, const Fit& fit, const Whitened& data,
+std::string made_by(const Model& model, const Solution& fit, const Whitened& data,
                     const Eigen::VectorXd& column) {
   const Linearisation& linear = fit.linear;
   const Eigen::Index k = linear.prior_rows.cols();
@@ -137,7 +137,7 @@ class JointFit {
 
 /// What an effect has to show itself in, and the least gain that counts.
 struct Design {
-  const Fitted& fitted;
+  const FittedModel& fitted;
   const Whitened& data;
   JointFit joint;
   double least_gain;
@@ -219,7 +219,7 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
 
 }  // namespace
 
-std::vector<DetectionLimit> detection_limits(const Fitted& fitted, const Whitened& data,
+std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Whitened& data,
                                              const std::vector<Noise>& joint_noise,
                                              const Candidates& candidates,
                                              const Calibration& calibration, double significance) {
@@ -234,7 +234,8 @@ std::vector<DetectionLimit> detection_limits(const Fitted& fitted, const Whitene
   return out;
 }
 
-std::vector<std::pair<std::string, std::string>> inseparable(const Model& model, const Fit& fit,
+std::vector<std::pair<std::string, std::string>> inseparable(const Model& model,
+                                                             const Solution& fit,
                                                              const Whitened& data,
                                                              const Candidates& candidates) {
   std::vector<std::pair<std::string, std::string>> out;

@@ -33,7 +33,7 @@ std::vector<Added> all_but(std::vector<Added> added, std::size_t i) {
 }
 
 Extender::Extender(const Problem& problem, const std::vector<Profile>& profiles,
-                   const Fitted& declared)
+                   const FittedModel& declared)
     : declared_(declared) {
   const Problem search = for_search(problem, profiles);
   if (search.low_band.level != problem.low_band.level) coarser_ = fit_declared(search, profiles);
@@ -41,7 +41,7 @@ Extender::Extender(const Problem& problem, const std::vector<Profile>& profiles,
 
 Extended Extender::extend(std::vector<Added> added) const {
   if (added.empty()) return {{base().model, base().fit}, {}};
-  Fitted with_effects = fitted(with(base().model, added), shapes_of(added));
+  FittedModel with_effects = fitted(with(base().model, added), shapes_of(added));
   Extended out(std::move(with_effects), std::move(added));
   out.lost_centre_mm = lost_centre(out.model, out.fit);
   if (out.lost_centre_mm > 0.0) {
@@ -62,13 +62,13 @@ FitResult Extender::summarised(const Extended& extended) const {
   return summarise(model, fit);
 }
 
-Fitted Extender::refitted(const Extended& extended) const {
+FittedModel Extender::refitted(const Extended& extended) const {
   Model model = with(declared_.model, extended.added);
   leave_out_centre(model, extended.lost_centre_mm);
   return fitted(std::move(model), shapes_of(extended.added));
 }
 
-Fitted Extender::in_declared_band(Extended extended) const {
+FittedModel Extender::in_declared_band(Extended extended) const {
   if (coarser_) return refitted(extended);
   return extended;
 }

@@ -18,9 +18,9 @@ struct Added {
 std::vector<Added> all_but(std::vector<Added> added, std::size_t i);
 
 /// The declared model with added effects, fitted.
-struct Extended : Fitted {
-  Extended(Fitted with_effects, std::vector<Added> effects)
-      : Fitted(std::move(with_effects)), added(std::move(effects)) {}
+struct Extended : FittedModel {
+  Extended(FittedModel with_effects, std::vector<Added> effects)
+      : FittedModel(std::move(with_effects)), added(std::move(effects)) {}
 
   std::vector<Added> added;
   double lost_centre_mm = 0.0;               // values within this radius are left out of the fit
@@ -32,9 +32,10 @@ struct Extended : Fitted {
 class Extender {
  public:
   /// The profiles and the declared model must outlive it and what it makes.
-  Extender(const Problem& problem, const std::vector<Profile>& profiles, const Fitted& declared);
+  Extender(const Problem& problem, const std::vector<Profile>& profiles,
+           const FittedModel& declared);
 
-  [[nodiscard]] const Fitted& base() const { return coarser_ ? *coarser_ : declared_; }
+  [[nodiscard]] const FittedModel& base() const { return coarser_ ? *coarser_ : declared_; }
 
   [[nodiscard]] Extended extend(std::vector<Added> added) const;
 
@@ -42,15 +43,15 @@ class Extender {
   [[nodiscard]] const FitResult& summary(const Extended& extended) const;
 
   /// The same model, fitted in the declared low band.
-  [[nodiscard]] Fitted in_declared_band(Extended extended) const;
+  [[nodiscard]] FittedModel in_declared_band(Extended extended) const;
 
  private:
   [[nodiscard]] FitResult summarised(const Extended& extended) const;
-  [[nodiscard]] Fitted refitted(const Extended& extended) const;
+  [[nodiscard]] FittedModel refitted(const Extended& extended) const;
   [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<Added>& added) const;
 
-  const Fitted& declared_;
-  std::optional<Fitted> coarser_;
+  const FittedModel& declared_;
+  std::optional<FittedModel> coarser_;
 };
 
 }  // namespace slideway

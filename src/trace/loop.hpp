@@ -8,12 +8,12 @@ namespace slideway {
 
 struct ClosedLoop {
   TraceResult trace;
-  std::optional<Widening> widening;  // of the final fit; none: nothing is left without a name
-  std::optional<Fitted> extended;    // with the effects that were added; none: none was
+  std::optional<Widening> widening;     // of the final fit; none: nothing is left without a name
+  std::optional<FittedModel> extended;  // with the effects that were added; none: none was
 };
 
 /// @param declared  fit_declared() of the problem
 ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profiles,
-                      const Fitted& declared, const Progress& progress);
+                      const FittedModel& declared, const Progress& progress);
 
 }  // namespace slideway

@@ -39,7 +39,7 @@ std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck&
   if (!too_large && fit.implausible.empty()) return "";
   std::vector<std::string> others;
   for (const auto& [effect, same] : out.not_separable) others.push_back(effect);
-  return "the carriages can not have made this form: " +
+  return "the carriages cannot have made this form: " +
          (too_large ? check.reason : fit.implausible) + "; the same columns are made by " +
          joined(others) +
          ", and nothing here tells them apart: read the straightness along the slide "

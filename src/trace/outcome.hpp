@@ -10,7 +10,7 @@ namespace slideway {
 std::vector<TriedEffect> tried(const Look& seen, const Seen* except,
                                std::optional<double> before_rms_um);
 
-/// Why the form that the fit puts into the carriages can not be theirs, or "": the run-out or a
+/// Why the form that the fit puts into the carriages cannot be theirs, or "": the run-out or a
 /// good slide speak against it, and other effects make the same columns.
 std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,
                                   const FitResult& fit);

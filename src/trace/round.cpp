@@ -69,7 +69,7 @@ bool alike(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 
 /// Candidates worth a closer look at their best shapes, best BIC first: those near the best, and on
 /// down while none of them can be accepted.
-std::vector<Seen> look_closer(const Model& model, const Fit& fit, const Whitened& data,
+std::vector<Seen> look_closer(const Model& model, const Solution& fit, const Whitened& data,
                               std::vector<Finding> findings, double significance,
                               const Calibration& calibration) {
   std::stable_sort(findings.begin(), findings.end(),
@@ -105,7 +105,7 @@ std::vector<Seen> look_closer(const Model& model, const Fit& fit, const Whitened
 
 /// The data made white for a model that lacks what the candidates can bring, and their findings:
 /// noise and effect are estimated together.
-std::pair<Whitened, std::vector<Finding>> whiten_beside(const Fit& fit,
+std::pair<Whitened, std::vector<Finding>> whiten_beside(const Solution& fit,
                                                         const Eigen::MatrixXd& loose,
                                                         const Candidates& candidates) {
   Whitened data(fit.linear, background_noise(fit, loose), loose);
@@ -161,8 +161,9 @@ std::vector<const Seen*> Look::rivals(const Seen& chosen) const {
   return out;
 }
 
-Look look(const Model& model, const Fit& fit, const Candidates& candidates, double significance,
-          std::optional<Calibration>& calibration, const std::function<void(double)>& told) {
+Look look(const Model& model, const Solution& fit, const Candidates& candidates,
+          double significance, std::optional<Calibration>& calibration,
+          const std::function<void(double)>& told) {
   const Eigen::MatrixXd loose = loose_values(model, fit, fit.noise);
   auto [data, findings] = whiten_beside(fit, loose, candidates);
   Look out{std::move(data), {}};

@@ -26,7 +26,7 @@ struct Look {
   std::vector<Seen> seen;  // best BIC first
 
   /// The candidate to accept, none of `taken`: the acceptable one of least BIC, if no better one
-  /// that can not be accepted itself takes the same of the residual. Null: none.
+  /// that cannot be accepted itself takes the same of the residual. Null: none.
   [[nodiscard]] const Seen* choice(const std::vector<std::string>& taken = {}) const;
 
   /// Other effects that take the same of the residual, within 10 of the BIC of `chosen`: the
@@ -38,7 +38,8 @@ struct Look {
 
 /// @param calibration  null distribution of the search; made here if it is not there yet
 /// @param told         which part of that is done
-Look look(const Model& model, const Fit& fit, const Candidates& candidates, double significance,
-          std::optional<Calibration>& calibration, const std::function<void(double)>& told = {});
+Look look(const Model& model, const Solution& fit, const Candidates& candidates,
+          double significance, std::optional<Calibration>& calibration,
+          const std::function<void(double)>& told = {});
 
 }  // namespace slideway

@@ -23,7 +23,7 @@ constexpr double kBetter = 2.0;  // of BIC, for one effect to take another's pla
 
 class Loop {
  public:
-  Loop(const Problem& problem, const std::vector<Profile>& profiles, const Fitted& declared,
+  Loop(const Problem& problem, const std::vector<Profile>& profiles, const FittedModel& declared,
        const Progress& progress)
       : problem_(problem),
         profiles_(profiles),
@@ -355,7 +355,7 @@ TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profi
 }
 
 ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profiles,
-                      const Fitted& declared, const Progress& progress) {
+                      const FittedModel& declared, const Progress& progress) {
   return Loop(problem, profiles, declared, progress).run();
 }
 

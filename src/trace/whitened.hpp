@@ -12,7 +12,7 @@ namespace slideway {
 ///
 /// Rows are low-band values divided by their noise (generalised least squares); the span of the
 /// model's columns, of its shapes' derivatives and of the nuisances is taken out of the residual,
-/// so that only what the model can not make is left.
+/// so that only what the model cannot make is left.
 class Whitened {
  public:
   /// @param linear  the model at its fit

@@ -10,7 +10,7 @@ namespace slideway {
 namespace {
 
 /// Change of (amplitudes, shapes) by signals in the low bands, a column each.
-Eigen::MatrixXd response(const Fit& fit, const Eigen::MatrixXd& signals) {
+Eigen::MatrixXd response(const Solution& fit, const Eigen::MatrixXd& signals) {
   const Linearisation& linear = fit.linear;
   const Eigen::Index k = linear.prior_rows.cols();
   Eigen::Index nuisances = 0, next = 0;
@@ -43,7 +43,7 @@ double Widening::variance(const Eigen::RowVectorXd& row) const {
   return (row * process).squaredNorm() + change * change / 3.0;
 }
 
-Widening widening(const Fit& fit, const Structure& structure, const Look& last) {
+Widening widening(const Solution& fit, const Structure& structure, const Look& last) {
   Widening out;
   out.process = response(fit, stack(fit.linear, structure.columns[0].cols(),
                                     [&](std::size_t i) { return structure.columns[i]; })) *
@@ -58,7 +58,7 @@ Widening widening(const Fit& fit, const Structure& structure, const Look& last) 
   return out;
 }
 
-void widen(const Model& model, const Fit& fit, const Widening& by,
+void widen(const Model& model, const Solution& fit, const Widening& by,
            std::vector<FittedParameter>& parameters) {
   const std::vector<std::string> names = model.parameter_names();
   for (std::size_t p = 0; p < names.size(); ++p) {

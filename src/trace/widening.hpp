@@ -16,10 +16,10 @@ struct Widening {
   [[nodiscard]] double variance(const Eigen::RowVectorXd& row) const;
 };
 
-Widening widening(const Fit& fit, const Structure& structure, const Look& last);
+Widening widening(const Solution& fit, const Structure& structure, const Look& last);
 
 /// Widens the uncertainties of the fitted parameters.
-void widen(const Model& model, const Fit& fit, const Widening& by,
+void widen(const Model& model, const Solution& fit, const Widening& by,
            std::vector<FittedParameter>& parameters);
 
 }  // namespace slideway

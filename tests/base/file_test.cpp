@@ -111,7 +111,7 @@ TEST(FileBytes, NamesWhatItCanNotRead) {
   const TemporaryFolder folder;
   const std::string missing = (folder.path() / "none.csv").string();
   EXPECT_THAT([&] { FileBytes{missing}; },
-              ThrowsMessage<DataError>(missing + ": can not be read: No such file or directory"));
+              ThrowsMessage<DataError>(missing + ": cannot be read: No such file or directory"));
   EXPECT_THAT(
       [&] { FileBytes{folder.path()}; },
       ThrowsMessage<DataError>(folder.path().string() + ": is a directory, expected a file"));
@@ -184,13 +184,13 @@ TEST(WriteFile, LeavesNothingBehindWhenItFails) {
   const std::string nowhere = (folder.path() / "none" / "out.json").string();
   EXPECT_THAT([&] { write_file(nowhere, "x"); },
               ThrowsMessage<std::runtime_error>(nowhere +
-                                                ": can not be written: No such file or directory"));
+                                                ": cannot be written: No such file or directory"));
   EXPECT_THAT([&] { write_file(folder.path(), "x"); },
               ThrowsMessage<std::runtime_error>(
                   AllOf(HasSubstr(folder.path().string()), HasSubstr("Is a directory"))));
   EXPECT_THAT(
       [] { write_file("/dev/full", "x"); },
-      ThrowsMessage<std::runtime_error>("/dev/full: can not be written: No space left on device"));
+      ThrowsMessage<std::runtime_error>("/dev/full: cannot be written: No space left on device"));
   EXPECT_EQ(entries(folder.path()), 0U);
 }
 
@@ -205,7 +205,7 @@ TEST(WriteFile, KeepsTheOldFileWholeWhenWritingBreaksOff) {
   for (const fs::path& path : {old, folder.path() / "new"})
     EXPECT_THAT(
         [&] { write_file(path, std::string(100000, 'x')); },
-        ThrowsMessage<std::runtime_error>(path.string() + ": can not be written: File too large"));
+        ThrowsMessage<std::runtime_error>(path.string() + ": cannot be written: File too large"));
   ::setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_EQ(contents_of(old), "whole");
@@ -220,7 +220,7 @@ TEST(WriteFile, LeavesAReadOnlyFolderAsItIs) {
   for (const fs::path& path : {old, folder.path() / "new"})
     EXPECT_THAT([&] { write_file(path, "x"); },
                 ThrowsMessage<std::runtime_error>(path.string() +
-                                                  ": can not be written: Permission denied"));
+                                                  ": cannot be written: Permission denied"));
   fs::permissions(folder.path(), fs::perms::owner_all);
   EXPECT_EQ(contents_of(old), "whole");
   EXPECT_EQ(entries(folder.path()), 1U);

@@ -113,7 +113,7 @@ PoolItem face_item(std::uint64_t seed, double more_squareness, bool with_prior =
   Problem problem = faces::problem_of();
   if (with_prior) problem.effects[0].priors = {{kSquareness.substr(11), 1e-3, 1e-7}};
   PoolItem item{std::to_string(seed), "", {}};
-  const Fitted declared = fit_declared(problem, profiles);
+  const FittedModel declared = fit_declared(problem, profiles);
   item.evidence = evidence(declared.model, declared.fit);
   return item;
 }

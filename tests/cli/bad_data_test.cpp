@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(BadField, Data, testing::ValuesIn(kFields),
                          [](const auto& input) { return input.param.name; });
 
 const BadInput kFiles[] = {
-    bad("Missing", "", {"profile 'face': gone.csv: can not be read"}, {.file = "gone.csv"}),
+    bad("Missing", "", {"profile 'face': gone.csv: cannot be read"}, {.file = "gone.csv"}),
     bad("Directory", "", {"profile 'face': .: is a directory, expected a file"}, {.file = "."}),
     bad("Empty", "", {"profile 'face': face.csv: is empty"}),
     bad("OnlyAHeader", "x_mm,z_um\n", {"face.csv: holds no rows of numbers"}),

@@ -141,7 +141,7 @@ class ProblemPath : public ProgramTest {};
 TEST_F(ProblemPath, ToNothingIsRefused) {
   const ProgramRun refused = run({"identify", "gone.toml", "--json", "report.json"});
   EXPECT_TRUE(is_refused(refused, 2));
-  EXPECT_THAT(refused.err, testing::StartsWith("slideway: gone.toml: can not be read"));
+  EXPECT_THAT(refused.err, testing::StartsWith("slideway: gone.toml: cannot be read"));
   EXPECT_THAT(names_in(folder_.path()), testing::IsEmpty());
 }
 

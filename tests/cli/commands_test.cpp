@@ -156,7 +156,7 @@ const BadUsage kBadUsages[] = {
     {"SeedAbove64Bits",
      {"simulate", "problem.toml", "--out", "d", "--seed", "18446744073709551616"},
      {"--seed:", "accepted: a whole number"}},
-    {"LineBreakInAName", {"identify", "a\nb.toml"}, {"a b.toml: can not be read"}},
+    {"LineBreakInAName", {"identify", "a\nb.toml"}, {"a b.toml: cannot be read"}},
     {"TerminalSequenceInAName", {"\x1b[31midentify"}, {"unknown command '?[31midentify'"}},
 };
 

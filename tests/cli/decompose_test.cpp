@@ -97,7 +97,7 @@ TEST_F(Decompose, RefusesBadDataInOneLine) {
   EXPECT_THAT(refusal({"face.csv"}), HasSubstr("face.csv: 20 rows; --level 5 needs 32"));
   EXPECT_THAT(refusal({"nan.csv"}), HasSubstr("nan.csv: data row 31: the value is missing"));
   EXPECT_THAT(refusal({"face.csv", "--value", "z"}), HasSubstr("face.csv: no column 'z'"));
-  EXPECT_THAT(refusal({"gone.csv"}), HasSubstr("gone.csv: can not be read"));
+  EXPECT_THAT(refusal({"gone.csv"}), HasSubstr("gone.csv: cannot be read"));
   EXPECT_THAT(refusal({"."}), HasSubstr(".: is a directory"));
   EXPECT_THAT(names_in(folder_.path()), testing::ElementsAre("face.csv", "nan.csv"));
 }

@@ -19,7 +19,7 @@ class Output : public ProgramTest {
   /// The line with which a run fails that could not write; "" if it did not fail so.
   static std::string failure(const ProgramRun& run) {
     EXPECT_TRUE(is_refused(run, 1));
-    EXPECT_THAT(run.err, HasSubstr("can not be written"));
+    EXPECT_THAT(run.err, HasSubstr("cannot be written"));
     return run.err;
   }
 };
@@ -79,7 +79,7 @@ TEST_F(Output, IntoAClosedPipeFailsWithAMessage) {
   const ProgramRun broken =
       run_program({"effects"}, {.folder = folder_.path(), .stdout_number = ends[1]});
   ::close(ends[1]);
-  EXPECT_EQ(failure(broken), "slideway: standard output: can not be written: Broken pipe\n");
+  EXPECT_EQ(failure(broken), "slideway: standard output: cannot be written: Broken pipe\n");
 }
 
 class BadOutputs : public Output, public testing::WithParamInterface<BadUsage> {};
@@ -98,17 +98,17 @@ std::vector<std::string> identify_to(const std::string& json) {
 const BadUsage kBadOutputs[] = {
     {"StandardOutputOnAFullDisk",
      {"effects"},
-     {"standard output: can not be written: No space left on device"},
+     {"standard output: cannot be written: No space left on device"},
      "/dev/full"},
     {"FileOnAFullDisk",
      identify_to("/dev/full"),
-     {"/dev/full: can not be written: No space left on device"}},
+     {"/dev/full: cannot be written: No space left on device"}},
     {"IntoADirectoryThatIsNotThere",
      identify_to("gone/report.json"),
-     {"gone/report.json: can not be written: No such file or directory"}},
+     {"gone/report.json: cannot be written: No such file or directory"}},
     // Not even root's.
     {"IntoADirectoryThatTakesNoFiles", identify_to("/proc/report.json"), {"/proc/report.json: "}},
-    {"OverADirectory", identify_to("."), {".: can not be written: Is a directory"}},
+    {"OverADirectory", identify_to("."), {".: cannot be written: Is a directory"}},
     {"BehindAFile", identify_to("/dev/null/report.json"), {"Not a directory"}},
 };
 INSTANTIATE_TEST_SUITE_P(Bad, BadOutputs, testing::ValuesIn(kBadOutputs),

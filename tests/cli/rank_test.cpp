@@ -120,7 +120,7 @@ TEST_F(Rank, RefusesBadDataInOneLine) {
   EXPECT_THAT(refusal({"empty.csv", "--signal", "1", "--candidates", "2"}),
               HasSubstr("empty.csv: is empty"));
   EXPECT_THAT(refusal({"gone.csv", "--signal", "1", "--candidates", "2"}),
-              HasSubstr("gone.csv: can not be read"));
+              HasSubstr("gone.csv: cannot be read"));
   EXPECT_THAT(refusal({".", "--signal", "1", "--candidates", "2"}), HasSubstr("is a directory"));
   EXPECT_THAT(names_in(folder_.path()), ElementsAre("empty.csv", "face.csv"));
 }

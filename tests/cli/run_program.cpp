@@ -115,7 +115,7 @@ std::string contents(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  if (!stream) throw std::runtime_error(file.string() + ": can not be read");
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be read");
   return text.str();
 }
 

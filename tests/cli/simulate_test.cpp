@@ -139,7 +139,7 @@ TEST_F(Simulate, IntoAFileFails) {
   folder_.file("made", "x");
   const ProgramRun failed = run({"simulate", "problem.toml", "--out", "made"});
   EXPECT_TRUE(is_refused(failed, 1));
-  EXPECT_EQ(failed.err, "slideway: made: can not be made a directory: Not a directory\n");
+  EXPECT_EQ(failed.err, "slideway: made: cannot be made a directory: Not a directory\n");
   EXPECT_EQ(contents(path("made")), "x");
 }
 

@@ -90,7 +90,7 @@ TEST_P(FormatContract, IsTheOnlyOneToRecogniseWhatItWrote) {
     EXPECT_EQ(other->recognises(bytes), other == &format()) << other->name();
 }
 
-// Whether a reader of plain text can not tell: the cut runs between rows, or through the digits of
+// Whether a reader of plain text cannot tell: the cut runs between rows, or through the digits of
 // the last value. Within a row before its last value it has to tell.
 bool can_not_be_told(const std::string& whole, std::size_t size) {
   const std::size_t header = whole.find('\n') + 1;

@@ -121,7 +121,7 @@ std::map<std::string, int> hits(const Experiment& experiment) {
     RandomStream random(static_cast<std::uint64_t>(run), experiment.name);
     const std::vector<Profile> profiles = measure(experiment, surfaces, random);
     const Model model = build_model(problem, profiles);
-    const Fit fitted = fit(model);
+    const Solution fitted = fit(model);
     const std::vector<std::string> names = model.parameter_names();
     Eigen::VectorXd wanted(model.parameters());
     for (std::size_t p = 0; p < names.size(); ++p) wanted[p] = expected.at(names[p]);

@@ -51,7 +51,7 @@ struct Found {
   explicit Found(std::vector<DeclaredEffect> effects, const std::vector<Profile>& profiles,
                  Lever lever = Lever::paper) {
     const Model model = build_model(cases::problem(lever, 3, std::move(effects)), profiles);
-    const Fit fitted = fit(model);
+    const Solution fitted = fit(model);
     result = summarise(model, fitted);
     for (const FittedParameter& parameter : result.parameters) {
       if (!parameter.identifiable) undetermined.insert(parameter.name);

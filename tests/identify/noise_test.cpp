@@ -234,7 +234,7 @@ TEST(Uncertainty, OfAWeightedMeanCountsThatItsWeightsComeFromTheData) {
       profiles.back().free_offset = profiles.back().free_tilt = false;
     }
     const Model model = build_model(problem, profiles);
-    const Fit result = fit(model);
+    const Solution result = fit(model);
     const double u = result.uncertainty.of(result.parameters.jacobian.row(0)).standard_uncertainty;
     claimed += u * u / kRuns;
     actual += result.parameters.values[0] * result.parameters.values[0] / kRuns;

@@ -66,7 +66,7 @@ struct ConeCase {
         build_model(cases::problem(Lever::paper, 5,
                                    {cases::effect("straightness", 2), cases::effect("squareness")}),
                     profiles);
-    Fit result = fit(model);
+    Solution result = fit(model);
     const ModelTerm& straightness = model.terms.front();
     result.estimate.amplitudes.segment(straightness.first_amplitude,
                                        straightness.effect->amplitudes()) *= curvature;
@@ -130,7 +130,7 @@ TEST(Dominant, IsNoneWithoutEntriesAndDisagreesWhereTheTwoDo) {
   EXPECT_EQ(dominant.doubt, "");
 }
 
-/// Two effects on one profile: coefficients, shares, and what the data can not tell apart.
+/// Two effects on one profile: coefficients, shares, and what the data cannot tell apart.
 Dominant dominant_of(std::array<double, 2> coefficients, std::array<double, 2> shares,
                      double p_value = 0.01, const Combination& untold = {}) {
   RankingResult ranking;

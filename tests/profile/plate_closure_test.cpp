@@ -162,7 +162,7 @@ TEST_F(PlateClosure, OfSandiasHeightsIsThePublishedOneWithinItsUncertainty) {
 }
 
 // The autocollimator's 123 fails Moody's limit of 100, the others' closures do not. Every line that
-// takes part in the loop can be to blame, the East-West ones can not.
+// takes part in the loop can be to blame, the East-West ones cannot.
 TEST_F(PlateClosure, FindsTheAutocollimatorsClosureAndNoOther) {
   const std::vector<Profile> plate = sandia(1);
   const Closure closure = close_lines(plate).value();

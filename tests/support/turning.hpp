@@ -122,7 +122,7 @@ struct Stylus {
 std::vector<double> trace(const Face& face, std::span<const double> positions, const Stylus& stylus,
                           RandomStream& random);
 
-/// How the carriage runs while it is read, and what the instrument can not know.
+/// How the carriage runs while it is read, and what the instrument cannot know.
 struct Pass {
   double feed_mm_per_min = 600.0;
   double spindle_rpm = 0.0;

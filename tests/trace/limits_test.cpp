@@ -1,4 +1,4 @@
-// What is held out, what can not be tested, what may be searched.
+// What is held out, what cannot be tested, what may be searched.
 
 #include <optional>
 

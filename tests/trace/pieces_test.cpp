@@ -49,7 +49,7 @@ struct Bench {
   Problem problem;
   std::vector<Profile> profiles;
   Model model;
-  Fit fitted;
+  Solution fitted;
 };
 
 TEST(Whitened, TurnsTheCovarianceOfAFirstOrderNoiseIntoTheUnitMatrix) {
@@ -99,7 +99,7 @@ TEST(BackgroundNoise, IsTheInstrumentsBesideFeedMarksAndAStrongLine) {
       const turning::Hidden hidden = turning::make_hidden(name, 30.0 * turning::kFaceNoise, random);
       const Problem problem = turning::face_problem();
       const std::vector<Profile> profiles = turning::make_faces(hidden, 3, kSharp, seed);
-      const Fitted declared = fit_declared(problem, profiles);
+      const FittedModel declared = fit_declared(problem, profiles);
       const Eigen::MatrixXd loose = loose_values(declared.model, declared.fit, declared.fit.noise);
       for (const Noise& noise : background_noise(declared.fit, loose)) {
         const double found = noise.standard_deviation() / std::sqrt(32.0);

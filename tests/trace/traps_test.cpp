@@ -20,7 +20,7 @@ using turning::ToolPoint;
 /// slide brings to the residual of the fit, n ln(RSS0 / RSS1) - 3 ln n.
 double naive_gain(const Problem& problem, const std::vector<Profile>& profiles) {
   const Model model = build_model(problem, profiles);
-  const Fit fitted = fit(model);
+  const Solution fitted = fit(model);
   Model with = build_model(problem, profiles);
   append_term(with, {"slide_periodic", {}, {}}, with.range);
   const ModelTerm& term = with.terms.back();

@@ -16,7 +16,7 @@ double fisher_limit(double numerator_freedom, double denominator_freedom, double
 double chi_squared_tail(double freedom, double x);
 /// Below it χ² lies with this probability.
 double chi_squared_quantile(double freedom, double probability);
-/// The non-centrality at which χ² lies below x with this probability; not finite where it can not
+/// The non-centrality at which χ² lies below x with this probability; not finite where it cannot
 /// be evaluated.
 double chi_squared_noncentrality(double freedom, double x, double probability);
 

@@ -12,7 +12,7 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A data file that can not be read or holds what it must not; exit code 3.
+/// A data file that cannot be read or holds what it must not; exit code 3.
 struct DataError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -9,7 +9,7 @@
 namespace slideway {
 
 /// The bytes of a file, mapped read-only; empty files and pipes are read instead.
-/// @throws DataError if it is missing, a directory, or can not be read: "path: what is wrong".
+/// @throws DataError if it is missing, a directory, or cannot be read: "path: what is wrong".
 class FileBytes {
  public:
   explicit FileBytes(const std::filesystem::path& path);
@@ -71,7 +71,7 @@ void write_file(const std::filesystem::path& path, std::string_view contents);
 /// Writes all bytes into an open file; 0, or the number of the error.
 int write_all(int file, std::string_view bytes);
 
-/// @throws std::runtime_error "path: can not be written: cause"
+/// @throws std::runtime_error "path: cannot be written: cause"
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, int error);
 
 }  // namespace slideway

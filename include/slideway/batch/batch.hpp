@@ -36,7 +36,7 @@ std::string do_task(const Manifest& manifest, const ItemOptions& options, const 
 /// stays that is "ok" and has the same fingerprint and version; all others are made again.
 /// @throws UsageError          the results are there and it does not resume, or hold ids that are
 ///                             not among the items
-/// @throws std::runtime_error  the results can not be written
+/// @throws std::runtime_error  the results cannot be written
 BatchSummary run_batch(const Manifest& manifest, const BatchOptions& options, Hands& hands,
                        const BatchProgress& progress = {});
 

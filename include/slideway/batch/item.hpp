@@ -29,7 +29,7 @@ inline constexpr const char* kCrashed = "crashed";            // a signal ended 
 /// What a result depends on, besides the program.
 struct Fingerprint {
   /// SHA-256 of the profile files' SHA-256s, one a line, in the problem's order; empty where a file
-  /// can not be read.
+  /// cannot be read.
   std::string input_sha256;
   /// SHA-256 of the problem file's SHA-256, of what overrides it by key, and of the options.
   std::string options_hash;

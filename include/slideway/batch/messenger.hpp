@@ -28,7 +28,7 @@ bool is_started_by_mpi();
 /// The messenger of a process that MPI has started; nullptr for any other. It is in a library of
 /// its own, ../lib/slideway/libslideway_mpi.so from the program on, loaded only then: MPI costs
 /// more to load than a profile to identify.
-/// @throws std::runtime_error  MPI has started it, but the library can not be loaded
+/// @throws std::runtime_error  MPI has started it, but the library cannot be loaded
 std::unique_ptr<Messenger> find_messenger();
 
 }  // namespace slideway

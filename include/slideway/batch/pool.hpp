@@ -76,7 +76,7 @@ struct Times {
 Times read_times(const Manifest& manifest);
 
 /// Pools a results file by the manifest's column `machine`, in the order of the first item of each.
-/// @throws DataError  no column `machine`; the results can not be read
+/// @throws DataError  no column `machine`; the results cannot be read
 std::vector<PooledMachine> pool_machines(const Manifest& manifest,
                                          const std::filesystem::path& results);
 

@@ -25,7 +25,7 @@ std::optional<ResultHead> parse_head(std::string_view line);
 
 /// Calls back for every line of a results file that is whole, a JSON object with all that a line
 /// has. @return how many lines are not, a last one without its newline included
-/// @throws DataError  if the file can not be read
+/// @throws DataError  if the file cannot be read
 std::size_t read_results(
     const std::filesystem::path& path,
     const std::function<void(const ResultHead& head, std::string_view line)>& each);
@@ -35,14 +35,14 @@ std::size_t read_results(
 class ResultsFile {
  public:
   /// Makes the file, or goes on behind what is there.
-  /// @throws std::runtime_error  it can not be written
+  /// @throws std::runtime_error  it cannot be written
   /// @throws UsageError          another run is writing it
   explicit ResultsFile(std::filesystem::path path);
   ~ResultsFile();
   ResultsFile(const ResultsFile&) = delete;
   ResultsFile& operator=(const ResultsFile&) = delete;
 
-  /// @throws std::runtime_error  the line can not be written; the file is then as before
+  /// @throws std::runtime_error  the line cannot be written; the file is then as before
   void append(std::string_view line);
 
   /// Leaves only the lines that are wanted, the first of an id, by a new file in the old one's

@@ -91,7 +91,7 @@ class Effect {
   /// search_range().
   [[nodiscard]] virtual double resolution(int shape, double value, const Stations& stations) const;
 
-  /// False where the reading can not see the effect at all (a slope reading and a drift of height):
+  /// False where the reading cannot see the effect at all (a slope reading and a drift of height):
   /// its columns are then zero.
   [[nodiscard]] virtual bool applies_to(const Setup& setup) const = 0;
 

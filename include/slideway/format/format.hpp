@@ -80,7 +80,7 @@ class Format {
                                             const TakePoints& take) const;
 
   /// Bytes from which read() gives the same trace back.
-  /// @throws UsageError  if the trace holds what the format can not
+  /// @throws UsageError  if the trace holds what the format cannot
   [[nodiscard]] virtual std::string write(const Trace& trace) const = 0;
 };
 

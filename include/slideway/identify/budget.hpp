@@ -21,6 +21,6 @@ struct Budget {
 };
 
 /// One budget for each identifiable parameter.
-std::vector<Budget> uncertainty_budget(const Model& model, const Fit& fit);
+std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit);
 
 }  // namespace slideway

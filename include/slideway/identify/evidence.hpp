@@ -18,6 +18,6 @@ struct Evidence {
 };
 
 /// The evidence in a fit; linearised at the estimate where an effect has shapes.
-Evidence evidence(const Model& model, const Fit& fit);
+Evidence evidence(const Model& model, const Solution& fit);
 
 }  // namespace slideway

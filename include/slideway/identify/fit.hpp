@@ -12,7 +12,7 @@
 namespace slideway {
 
 /// A fitted model with all that later steps need of it.
-struct Fit {
+struct Solution {
   Estimate estimate;  // parameters the data leave free: at 0 (gauge)
   bool converged = false;
   std::string message;
@@ -31,28 +31,28 @@ struct Fit {
 ///
 /// @param shapes  start from these shapes instead of searching their whole range
 /// @throws DataError  fewer low-band values than parameters
-Fit fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
+Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
 
 /// A model with the fit of its profiles. The fit points into the model: moved, never copied.
-struct Fitted {
-  Fitted(Model of, Fit by) : model(std::move(of)), fit(std::move(by)) {}
-  Fitted(const Fitted&) = delete;
-  Fitted& operator=(const Fitted&) = delete;
-  Fitted(Fitted&&) = default;
-  Fitted& operator=(Fitted&&) = default;
-  ~Fitted() = default;
+struct FittedModel {
+  FittedModel(Model of, Solution by) : model(std::move(of)), fit(std::move(by)) {}
+  FittedModel(const FittedModel&) = delete;
+  FittedModel& operator=(const FittedModel&) = delete;
+  FittedModel(FittedModel&&) = default;
+  FittedModel& operator=(FittedModel&&) = default;
+  ~FittedModel() = default;
 
   Model model;
-  Fit fit;
+  Solution fit;
 };
 
 /// A model together with fit().
-Fitted fitted(Model model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
+FittedModel fitted(Model model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
 
 /// The declared model, built and fitted. @throws UsageError, DataError  as build_model(), fit()
-Fitted fit_declared(const Problem& problem, const std::vector<Profile>& profiles);
+FittedModel fit_declared(const Problem& problem, const std::vector<Profile>& profiles);
 
 /// The fit for the report.
-FitResult summarise(const Model& model, const Fit& fit);
+FitResult summarise(const Model& model, const Solution& fit);
 
 }  // namespace slideway

@@ -13,7 +13,7 @@ enum class Scope { rank, fit, identify };
 /// @param declared  fit_declared() of the same
 /// @throws UsageError, DataError
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
-                const Fitted& declared, Scope scope = Scope::identify);
+                const FittedModel& declared, Scope scope = Scope::identify);
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
                 Scope scope = Scope::identify);
 

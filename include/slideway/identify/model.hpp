@@ -79,7 +79,7 @@ void append_term(Model& model, const DeclaredEffect& declared, const TravelRange
 void remake_term(Model& model, const std::string& name, const EffectOptions& options);
 
 /// Columns of one effect in the low band of one observation: #values by #amplitudes; zero where the
-/// reading can not see the effect.
+/// reading cannot see the effect.
 Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
                                  const Observation& observation, std::span<const double> shape);
 

@@ -15,7 +15,7 @@ namespace slideway {
 /// The signal of an effect is that of the fit; where that is rounding beside the profile (a
 /// squareness levelled away) and it has one amplitude, its shape alone; with more amplitudes
 /// nothing.
-RankingResult rank_effects(const Model& model, const Fit& fit);
+RankingResult rank_effects(const Model& model, const Solution& fit);
 
 /// The effect whose |low-band coefficient|, averaged over the profiles, is largest, and the one
 /// with the largest share of the fitted low band, with a doubt where the lead is small or where the

@@ -106,7 +106,7 @@ struct UndeterminedDirection {
   std::string advice;       // which measurement would determine it
 };
 
-/// What the data do say of parameters they can not tell apart: Σ coefficient * parameter.
+/// What the data do say of parameters they cannot tell apart: Σ coefficient * parameter.
 struct DeterminedCombination {
   Combination combination;
   double value = 0.0, standard_uncertainty = 0.0, expanded_uncertainty = 0.0;

@@ -45,7 +45,8 @@ struct IdentifiedStraightness {
 using MoreVariance = std::function<double(const Eigen::RowVectorXd& row)>;
 
 /// None where the model has no straightness.
-std::optional<IdentifiedStraightness> identified_straightness(const Model& model, const Fit& fit,
+std::optional<IdentifiedStraightness> identified_straightness(const Model& model,
+                                                              const Solution& fit,
                                                               const MoreVariance& more = {});
 
 }  // namespace slideway

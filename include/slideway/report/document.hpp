@@ -8,7 +8,7 @@ namespace slideway {
 
 /// Reads a report back that json_report() wrote; json_report() of it makes the same bytes. Keys it
 /// does not know are passed over.
-/// @throws DataError  the file can not be read or is no JSON; a schema other than
+/// @throws DataError  the file cannot be read or is no JSON; a schema other than
 ///                    slideway.report/1; a key that is missing or of the wrong type, named by its
 ///                    place: "result.json: fit.parameters[0].unit: ..."
 Analysis read_report(const std::filesystem::path& path);

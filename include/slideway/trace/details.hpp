@@ -57,7 +57,7 @@ struct Details {
 /// @param before  the declared model
 /// @param after   with the effects the loop has added; null: none
 /// @param more    what the structure without a name adds
-Details make_details(const Problem& problem, const Fitted& before, const Fitted* after,
+Details make_details(const Problem& problem, const FittedModel& before, const FittedModel* after,
                      const MoreVariance& more = {});
 
 }  // namespace slideway

@@ -30,7 +30,7 @@ std::unique_ptr<Effect> make_centre_step(const Request& request) {
                       .clock = Clock::trace,
                       .confounded_with = "a centring error of the trace on a conical face",
                       .separated_by = "traces at three or more azimuths: the step goes with the "
-                                      "spindle angle; on a radius it can not be seen"},
+                                      "spindle angle; on a radius it cannot be seen"},
       .amplitude = {"height_um", "A", "µm", 0.01},
       .clock = [](const Stations& stations, Eigen::Index i) { return stations.trace(i); },
       .value = value,

@@ -124,7 +124,7 @@ def identify(
         variable
     :param trace: False stops before the closed loop
     :raises UsageError: the problem is wrong, or an argument
-    :raises DataError: the numbers can not be used
+    :raises DataError: the numbers cannot be used
     """
     return _analysed(problem, profiles, data, False, trace)
 

@@ -194,7 +194,7 @@ class Undetermined:
 
 @dataclass(frozen=True)
 class Determined:
-    """What the data say of parameters they can not tell apart."""
+    """What the data say of parameters they cannot tell apart."""
 
     combination: dict[str, float]
     value: float
