@@ -12,31 +12,22 @@ struct Source {
   Eigen::MatrixXd covariance;  // of w
 };
 
-/// The covariance with the noise of one profile only (none: that of the priors alone), weights
-/// held.
-Eigen::MatrixXd with_noise_of(const Solution& fit, std::optional<std::size_t> profile) {
-  std::vector<Noise> noise = fit.noise;
-  for (std::size_t i = 0; i < noise.size(); ++i) {
-    noise[i].declared = true;
-    if (i != profile) noise[i].innovation = 0.0;
-  }
-  return assess(fit.linear, fit.weights, noise, fit.rank.basis).covariance;
-}
-
+/// In coordinates in which all information is the unit matrix the information of a source is also
+/// its part of the covariance.
 std::vector<Source> sources_of(const Solution& fit) {
-  const Eigen::MatrixXd priors = with_noise_of(fit, std::nullopt);
+  const Eigen::Index r = fit.rank.basis.cols();
   std::vector<Source> out;
-  Eigen::MatrixXd rest = fit.uncertainty.covariance - priors;
   for (std::size_t i = 0; i < fit.noise.size(); ++i) {
     const bool declared = fit.noise[i].declared;
     out.push_back({"noise of " + fit.linear.observations[i]->profile->name +
                        (declared ? ", as declared" : ", estimated from the residual"),
-                   declared ? 'B' : 'A', with_noise_of(fit, i) - priors});
-    rest -= out.back().covariance;
+                   declared ? 'B' : 'A', fit.uncertainty.information[i]});
   }
-  if (fit.linear.prior_rows.rows() > 0) out.push_back({"priors of the problem file", 'B', priors});
-  if (std::any_of(fit.noise.begin(), fit.noise.end(), [](const Noise& n) { return !n.declared; }))
-    out.push_back({"weights that come from the same data", 'A', rest});
+  if (const Eigen::MatrixXd rows = fit.linear.prior_rows * fit.rank.basis; rows.rows() > 0)
+    out.push_back({"priors of the problem file", 'B', rows.transpose() * rows});
+  if (std::ranges::any_of(fit.noise, &Noise::is_estimated))
+    out.push_back({"noise that comes from the same data", 'A',
+                   fit.uncertainty.covariance - Eigen::MatrixXd::Identity(r, r)});
   return out;
 }
 

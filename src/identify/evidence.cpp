@@ -28,15 +28,15 @@ Evidence evidence(const Model& model, const Solution& fit) {
   data.prior_rows.resize(0, model.amplitudes() + model.shapes());
   data.prior_residuals.resize(0);
   const bool has_priors = fit.linear.prior_rows.rows() > 0;
-  const Triangle triangle = compress(data, fit.weights);
+  const Compressed compressed = compress(data, fit.noise);
   const Eigen::MatrixXd to_amplitudes = inverse(fit.parameters.jacobian);
-  const Rank rank = has_priors ? analyse_rank(triangle.matrix, triangle.scale) : fit.rank;
+  const Rank rank = has_priors ? analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance) : fit.rank;
   const Uncertainty uncertainty =
-      has_priors ? assess(data, fit.weights, fit.noise, rank.basis) : fit.uncertainty;
+      has_priors ? assess(data, compressed, fit.noise, rank.basis) : fit.uncertainty;
 
   // w = image * (amplitudes, shapes) is determined with that covariance; what is left of it at the
   // estimate is what the priors pulled.
-  const Eigen::MatrixXd image = rank.basis.transpose() * triangle.matrix.transpose();
+  const Eigen::MatrixXd image = rank.basis.transpose() * compressed.triangle.transpose();
   const Eigen::LLT<Eigen::MatrixXd> root(uncertainty.covariance);
   Evidence out;
   out.parameters = model.parameter_names();
@@ -46,10 +46,10 @@ Evidence evidence(const Model& model, const Solution& fit) {
   if (image.rows() == 0 || root.info() != Eigen::Success) return out;
   Eigen::MatrixXd system(image.rows(), model.parameters() + 1);
   auto rows = system.leftCols(model.parameters());
-  rows = root.matrixL().solve(image * triangle.matrix * to_amplitudes);
+  rows = root.matrixL().solve(image * compressed.triangle * to_amplitudes);
   if (has_priors)
     clear_along(null_directions(model, rank.null_space, fit.parameters.jacobian,
-                                (triangle.scale.asDiagonal() * to_amplitudes)
+                                (compressed.scale.asDiagonal() * to_amplitudes)
                                     .colwise()
                                     .norm()
                                     .transpose()
@@ -59,7 +59,7 @@ Evidence evidence(const Model& model, const Solution& fit) {
     clear_along(fit.null, rows);
   system.rightCols(1) = rows * fit.parameters.values;
   if (has_priors)
-    system.rightCols(1) += root.matrixL().solve(rank.basis.transpose() * triangle.gradient);
+    system.rightCols(1) += root.matrixL().solve(rank.basis.transpose() * (compressed.triangle.transpose() * compressed.target));
 
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(system.leftCols(model.parameters()));
   system.rightCols(1).applyOnTheLeft(qr.householderQ().adjoint());

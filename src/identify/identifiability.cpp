@@ -8,7 +8,6 @@
 namespace slideway {
 namespace {
 
-constexpr double kRankTolerance = 1e-9;  // of a unit column; columns carry rounding of about 1e-15
 constexpr double kAbsent = 1e-6;         // a coefficient this small in a null direction is rounding
 
 /// Which parameter of a null direction gives way: the higher the sooner. Offset and slope of a
@@ -101,14 +100,17 @@ bool fixed_by_convention(const std::string& parameter) {
   return parameter.ends_with(".b0") || parameter.ends_with(".b1");
 }
 
-Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale) {
+Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
+                  double tolerance) {
   Rank rank;
+  rank.basis = rank.null_space = Eigen::MatrixXd(triangle.cols(), 0);
+  if (triangle.cols() == 0) return rank;
   const Eigen::VectorXd unit = scale.unaryExpr([](double s) { return s > 0.0 ? s : 1.0; });
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle * unit.cwiseInverse().asDiagonal(),
                                               Eigen::ComputeFullV);
   const Eigen::VectorXd& singular = svd.singularValues();
   Eigen::Index r = 0;
-  while (r < singular.size() && singular[r] > kRankTolerance) ++r;
+  while (r < singular.size() && singular[r] > tolerance) ++r;
   rank.basis = unit.cwiseInverse().asDiagonal() * svd.matrixV().leftCols(r) *
                singular.head(r).cwiseInverse().asDiagonal();
   rank.null_space = unit.cwiseInverse().asDiagonal() * svd.matrixV().rightCols(triangle.cols() - r);

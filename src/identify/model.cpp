@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
@@ -33,13 +34,27 @@ SlideRange slide_range(const Profile& profile, const Machine& machine) {
   return range;
 }
 
-void leave_out(Observation& observation, const std::vector<Eigen::Index>& values) {
+std::vector<Eigen::Index> left_out_values(const Observation& observation) {
+  std::vector<Eigen::Index> out;
+  for (Eigen::Index j = std::ssize(observation.nuisance_names); j < observation.nuisances.cols();
+       ++j) {
+    out.emplace_back();
+    observation.nuisances.col(j).maxCoeff(&out.back());
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+bool leave_out(Observation& observation, const std::vector<Eigen::Index>& values) {
+  std::vector<Eigen::Index> fresh;
+  std::ranges::set_difference(values, left_out_values(observation), std::back_inserter(fresh));
   Eigen::MatrixXd& nuisances = observation.nuisances;
   const Eigen::Index known = nuisances.cols();
-  nuisances.conservativeResize(observation.values.size(), known + std::ssize(values));
-  nuisances.rightCols(std::ssize(values)).setZero();
-  for (std::size_t j = 0; j < values.size(); ++j)
-    nuisances(values[j], known + static_cast<Eigen::Index>(j)) = 1.0;
+  nuisances.conservativeResize(observation.values.size(), known + std::ssize(fresh));
+  nuisances.rightCols(std::ssize(fresh)).setZero();
+  for (std::size_t j = 0; j < fresh.size(); ++j)
+    nuisances(fresh[j], known + static_cast<Eigen::Index>(j)) = 1.0;
+  return !fresh.empty();
 }
 
 namespace {
@@ -160,7 +175,8 @@ void remake_term(Model& model, const std::string& name, const EffectOptions& opt
 }
 
 Model build_model(const Problem& problem, const std::vector<Profile>& profiles) {
-  Model model{problem.machine(), travel_range(profiles, problem.machine()), {}, {}};
+  Model model{problem.machine(), travel_range(profiles, problem.machine()), {}, {},
+              problem.trace.gates};
   model.range.beam_span_mm = problem.beam_span_mm;
   for (const Profile& profile : profiles) {
     try {

@@ -1,5 +1,9 @@
 #include "slideway/identify/noise.hpp"
 
+#include <ceres/first_order_function.h>
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
 #include <algorithm>
@@ -11,21 +15,21 @@
 namespace slideway {
 namespace {
 
-constexpr int kMaxOrder = 6;
-constexpr int kValuesPerOrder = 10;    // residual values asked for per AR coefficient
-constexpr double kRefuted = 10.0;      // likelihood gain (as -2 ln) that overrules a declaration
+using Cost = std::function<double(const Eigen::VectorXd&)>;
+
 constexpr double kLargestAtanh = 5.0;  // |π| < 0.9999: a hum sampled finely comes close to 1
 
 /// Largest Σ atanh π on n values, where the correlation length, Π (1 + π) / (1 - π) values, is that
-/// of eight traces: beyond it an offset and the noise are one. A random walk makes a slope 5 % more
-/// uncertain than this; with one trace for a limit it would be 45 %.
-double most_correlated(Eigen::Index n) { return 0.5 * std::log(8.0 * static_cast<double>(n)); }
+/// of so many traces: beyond it an offset and the noise are one.
+double most_correlated(Eigen::Index n, const Gates& gates) {
+  return 0.5 * std::log(gates.correlation_traces * static_cast<double>(n));
+}
 
 /// Noise parameters within their limits. An excess of Σ atanh π comes off the first.
-Eigen::VectorXd limited(Eigen::VectorXd parameters, Eigen::Index n) {
+Eigen::VectorXd limited(Eigen::VectorXd parameters, double most_correlated) {
   auto partial = parameters.head(parameters.size() - 1);
   partial = partial.cwiseMin(kLargestAtanh).cwiseMax(-kLargestAtanh);
-  if (partial.size() > 0) partial[0] -= std::max(partial.sum() - most_correlated(n), 0.0);
+  if (partial.size() > 0) partial[0] -= std::max(partial.sum() - most_correlated, 0.0);
   return parameters;
 }
 
@@ -120,62 +124,65 @@ class RestrictedLikelihood {
   std::optional<LaggedProducts> products_;
 };
 
-/// Central-difference gradient and Hessian.
-void differentiate(const std::function<double(const Eigen::VectorXd&)>& f, const Eigen::VectorXd& x,
-                   Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) {
-  constexpr double kStep = 1e-3;  // of atanh π and ln σ: both of order one
-  const Eigen::Index d = x.size();
-  gradient.resize(d);
-  hessian.resize(d, d);
-  const double f0 = f(x);
-  const auto at = [&](Eigen::Index i, double si, Eigen::Index j, double sj) {
-    Eigen::VectorXd y = x;
-    y[i] += si * kStep;
-    y[j] += sj * kStep;
-    return f(y);
-  };
-  for (Eigen::Index i = 0; i < d; ++i) {
-    const double up = at(i, 1, i, 0), down = at(i, -1, i, 0);
-    gradient[i] = (up - down) / (2.0 * kStep);
-    hessian(i, i) = (up - 2.0 * f0 + down) / (kStep * kStep);
-    for (Eigen::Index j = 0; j < i; ++j)
-      hessian(i, j) = hessian(j, i) =
-          (at(i, 1, j, 1) - at(i, 1, j, -1) - at(i, -1, j, 1) + at(i, -1, j, -1)) /
-          (4.0 * kStep * kStep);
+constexpr double kStep = 1e-3;  // of differences by atanh π and ln σ: both of order one
+
+/// Central-difference gradient.
+Eigen::VectorXd gradient_of(const Cost& f, const Eigen::VectorXd& x) {
+  Eigen::VectorXd gradient(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(x.size(), i);
+    gradient[i] = (f(x + step) - f(x - step)) / (2.0 * kStep);
   }
+  return gradient;
 }
 
-/// Minimises by damped Newton steps.
-Eigen::VectorXd minimise(const std::function<double(const Eigen::VectorXd&)>& f,
-                         Eigen::VectorXd x) {
-  Eigen::VectorXd gradient;
-  Eigen::MatrixXd hessian;
-  double best = f(x);
-  for (int iteration = 0; iteration < 20; ++iteration) {
-    differentiate(f, x, gradient, hessian);
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
-    const Eigen::VectorXd curvature = eigen.eigenvalues().cwiseAbs().cwiseMax(1e-3);
-    const Eigen::VectorXd step =
-        -eigen.eigenvectors() *
-        (eigen.eigenvectors().transpose() * gradient).cwiseQuotient(curvature);
-    double length = std::min(1.0, 1.0 / std::max(step.lpNorm<Eigen::Infinity>(), 1e-12));
-    double next = INFINITY;
-    while (length > 1e-4 && !((next = f(x + length * step)) <= best)) length /= 4.0;
-    if (!(next <= best)) break;
-    x += length * step;
-    const double gain = best - next;
-    best = next;
-    if (gain < 1e-8) break;
+/// Central differences of the gradient.
+Eigen::MatrixXd hessian_of(const Cost& f, const Eigen::VectorXd& x) {
+  Eigen::MatrixXd hessian(x.size(), x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(x.size(), i);
+    hessian.col(i) = (gradient_of(f, x + step) - gradient_of(f, x - step)) / (2.0 * kStep);
   }
+  return 0.5 * (hessian + hessian.transpose());
+}
+
+/// -2 ln likelihood as Ceres takes it.
+class Likelihood final : public ceres::FirstOrderFunction {
+ public:
+  Likelihood(const Cost& cost, Eigen::Index size) : cost_(cost), size_(size) {}
+
+  bool Evaluate(const double* const parameters, double* cost, double* gradient) const override {
+    const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(parameters, size_);
+    *cost = cost_(x);
+    if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, size_) = gradient_of(cost_, x);
+    return std::isfinite(*cost);
+  }
+  [[nodiscard]] int NumParameters() const override { return static_cast<int>(size_); }
+
+ private:
+  const Cost& cost_;
+  Eigen::Index size_;
+};
+
+/// Minimises by BFGS.
+Eigen::VectorXd minimise(const Cost& f, Eigen::VectorXd x) {
+  const ceres::GradientProblem problem(new Likelihood(f, x.size()));
+  ceres::GradientProblemSolver::Options options;
+  options.line_search_direction_type = ceres::BFGS;
+  options.logging_type = ceres::SILENT;
+  options.max_num_iterations = 50;
+  options.function_tolerance = 1e-9;  // of -2 ln likelihood: no estimate moves visibly
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(options, problem, x.data(), &summary);
   return x;
 }
 
 /// Directions in which noise parameters can move without crossing a limit they stand at.
-Eigen::MatrixXd free_directions(const Eigen::VectorXd& parameters, Eigen::Index n) {
+Eigen::MatrixXd free_directions(const Eigen::VectorXd& parameters, double most_correlated) {
   constexpr double kAtLimit = 1e-9;
   const Eigen::Index last = parameters.size() - 1;
   const auto partial = parameters.head(last);
-  const bool whole_trace = last > 0 && partial.sum() > most_correlated(n) - kAtLimit;
+  const bool whole_trace = last > 0 && partial.sum() > most_correlated - kAtLimit;
   Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(last + 1, last + 1);
   for (Eigen::Index j = whole_trace ? 1 : 0; j < last; ++j) {
     if (std::abs(partial[j]) > kLargestAtanh - kAtLimit) continue;
@@ -191,14 +198,12 @@ Eigen::MatrixXd free_directions(const Eigen::VectorXd& parameters, Eigen::Index 
 }
 
 /// Covariance of noise parameters at the minimum of f = -2 ln likelihood; none across a limit.
-Eigen::MatrixXd covariance(const std::function<double(const Eigen::VectorXd&)>& f,
-                           const Eigen::VectorXd& parameters, Eigen::Index n) {
+Eigen::MatrixXd covariance(const Cost& f, const Eigen::VectorXd& parameters,
+                           double most_correlated) {
   constexpr double kLeastInformation = 0.5;  // of atanh π where the data say nothing
-  const Eigen::MatrixXd directions = free_directions(parameters, n);
-  Eigen::VectorXd gradient;
-  Eigen::MatrixXd hessian;
-  differentiate([&](const Eigen::VectorXd& y) { return f(parameters + directions * y); },
-                Eigen::VectorXd::Zero(directions.cols()), gradient, hessian);
+  const Eigen::MatrixXd directions = free_directions(parameters, most_correlated);
+  const Cost along = [&](const Eigen::VectorXd& y) { return f(parameters + directions * y); };
+  const Eigen::MatrixXd hessian = hessian_of(along, Eigen::VectorXd::Zero(directions.cols()));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * hessian);
   const Eigen::MatrixXd axes = directions * eigen.eigenvectors();
   return axes * eigen.eigenvalues().cwiseMax(kLeastInformation).cwiseInverse().asDiagonal() *
@@ -246,9 +251,11 @@ double white_variance(const LinearProfile& profile) {
 /// State of the estimation: noise parameters of each profile and the information they give.
 class Estimator {
  public:
-  Estimator(std::span<const LinearProfile> profiles, const Eigen::MatrixXd& prior_information)
+  Estimator(std::span<const LinearProfile> profiles, const Eigen::MatrixXd& prior_information,
+            const Gates& gates)
       : profiles_(profiles),
         prior_(prior_information),
+        gates_(gates),
         parameters_(profiles.size()),
         information_(profiles.size()) {
     for (std::size_t i = 0; i < profiles.size(); ++i) start(i);
@@ -272,7 +279,8 @@ class Estimator {
   void start(std::size_t i) {
     const LinearProfile& profile = profiles_[i];
     const Eigen::Index n = profile.residual.size();
-    const int most = std::clamp(spare(profile) / kValuesPerOrder - 1, 0, kMaxOrder);
+    const int most = std::clamp(static_cast<int>(spare(profile) / gates_.values_per_order) - 1, 0,
+                                static_cast<int>(gates_.noise_order));
     std::vector<double> partial =
         Autoregression::burg({profile.residual.data(), static_cast<std::size_t>(n)}, most);
     partial.resize(order_by_bic(partial, n));
@@ -299,10 +307,12 @@ class Estimator {
   /// @return the largest change of a parameter
   double refine(std::size_t i) {
     const Eigen::MatrixXd rest = others(i);
-    const Eigen::Index n = profiles_[i].residual.size();
-    const auto cost = [&](const Eigen::VectorXd& x) { return likelihood_[i](limited(x, n), rest); };
+    const double most = most_correlated(profiles_[i].residual.size(), gates_);
+    const Cost cost = [&](const Eigen::VectorXd& x) {
+      return likelihood_[i](limited(x, most), rest);
+    };
     const Eigen::VectorXd before = parameters_[i];
-    parameters_[i] = limited(minimise(cost, before), n);
+    parameters_[i] = limited(minimise(cost, before), most);
     information_[i] = likelihood_[i].information(parameters_[i], nullptr);
     return (parameters_[i] - before).lpNorm<Eigen::Infinity>();
   }
@@ -310,13 +320,14 @@ class Estimator {
   [[nodiscard]] Noise conclude(std::size_t i) const {
     Noise noise = make_noise(parameters_[i]);
     const Eigen::MatrixXd rest = others(i);
-    const auto cost = [&](const Eigen::VectorXd& x) { return likelihood_[i](x, rest); };
+    const Cost cost = [&](const Eigen::VectorXd& x) { return likelihood_[i](x, rest); };
     if (noise.correlation.order() > 0 && noise.correlation.long_run_ratio() < 1.0) {
       // Its own spread may be that of frequencies the columns have taken, which nobody has seen.
       noise = white(std::sqrt(white_variance(profiles_[i])));
       noise.covariance.setConstant(1, 1, 0.5 / spare(profiles_[i]));  // of ln σ
     } else {
-      noise.covariance = covariance(cost, parameters_[i], profiles_[i].residual.size());
+      noise.covariance = covariance(cost, parameters_[i],
+                                    most_correlated(profiles_[i].residual.size(), gates_));
     }
     const auto d = static_cast<Eigen::Index>(noise.covariance.rows());
     const std::optional<double>& declared = profiles_[i].declared;
@@ -324,8 +335,8 @@ class Estimator {
     const auto n = static_cast<double>(profiles_[i].residual.size());
     const double gain = likelihood_[i](declared_parameters(i, *declared), rest) -
                         likelihood_[i](parameters_[i], rest);
-    noise.overruled = gain > static_cast<double>(d) * std::log(n) + kRefuted &&
-                      noise.weight_deviation() > *declared;
+    noise.overruled = gain > static_cast<double>(d) * std::log(n) + gates_.declared_noise_bic &&
+                      noise.long_run_deviation() > *declared;
     if (noise.overruled) return noise;
     Noise out = white(*declared);
     out.declared = true;
@@ -340,6 +351,7 @@ class Estimator {
 
   std::span<const LinearProfile> profiles_;
   const Eigen::MatrixXd& prior_;
+  const Gates& gates_;
   std::vector<RestrictedLikelihood> likelihood_;
   std::vector<Eigen::VectorXd> parameters_;
   std::vector<Eigen::MatrixXd> information_;
@@ -351,7 +363,7 @@ double Noise::standard_deviation() const {
   return innovation * std::sqrt(correlation.variance_ratio());
 }
 
-double Noise::weight_deviation() const {
+double Noise::long_run_deviation() const {
   return standard_deviation() * std::sqrt(correlation.long_run_ratio());
 }
 
@@ -365,14 +377,29 @@ Eigen::VectorXd Noise::parameters() const {
 
 Noise Noise::at(const Eigen::VectorXd& parameters) const { return make_noise(parameters); }
 
-std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,
-                                  const Eigen::MatrixXd& prior_information) {
-  return Estimator(profiles, prior_information).run();
+void Noise::whiten(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  correlation.whiten(rows);
+  rows /= innovation;
 }
 
-Eigen::MatrixXd covariance_under(const Noise& noise,
-                                 const Eigen::Ref<const Eigen::MatrixXd>& columns) {
-  return noise.innovation * noise.innovation * noise.correlation.gram(columns);
+void Noise::colour(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  correlation.colour(rows);
+  rows *= innovation;
+}
+
+double Noise::log_long_run_variance() const {
+  if (!is_estimated()) return 0.0;
+  const Eigen::VectorXd at_estimate = parameters();
+  const Cost log_variance = [this](const Eigen::VectorXd& x) {
+    return 2.0 * std::log(at(x).long_run_deviation());
+  };
+  const Eigen::VectorXd gradient = gradient_of(log_variance, at_estimate);
+  return gradient.dot(covariance * gradient);
+}
+
+std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,
+                                  const Eigen::MatrixXd& prior_information, const Gates& gates) {
+  return Estimator(profiles, prior_information, gates).run();
 }
 
 }  // namespace slideway

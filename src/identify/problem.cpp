@@ -179,7 +179,9 @@ TraceOptions read_trace(const Section& root) {
   options.candidates = effect_names();
   const std::optional<Section> section = root.table("trace");
   if (!section) return options;
-  section->accept("candidates max_effects significance");
+  std::vector<std::string> keys{"candidates", "max_effects"};
+  for (const Gate& gate : gate_table()) keys.emplace_back(gate.name);
+  section->accept(keys);
   std::vector<std::string> accepted = effect_names();
   accepted.emplace_back("all");
   const auto named = section->some_of("candidates", accepted);
@@ -187,8 +189,13 @@ TraceOptions read_trace(const Section& root) {
     options.candidates = *named;
   options.max_effects =
       section->integer("max_effects", 0, kHighestInteger).value_or(options.max_effects);
-  options.significance = section->positive("significance").value_or(options.significance);
-  if (!(options.significance < 1.0)) section->fail("significance", "must be less than 1");
+  for (const Gate& gate : gate_table()) {
+    double& value = options.gates.*gate.value;
+    value = section->number(gate.name).value_or(value);
+    if (!(value >= gate.lower && value <= gate.upper))
+      section->fail(gate.name, "out of range; accepted: from " + shortest(gate.lower) + " to " +
+                                   shortest(gate.upper));
+  }
   return options;
 }
 

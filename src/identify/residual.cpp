@@ -3,238 +3,301 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "slideway/base/error.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
 namespace {
 
-double slope_of_outer(double outer, const Shape& kind) { return kind.logarithmic ? outer : 1.0; }
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Writes a Jacobian block, if Ceres wants it.
+void give(double** jacobians, std::size_t block, const Eigen::MatrixXd& columns) {
+  if (jacobians && jacobians[block])
+    Eigen::Map<RowMajor>(jacobians[block], columns.rows(), columns.cols()) = columns;
+}
+
+Eigen::Map<const Eigen::VectorXd> vector_of(const double* block, Eigen::Index size) {
+  return {block, size};
+}
+
+/// Replaces each residual f by sign(f) sqrt(ρ(f²)) and scales its row of the Jacobian by the
+/// derivative, f ρ'(f²) / sqrt(ρ(f²)), 1 at 0.
+void robustify(const ceres::LossFunction& loss, Eigen::Ref<Eigen::VectorXd> residuals,
+               Eigen::Ref<Eigen::MatrixXd> jacobian) {
+  for (Eigen::Index t = 0; t < residuals.size(); ++t) {
+    const double f = residuals[t];
+    double rho[3];
+    loss.Evaluate(f * f, rho);
+    const double root = std::sqrt(rho[0]);
+    if (root > 0.0) jacobian.row(t) *= std::abs(f) * rho[1] / root;
+    residuals[t] = std::copysign(root, f);
+  }
+}
 
 }  // namespace
 
-Eigen::MatrixXd nuisance_basis(const Observation& observation) {
-  const Eigen::MatrixXd& nuisances = observation.nuisances;
-  if (nuisances.cols() == 0) return nuisances;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(nuisances);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(nuisances.rows(), nuisances.cols());
+std::unique_ptr<ceres::LossFunction> make_loss(Loss loss) {
+  constexpr double kHuber = 1.345, kCauchy = 2.385;
+  switch (loss) {
+    case Loss::huber:
+      return std::make_unique<ceres::HuberLoss>(kHuber);
+    case Loss::cauchy:
+      return std::make_unique<ceres::CauchyLoss>(kCauchy);
+    case Loss::none:
+      break;
+  }
+  return nullptr;
 }
 
-void project_out(const Eigen::MatrixXd& basis, Eigen::Ref<Eigen::MatrixXd> columns) {
-  if (basis.cols() == 0) return;
-  const Eigen::MatrixXd along = basis.transpose() * columns;
-  columns.noalias() -= basis * along;
+double slope_of_outer(const Shape& kind, double outer) { return kind.logarithmic ? outer : 1.0; }
+
+std::vector<double> outer_shapes(const ModelTerm& term, const double* inner) {
+  std::vector<double> out;
+  for (const Shape& kind : term.effect->shapes()) out.push_back(kind.outer(inner[out.size()]));
+  return out;
 }
 
-Eigen::Index parameter_index(const ModelTerm& term, const std::string& name) {
-  const std::vector<Parameter>& parameters = term.effect->parameters();
-  for (std::size_t p = 0; p < parameters.size(); ++p)
-    if (parameters[p].name == name) return static_cast<Eigen::Index>(p);
-  throw UsageError("effect '" + term.name + "' has no parameter '" + name + "'");
+Unknowns::Unknowns(const Model& model, const Estimate& start) {
+  const std::vector<const Observation*> observations = fitted_observations(model);
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    levelling.emplace_back(start.nuisances[i].head(std::ssize(observations[i]->nuisance_names)));
+  for (const ModelTerm& each : model.terms) {
+    Term& term = terms.emplace_back();
+    term.term = &each;
+    term.amplitudes = start.amplitudes.segment(each.first_amplitude, each.effect->amplitudes());
+    const std::vector<Shape>& kinds = each.effect->shapes();
+    term.shapes.resize(std::ssize(kinds));
+    for (std::size_t s = 0; s < kinds.size(); ++s)
+      term.shapes[s] =
+          kinds[s].inner(start.shapes[each.first_shape + static_cast<Eigen::Index>(s)]);
+  }
 }
 
-/// Rows of all observations, weighted and free of nuisances; the priors' rows are left zero.
-template <typename ColumnsOf>
-Eigen::MatrixXd Residual::stacked(Eigen::Index cols, ColumnsOf&& columns_of) const {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows_, cols);
-  for (std::size_t i = 0; i < observations_.size(); ++i) {
-    auto block = out.middleRows(first_row_[i], observations_[i]->values.size());
-    block = columns_of(i) / weights_[i];
-    project_out(bases_[i], block);
+Estimate Unknowns::estimate(const Model& model) const {
+  Estimate out;
+  out.amplitudes.resize(model.amplitudes());
+  out.shapes.resize(model.shapes());
+  for (const Term& each : terms) {
+    out.amplitudes.segment(each.term->first_amplitude, each.amplitudes.size()) = each.amplitudes;
+    const std::vector<double> shapes = outer_shapes(*each.term, each.shapes.data());
+    std::copy(shapes.begin(), shapes.end(), out.shapes.data() + each.term->first_shape);
+  }
+  const std::vector<const Observation*> observations = fitted_observations(model);
+  for (std::size_t i = 0; i < levelling.size(); ++i) {
+    out.nuisances.emplace_back(Eigen::VectorXd::Zero(observations[i]->nuisances.cols()));
+    out.nuisances[i].head(levelling[i].size()) = levelling[i];
   }
   return out;
 }
 
-Residual::Residual(const Model& model, const Linearisation& linear,
-                   const std::vector<double>& weights, const Estimate& start)
-    : model_(model), weights_(weights) {
+ProfileResidual::ProfileResidual(const Model& model, const Observation& observation,
+                                 const Noise& noise, const Eigen::MatrixXd& columns)
+    : model_(model),
+      observation_(observation),
+      noise_(noise),
+      loss_(make_loss(observation.profile->loss)) {
+  const Eigen::Index levelling = std::ssize(observation.nuisance_names);
+  Eigen::MatrixXd left_out = observation.nuisances.rightCols(observation.left_out());
+  noise.whiten(left_out);
+  left_out_ = orthonormal(std::move(left_out));
+  levelling_ = white(observation.nuisances.leftCols(levelling));
+  columns_ = white(columns.leftCols(model.amplitudes()));
+  values_ = white(observation.values);
+  set_num_residuals(static_cast<int>(values_.size()));
+  std::vector<int32_t>& sizes = *mutable_parameter_block_sizes();
+  if (levelling > 0) sizes.push_back(static_cast<int32_t>(levelling));
   for (const ModelTerm& term : model.terms) {
-    if (term.effect->shapes().empty()) continue;
-    moving_.push_back(&term);
-    for (int s = 0; s < static_cast<int>(term.effect->shapes().size()); ++s)
-      shapes_.emplace_back(&term, s);
-    for (Eigen::Index a = 0; a < term.effect->amplitudes(); ++a)
-      amplitudes_.push_back(term.first_amplitude + a);
+    sizes.push_back(term.effect->amplitudes());
+    if (!term.effect->shapes().empty())
+      sizes.push_back(static_cast<int32_t>(term.effect->shapes().size()));
   }
-  set_up_rows(linear);
-  set_up_fixed(linear);
-  shape_values_ = start.shapes;
-  set_num_residuals(static_cast<int>(rank() + (moving_.empty() ? 0 : rows_) + prior_count()));
-  if (size() > 0) mutable_parameter_block_sizes()->push_back(static_cast<int32_t>(size()));
 }
 
-void Residual::set_up_rows(const Linearisation& linear) {
-  observations_ = linear.observations;
-  bases_ = linear.nuisance_bases;
-  for (const Observation* observation : observations_) {
-    first_row_.push_back(rows_);
-    rows_ += observation->values.size();
-  }
-  rows_ += linear.prior_rows.rows();
+Eigen::MatrixXd ProfileResidual::white(Eigen::MatrixXd columns) const {
+  noise_.whiten(columns);
+  if (left_out_.cols() > 0) columns -= left_out_ * (left_out_.transpose() * columns).eval();
+  return columns;
 }
 
-/// Orthogonal factorisation of the columns that never move, once.
-void Residual::set_up_fixed(const Linearisation& linear) {
-  for (const ModelTerm& term : model_.terms)
-    if (term.effect->shapes().empty())
-      for (Eigen::Index a = 0; a < term.effect->amplitudes(); ++a)
-        fixed_.push_back(term.first_amplitude + a);
-  const auto pick = [&](const Eigen::MatrixXd& columns) {
-    Eigen::MatrixXd out(columns.rows(), fixed_.size());
-    for (std::size_t f = 0; f < fixed_.size(); ++f) out.col(f) = columns.col(fixed_[f]);
-    return out;
-  };
-  const auto k = static_cast<Eigen::Index>(fixed_.size());
-  const Triangle triangle = compress(linear, weights_);
-  const Eigen::VectorXd scale = pick(triangle.scale.transpose()).transpose();
-  if (moving_.empty()) {
-    const Rank rank = analyse_rank(triangle.matrix, scale);
-    fixed_basis_ = rank.basis;
-    target_ = rank.basis.transpose() * triangle.gradient;
-    return;
-  }
-  Eigen::MatrixXd columns = stacked(k, [&](std::size_t i) { return pick(linear.columns[i]); });
-  Eigen::VectorXd values =
-      stacked(1, [&](std::size_t i) { return Eigen::MatrixXd(observations_[i]->values); });
-  const Eigen::Index priors = linear.prior_rows.rows();
-  columns.bottomRows(priors) = pick(linear.prior_rows);
-  for (Eigen::Index p = 0; p < priors; ++p)  // priors of moving terms have rows of their own
-    if (columns.row(rows_ - priors + p).squaredNorm() > 0.0)
-      values[rows_ - priors + p] = linear.prior_residuals[p];
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
-  const Eigen::MatrixXd upper = qr.matrixQR().topRows(k).triangularView<Eigen::Upper>();
-  fixed_basis_ = analyse_rank(upper, scale).basis;
-  span_ = columns * fixed_basis_;
-  target_ = span_.transpose() * values;
-  rest_ = values - span_ * target_;
-}
-
-Eigen::Index Residual::prior_count() const {
-  Eigen::Index count = 0;
-  for (const ModelTerm* term : moving_) count += static_cast<Eigen::Index>(term->priors.size());
-  return count;
-}
-
-bool Residual::Evaluate(const double* const* parameters, double* residuals,
-                        double** jacobians) const {
-  const Eigen::Map<const Eigen::VectorXd> x(parameters[0], size());
+bool ProfileResidual::Evaluate(const double* const* parameters, double* residuals,
+                               double** jacobians) const {
   Eigen::Map<Eigen::VectorXd> out(residuals, num_residuals());
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Eigen::MatrixXd jacobian;
-  if (jacobians && jacobians[0]) jacobian = Eigen::MatrixXd::Zero(num_residuals(), size());
-  evaluate(x, out, jacobian);
-  if (jacobians && jacobians[0])
-    Eigen::Map<RowMajor>(jacobians[0], num_residuals(), size()) = jacobian;
+  out = -values_;
+  std::vector<Eigen::MatrixXd> blocks;  // of the Jacobian
+  const auto add = [&](Eigen::MatrixXd columns) {
+    out += columns * vector_of(parameters[blocks.size()], columns.cols());
+    blocks.push_back(std::move(columns));
+  };
+  if (levelling_.cols() > 0) add(levelling_);
+  for (const ModelTerm& term : model_.terms) {
+    const Eigen::Index a = term.effect->amplitudes();
+    const auto s = static_cast<Eigen::Index>(term.effect->shapes().size());
+    if (s == 0) {
+      add(columns_.middleCols(term.first_amplitude, a));
+      continue;
+    }
+    const std::vector<double> shapes = outer_shapes(term, parameters[blocks.size() + 1]);
+    const auto amplitudes = vector_of(parameters[blocks.size()], a);
+    add(white(low_band_columns(model_, term, observation_, shapes)));
+    Eigen::MatrixXd slopes(out.size(), s);
+    for (Eigen::Index j = 0; jacobians && j < s; ++j)
+      slopes.col(j) =
+          white(low_band_derivatives(model_, term, observation_, shapes, static_cast<int>(j)) *
+                (amplitudes * slope_of_outer(term.effect->shapes()[j], shapes[j])));
+    blocks.push_back(std::move(slopes));
+  }
+  if (loss_) {
+    Eigen::VectorXd robust = out;
+    for (Eigen::MatrixXd& block : blocks) {
+      robust = out;
+      robustify(*loss_, robust, block);
+    }
+    out = robust;
+  }
+  for (std::size_t b = 0; b < blocks.size(); ++b) give(jacobians, b, blocks[b]);
   return out.allFinite();
 }
 
-Estimate Residual::estimate(const Eigen::VectorXd& x) const {
-  Estimate out;
-  out.amplitudes = Eigen::VectorXd::Zero(model_.amplitudes());
-  out.shapes = shape_values_;
-  const Eigen::VectorXd fixed = fixed_basis_ * x.head(rank());
-  for (std::size_t f = 0; f < fixed_.size(); ++f) out.amplitudes[fixed_[f]] = fixed[f];
-  for (std::size_t a = 0; a < amplitudes_.size(); ++a)
-    out.amplitudes[amplitudes_[a]] = x[rank() + a];
-  for (std::size_t s = 0; s < shapes_.size(); ++s) {
-    const auto& [term, which] = shapes_[s];
-    out.shapes[term->first_shape + which] =
-        term->effect->shapes()[which].outer(x[rank() + amplitudes_.size() + s]);
+CompressedResidual::CompressedResidual(const Model& model, const ProfileTriangle& of_values)
+    : upper_(of_values.upper().topRows(of_values.upper().cols() - 1)) {
+  set_num_residuals(static_cast<int>(upper_.rows()));
+  std::vector<int32_t>& sizes = *mutable_parameter_block_sizes();
+  if (of_values.levelling() > 0) sizes.push_back(static_cast<int32_t>(of_values.levelling()));
+  for (const ModelTerm& term : model.terms) sizes.push_back(term.effect->amplitudes());
+}
+
+bool CompressedResidual::Evaluate(const double* const* parameters, double* residuals,
+                                  double** jacobians) const {
+  Eigen::Map<Eigen::VectorXd> out(residuals, num_residuals());
+  out = -upper_.rightCols(1);
+  Eigen::Index first = 0;
+  for (std::size_t b = 0; b < parameter_block_sizes().size(); ++b) {
+    const Eigen::Index size = parameter_block_sizes()[b];
+    const auto columns = upper_.middleCols(first, size);
+    out += columns * vector_of(parameters[b], size);
+    give(jacobians, b, columns);
+    first += size;
   }
+  return out.allFinite();
+}
+
+PriorResidual::PriorResidual(const ModelTerm& term, const Prior& prior)
+    : term_(term), prior_(prior), parameter_(parameter_index(term, prior.parameter)) {
+  set_num_residuals(1);
+  mutable_parameter_block_sizes()->push_back(term.effect->amplitudes());
+  if (!term.effect->shapes().empty())
+    mutable_parameter_block_sizes()->push_back(static_cast<int32_t>(term.effect->shapes().size()));
+}
+
+bool PriorResidual::Evaluate(const double* const* parameters, double* residuals,
+                             double** jacobians) const {
+  const Eigen::Index a = term_.effect->amplitudes();
+  const bool moves = !term_.effect->shapes().empty();
+  const std::vector<double> shapes =
+      moves ? outer_shapes(term_, parameters[1]) : std::vector<double>{};
+  const ParameterValues values =
+      term_.effect->parameter_values(vector_of(parameters[0], a), shapes);
+  residuals[0] = (values.values[parameter_] - prior_.value) / prior_.standard_uncertainty;
+  Eigen::MatrixXd row = values.jacobian.row(parameter_) / prior_.standard_uncertainty;
+  for (std::size_t j = 0; j < shapes.size(); ++j)
+    row(0, a + static_cast<Eigen::Index>(j)) *= slope_of_outer(term_.effect->shapes()[j], shapes[j]);
+  give(jacobians, 0, row.leftCols(a));
+  if (moves) give(jacobians, 1, row.rightCols(std::ssize(shapes)));
+  return std::isfinite(residuals[0]);
+}
+
+EliminatedResidual::EliminatedResidual(const Model& model, const Linearisation& linear,
+                                       const std::vector<Noise>& noise)
+    : model_(model), observations_(linear.observations), noise_(noise) {
+  for (const ModelTerm& term : model.terms)
+    if (!term.effect->shapes().empty()) moving_.push_back(&term);
+  Eigen::Index free = 0, next = 0;
+  for (const Observation* observation : observations_) {
+    rows_ += observation->values.size();
+    free += observation->nuisances.cols();
+  }
+  const Eigen::Index a = model.amplitudes();
+  basis_.resize(rows_, 0);
+  basis_ = orthonormal(outside(free + a, [&](std::size_t i) {
+    const Observation& observation = *observations_[i];
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(observation.values.size(), free + a);
+    rows.middleCols(next, observation.nuisances.cols()) = observation.nuisances;
+    next += observation.nuisances.cols();
+    for (const ModelTerm& term : model.terms)
+      if (term.effect->shapes().empty())
+        rows.middleCols(free + term.first_amplitude, term.effect->amplitudes()) =
+            linear.columns[i].middleCols(term.first_amplitude, term.effect->amplitudes());
+    return rows;
+  }));
+  residual_ = outside(1, [&](std::size_t i) { return Eigen::MatrixXd(observations_[i]->values); });
+  set_num_residuals(static_cast<int>(rows_));
+  mutable_parameter_block_sizes()->push_back(static_cast<int32_t>(model.shapes()));
+}
+
+template <typename Of>
+Eigen::MatrixXd EliminatedResidual::outside(Eigen::Index columns, Of&& of_observation) const {
+  Eigen::MatrixXd out(rows_, columns);
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < observations_.size(); ++i) {
+    auto rows = out.middleRows(row, observations_[i]->values.size());
+    rows = of_observation(i);
+    noise_[i].whiten(rows);
+    row += rows.rows();
+  }
+  out -= basis_ * (basis_.transpose() * out).eval();
   return out;
 }
 
-Eigen::VectorXd Residual::linear_optimum(const Eigen::VectorXd& shapes, double* cost) const {
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
-  for (std::size_t s = 0; s < shapes_.size(); ++s) {
-    const auto& [term, which] = shapes_[s];
-    x[rank() + amplitudes_.size() + s] =
-        term->effect->shapes()[which].inner(shapes[term->first_shape + which]);
-  }
-  Eigen::VectorXd residual(num_residuals());
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(num_residuals(), size());
-  evaluate(x, residual, jacobian);
-  const Eigen::Index linear = rank() + static_cast<Eigen::Index>(amplitudes_.size());
-  const Eigen::VectorXd step =
-      -jacobian.leftCols(linear).completeOrthogonalDecomposition().solve(residual);
-  x.head(linear) += step;
-  if (cost) *cost = 0.5 * (residual + jacobian.leftCols(linear) * step).squaredNorm();
-  return x;
-}
-
-void Residual::evaluate(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> out,
-                        Eigen::MatrixXd& jacobian) const {
-  const Eigen::Index r = rank();
-  const bool wanted = jacobian.size() > 0;
-  out.head(r) = x.head(r) - target_;
-  if (wanted) jacobian.topLeftCorner(r, r).setIdentity();
-  if (moving_.empty()) return;
-  const Estimate now = estimate(x);
-  const auto a = static_cast<Eigen::Index>(amplitudes_.size());
-  const auto s = static_cast<Eigen::Index>(shapes_.size());
-  const Eigen::MatrixXd moved = stacked(a + (wanted ? s : 0), [&](std::size_t i) {
-    return moving_columns(*observations_[i], now, wanted);
-  });
-  const Eigen::MatrixXd inside = span_.transpose() * moved;
-  const Eigen::MatrixXd outside = moved - span_ * inside;
-  out.head(r) += inside.leftCols(a) * x.segment(r, a);
-  out.segment(r, rows_) = outside.leftCols(a) * x.segment(r, a) - rest_;
-  if (wanted) {
-    jacobian.block(0, r, r, a + s) = inside;
-    jacobian.block(r, r, rows_, a + s) = outside;
-    for (Eigen::Index j = 0; j < s; ++j) {
-      const auto& [term, which] = shapes_[j];
-      jacobian.col(r + a + j) *=
-          slope_of_outer(now.shapes[term->first_shape + which], term->effect->shapes()[which]);
-    }
-  }
-  evaluate_priors(now, out, jacobian);
-}
-
-/// [columns of the moving terms, d(columns * amplitudes)/d(shapes)]
-Eigen::MatrixXd Residual::moving_columns(const Observation& observation, const Estimate& now,
-                                         bool derivatives) const {
-  Eigen::MatrixXd out(observation.values.size(),
-                      amplitudes_.size() + (derivatives ? shapes_.size() : 0));
-  Eigen::Index next = 0;
-  for (const ModelTerm* term : moving_) {
-    const Eigen::Index count = term->effect->amplitudes();
-    out.middleCols(next, count) =
-        low_band_columns(model_, *term, observation, shapes_of(*term, now.shapes));
-    next += count;
-  }
-  if (!derivatives) return out;
-  for (const auto& [term, which] : shapes_)
-    out.col(next++) =
-        low_band_derivatives(model_, *term, observation, shapes_of(*term, now.shapes), which) *
-        now.amplitudes.segment(term->first_amplitude, term->effect->amplitudes());
-  return out;
-}
-
-void Residual::evaluate_priors(const Estimate& now, Eigen::Ref<Eigen::VectorXd> out,
-                               Eigen::MatrixXd& jacobian) const {
-  Eigen::Index row = rank() + rows_, amplitude = rank(),
-               shape = rank() + static_cast<Eigen::Index>(amplitudes_.size());
+EliminatedResidual::Moving EliminatedResidual::project(const Eigen::VectorXd& shapes) const {
+  Eigen::Index count = 0, next = 0;
+  for (const ModelTerm* term : moving_) count += term->effect->amplitudes();
+  Moving out;
+  out.columns.resize(rows_, count);
   for (const ModelTerm* term : moving_) {
     const Eigen::Index a = term->effect->amplitudes();
-    const auto s = static_cast<Eigen::Index>(term->effect->shapes().size());
-    const ParameterValues values = term->effect->parameter_values(
-        now.amplitudes.segment(term->first_amplitude, a), shapes_of(*term, now.shapes));
-    for (const Prior& prior : term->priors) {
-      const Eigen::Index p = parameter_index(*term, prior.parameter);
-      out[row] = (values.values[p] - prior.value) / prior.standard_uncertainty;
-      if (jacobian.size() > 0) {
-        jacobian.block(row, amplitude, 1, a) =
-            values.jacobian.row(p).head(a) / prior.standard_uncertainty;
-        for (Eigen::Index j = 0; j < s; ++j)
-          jacobian(row, shape + j) =
-              values.jacobian(p, a + j) / prior.standard_uncertainty *
-              slope_of_outer(now.shapes[term->first_shape + j], term->effect->shapes()[j]);
-      }
-      ++row;
-    }
-    amplitude += a;
-    shape += s;
+    out.columns.middleCols(next, a) = outside(a, [&](std::size_t i) {
+      return low_band_columns(model_, *term, *observations_[i], shapes_of(*term, shapes));
+    });
+    next += a;
   }
+  const LeastSquares best = least_squares(out.columns, residual_);
+  out.amplitudes = best.values;
+  out.residual = residual_ - out.columns * best.values;
+  return out;
+}
+
+bool EliminatedResidual::Evaluate(const double* const* parameters, double* residuals,
+                                  double** jacobians) const {
+  Eigen::VectorXd shapes(model_.shapes());
+  for (const ModelTerm* term : moving_) {
+    const std::vector<double> own = outer_shapes(*term, parameters[0] + term->first_shape);
+    std::copy(own.begin(), own.end(), shapes.data() + term->first_shape);
+  }
+  const Moving at = project(shapes);
+  Eigen::Map<Eigen::VectorXd>(residuals, rows_) = at.residual;
+  if (!jacobians || !jacobians[0]) return at.residual.allFinite();
+  const Eigen::MatrixXd basis = orthonormal(at.columns);
+  Eigen::MatrixXd slopes(rows_, model_.shapes());
+  Eigen::Index next = 0;
+  for (const ModelTerm* term : moving_) {
+    const Eigen::Index a = term->effect->amplitudes();
+    const auto own = shapes_of(*term, shapes);
+    for (std::size_t j = 0; j < own.size(); ++j)
+      slopes.col(term->first_shape + static_cast<Eigen::Index>(j)) =
+          -slope_of_outer(term->effect->shapes()[j], own[j]) * outside(1, [&](std::size_t i) {
+            return Eigen::MatrixXd(low_band_derivatives(model_, *term, *observations_[i], own,
+                                                        static_cast<int>(j)) *
+                                   at.amplitudes.segment(next, a));
+          });
+    next += a;
+  }
+  slopes -= basis * (basis.transpose() * slopes).eval();
+  give(jacobians, 0, slopes);
+  return at.residual.allFinite();
+}
+
+double EliminatedResidual::cost(const Eigen::VectorXd& shapes) const {
+  return 0.5 * project(shapes).residual.squaredNorm();
 }
 
 }  // namespace slideway

@@ -1,77 +1,128 @@
 #pragma once
 
 #include <ceres/cost_function.h>
+#include <ceres/loss_function.h>
 
 #include <Eigen/Core>
-#include <utility>
+#include <memory>
 #include <vector>
 
 #include "slideway/identify/solve.hpp"
 
 namespace slideway {
 
-/// Orthonormal basis of an observation's nuisances, and columns with that basis taken out of them.
-Eigen::MatrixXd nuisance_basis(const Observation& observation);
-void project_out(const Eigen::MatrixXd& basis, Eigen::Ref<Eigen::MatrixXd> columns);
-
-/// Index of a parameter within its effect. @throws UsageError if there is none of that name
-Eigen::Index parameter_index(const ModelTerm& term, const std::string& name);
-
-/// The least-squares problem Ceres sees. Unknowns x = [w, v, u]: w orthonormal coordinates of the
-/// columns that do not move (nuisances already out), v amplitudes of the terms with shapes, u the
-/// shapes themselves. Residuals: [w + Q'(M v - y)], then the part of M v - y orthogonal to the
-/// fixed columns, then priors of the moving terms.
-class Residual final : public ceres::CostFunction {
+/// The unknowns of a model as Ceres holds them: a block of levelling for each fitted profile; for
+/// each term a block of amplitudes and, where it has shapes, a block of those as the optimiser sees
+/// them (Shape::inner()).
+class Unknowns {
  public:
-  /// @param linear  at zero amplitudes and nuisances
-  Residual(const Model& model, const Linearisation& linear, const std::vector<double>& weights,
-           const Estimate& start);
+  Unknowns(const Model& model, const Estimate& start);
 
-  [[nodiscard]] Eigen::Index rank() const { return fixed_basis_.cols(); }
-  [[nodiscard]] Eigen::Index size() const {
-    return rank() + static_cast<Eigen::Index>(amplitudes_.size() + shapes_.size());
-  }
-  /// The terms with shapes and which of their shapes, in the order of u.
-  [[nodiscard]] const std::vector<std::pair<const ModelTerm*, int>>& shapes() const {
-    return shapes_;
-  }
+  struct Term {
+    const ModelTerm* term = nullptr;
+    Eigen::VectorXd amplitudes, shapes;
+
+    [[nodiscard]] bool moves() const { return shapes.size() > 0; }
+  };
+
+  std::vector<Eigen::VectorXd> levelling;
+  std::vector<Term> terms;
+
+  [[nodiscard]] Estimate estimate(const Model& model) const;
+};
+
+/// Huber's or Cauchy's loss of a white residual (Huber 1964; tuned for 95 % efficiency on normal
+/// noise: Holland and Welsch 1977); null: none.
+std::unique_ptr<ceres::LossFunction> make_loss(Loss loss);
+
+/// Shapes out of the optimiser's view, and d(shape)/d(view) of one.
+std::vector<double> outer_shapes(const ModelTerm& term, const double* inner);
+double slope_of_outer(const Shape& kind, double outer);
+
+/// A residual block of Eq. (16): one profile, white,
+///   f = W (N ν + Σ_e C_e(u_e) a_e - y).
+/// Parameter blocks: ν if the profile has levelling, then of each term a_e and, if it has shapes,
+/// u_e. With a loss ρ each f_t becomes sign(f_t) sqrt(ρ(f_t²)): half the block's square is then the
+/// loss of its values.
+class ProfileResidual final : public ceres::CostFunction {
+ public:
+  /// @param columns  low-band columns of amplitudes as linearise() has them; those of terms with
+  ///                 shapes are not read
+  ProfileResidual(const Model& model, const Observation& observation, const Noise& noise,
+                  const Eigen::MatrixXd& columns);
 
   bool Evaluate(const double* const* parameters, double* residuals,
                 double** jacobians) const override;
 
-  /// Amplitudes and shapes of all terms out of x.
-  [[nodiscard]] Estimate estimate(const Eigen::VectorXd& x) const;
-
-  /// x whose linear part is optimal for given shapes; `cost` is then half the residual's square.
-  [[nodiscard]] Eigen::VectorXd linear_optimum(const Eigen::VectorXd& shapes, double* cost) const;
-
  private:
-  template <typename ColumnsOf>
-  [[nodiscard]] Eigen::MatrixXd stacked(Eigen::Index cols, ColumnsOf&& columns_of) const;
-  void set_up_rows(const Linearisation& linear);
-  void set_up_fixed(const Linearisation& linear);
-  [[nodiscard]] Eigen::Index prior_count() const;
-  void evaluate(const Eigen::VectorXd& x, Eigen::Ref<Eigen::VectorXd> out,
-                Eigen::MatrixXd& jacobian) const;
-  [[nodiscard]] Eigen::MatrixXd moving_columns(const Observation& observation, const Estimate& now,
-                                               bool derivatives) const;
-  void evaluate_priors(const Estimate& now, Eigen::Ref<Eigen::VectorXd> out,
-                       Eigen::MatrixXd& jacobian) const;
+  [[nodiscard]] Eigen::MatrixXd white(Eigen::MatrixXd columns) const;
 
   const Model& model_;
-  std::vector<double> weights_;
+  const Observation& observation_;
+  const Noise& noise_;
+  std::unique_ptr<ceres::LossFunction> loss_;  // null: none
+  Eigen::MatrixXd left_out_;                   // orthonormal, white
+  Eigen::MatrixXd levelling_, columns_;        // white
+  Eigen::VectorXd values_;                     // white
+};
+
+/// The same of a profile without loss whose terms all stay: R [ν; a] - Qᵀ W y, compressed.
+class CompressedResidual final : public ceres::CostFunction {
+ public:
+  CompressedResidual(const Model& model, const ProfileTriangle& of_values);
+
+  bool Evaluate(const double* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  Eigen::MatrixXd upper_;
+};
+
+/// (parameter - prior) / u. Parameter blocks: amplitudes and, if it has some, shapes of the term.
+class PriorResidual final : public ceres::CostFunction {
+ public:
+  PriorResidual(const ModelTerm& term, const Prior& prior);
+
+  bool Evaluate(const double* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  const ModelTerm& term_;
+  const Prior& prior_;
+  Eigen::Index parameter_;
+};
+
+/// All profiles with the amplitudes and levelling eliminated: the residual of the best linear fit
+/// as a function of the shapes of all terms (variable projection, Kaufman's Jacobian), priors left
+/// aside. One parameter block of all shapes as the optimiser sees them.
+class EliminatedResidual final : public ceres::CostFunction {
+ public:
+  /// @param linear  columns of the terms without shapes are read
+  EliminatedResidual(const Model& model, const Linearisation& linear,
+                     const std::vector<Noise>& noise);
+
+  bool Evaluate(const double* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+  /// Half the square of the residual.
+  [[nodiscard]] double cost(const Eigen::VectorXd& shapes) const;
+
+ private:
+  struct Moving {  // stacked white columns of the terms with shapes, outside all others
+    Eigen::MatrixXd columns;
+    Eigen::VectorXd amplitudes, residual;
+  };
+  template <typename Of>
+  [[nodiscard]] Eigen::MatrixXd outside(Eigen::Index columns, Of&& of_observation) const;
+  [[nodiscard]] Moving project(const Eigen::VectorXd& shapes) const;
+
+  const Model& model_;
   std::vector<const Observation*> observations_;
-  std::vector<Eigen::MatrixXd> bases_;
-  std::vector<Eigen::Index> first_row_;
-  Eigen::Index rows_ = 0;
-  std::vector<Eigen::Index> fixed_, amplitudes_;
+  const std::vector<Noise>& noise_;
   std::vector<const ModelTerm*> moving_;
-  std::vector<std::pair<const ModelTerm*, int>> shapes_;
-  Eigen::VectorXd shape_values_;
-  Eigen::MatrixXd fixed_basis_;  // #fixed by r
-  Eigen::MatrixXd span_;         // rows by r, orthonormal
-  Eigen::VectorXd target_;       // span' * values
-  Eigen::VectorXd rest_;         // values outside the span
+  Eigen::Index rows_ = 0;
+  Eigen::MatrixXd basis_;     // orthonormal: what levelling and the terms without shapes span
+  Eigen::VectorXd residual_;  // white values outside it
 };
 
 }  // namespace slideway

@@ -8,78 +8,177 @@
 #include <cmath>
 
 #include "residual.hpp"
+#include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/shape_grid.hpp"
 
 namespace slideway {
 namespace {
 
-/// Scans each shape over its range, the linear part optimal at every point; one shape after the
-/// other.
-void scan_shapes(const Residual& residual, const Model& model, Eigen::VectorXd& shapes) {
-  for (const auto& [term, which] : residual.shapes()) {
-    double& shape = shapes[term->first_shape + which];
-    double best_cost = INFINITY, best = shape;
-    for (const double value : shape_grid(model, *term, which)) {
-      shape = value;
-      double cost = 0.0;
-      static_cast<void>(residual.linear_optimum(shapes, &cost));
-      if (cost < best_cost) best_cost = cost, best = shape;
-    }
-    shape = best;
-  }
-}
-
-void bound_shapes(const Residual& residual, ceres::Problem& problem, double* x) {
-  const Eigen::Index first = residual.size() - static_cast<Eigen::Index>(residual.shapes().size());
-  for (std::size_t s = 0; s < residual.shapes().size(); ++s) {
-    const auto& [term, which] = residual.shapes()[s];
-    const Shape& kind = term->effect->shapes()[which];
-    const Parameter& parameter = term->effect->parameters()[kind.parameter];
-    const int index = static_cast<int>(first + static_cast<Eigen::Index>(s));
-    if (std::isfinite(parameter.lower) && !(kind.logarithmic && parameter.lower <= 0.0))
-      problem.SetParameterLowerBound(x, index, kind.inner(parameter.lower));
-    if (std::isfinite(parameter.upper))
-      problem.SetParameterUpperBound(x, index, kind.inner(parameter.upper));
-  }
-}
-
-ceres::Solver::Options solver_options(bool linear) {
+ceres::Solver::Options solver_options() {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
   options.max_num_iterations = 200;
   // Ceres' defaults end a damped solve a good part of a standard error away from the minimum.
-  options.function_tolerance = 1e-16;
+  options.function_tolerance = 1e-15;
   options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-14;
+  options.parameter_tolerance = 1e-13;
+  options.initial_trust_region_radius = 1e16;  // one undamped step solves a linear problem
   options.max_trust_region_radius = 1e32;
-  if (linear) options.initial_trust_region_radius = 1e16;  // one undamped step is the solution
   return options;
 }
 
-std::vector<bool> bounds_met(const Residual& residual, const Estimate& estimate) {
-  std::vector<bool> out;
-  for (const auto& [term, which] : residual.shapes()) {
-    const Parameter& parameter =
-        term->effect->parameters()[term->effect->shapes()[which].parameter];
-    const double value = estimate.shapes[term->first_shape + which];
-    const double near = 1e-9 * std::max(1.0, std::abs(value));
-    out.push_back(value - parameter.lower < near || parameter.upper - value < near);
+/// Bounds of the shapes of a term within a parameter block, from `first` on.
+void bound_shapes(const ModelTerm& term, ceres::Problem& problem, double* block, int first) {
+  const std::vector<Shape>& shapes = term.effect->shapes();
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    const Parameter& parameter = term.effect->parameters()[shapes[s].parameter];
+    const int index = first + static_cast<int>(s);
+    if (std::isfinite(parameter.lower) && !(shapes[s].logarithmic && parameter.lower <= 0.0))
+      problem.SetParameterLowerBound(block, index, shapes[s].inner(parameter.lower));
+    if (std::isfinite(parameter.upper))
+      problem.SetParameterUpperBound(block, index, shapes[s].inner(parameter.upper));
+  }
+}
+
+/// Shapes of the best fit near `start`, the amplitudes eliminated; Ceres then has few steps left.
+Eigen::VectorXd eliminated_optimum(const Model& model, const Linearisation& linear,
+                                   const std::vector<Noise>& noise, const Eigen::VectorXd& start) {
+  Eigen::VectorXd inner(start.size()), out(start.size());
+  ceres::Problem problem;
+  problem.AddResidualBlock(new EliminatedResidual(model, linear, noise), nullptr, inner.data());
+  for (const ModelTerm& term : model.terms) {
+    const std::vector<Shape>& shapes = term.effect->shapes();
+    for (std::size_t s = 0; s < shapes.size(); ++s)
+      inner[term.first_shape + s] = shapes[s].inner(start[term.first_shape + s]);
+    bound_shapes(term, problem, inner.data(), static_cast<int>(term.first_shape));
+  }
+  ceres::Solver::Options options = solver_options();
+  options.initial_trust_region_radius = 1e4;
+  options.function_tolerance = 1e-9;  // the full problem follows
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  for (const ModelTerm& term : model.terms) {
+    const std::vector<double> own = outer_shapes(term, inner.data() + term.first_shape);
+    std::copy(own.begin(), own.end(), out.data() + term.first_shape);
   }
   return out;
 }
 
-void run_ceres(const Residual& residual, Eigen::VectorXd& x, SolveSummary& out) {
-  ceres::Problem::Options keep;
-  keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(keep);
-  problem.AddResidualBlock(const_cast<Residual*>(&residual), nullptr, x.data());
-  bound_shapes(residual, problem, x.data());
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver_options(residual.shapes().empty()), &problem, &summary);
-  out.converged = summary.termination_type == ceres::CONVERGENCE;
-  out.message = summary.message;
+/// Eq. (16) as Ceres' problem: a residual block for each profile and for each prior.
+class FitProblem {
+ public:
+  FitProblem(const Model& model, const Linearisation& at_zero, const std::vector<Noise>& noise,
+             const Estimate& start)
+      : unknowns_(model, start) {
+    for (std::size_t i = 0; i < at_zero.observations.size(); ++i)
+      add_profile(model, *at_zero.observations[i], noise[i], at_zero.columns[i], i);
+    for (Unknowns::Term& each : unknowns_.terms) {
+      for (const Prior& prior : each.term->priors)
+        problem_.AddResidualBlock(new PriorResidual(*each.term, prior), nullptr, blocks_of(each));
+      if (each.moves() && problem_.HasParameterBlock(each.shapes.data()))
+        bound_shapes(*each.term, problem_, each.shapes.data(), 0);
+    }
+  }
+
+  ceres::Solver::Summary solve() {
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver_options(), &problem_, &summary);
+    return summary;
+  }
+
+  [[nodiscard]] const Unknowns& unknowns() const { return unknowns_; }
+
+ private:
+  static std::vector<double*> blocks_of(Unknowns::Term& term) {
+    if (!term.moves()) return {term.amplitudes.data()};
+    return {term.amplitudes.data(), term.shapes.data()};
+  }
+
+  void add_profile(const Model& model, const Observation& observation, const Noise& noise,
+                   const Eigen::MatrixXd& columns, std::size_t i) {
+    std::vector<double*> blocks;
+    if (unknowns_.levelling[i].size() > 0) blocks.push_back(unknowns_.levelling[i].data());
+    for (Unknowns::Term& term : unknowns_.terms) {
+      const std::vector<double*> own = blocks_of(term);
+      blocks.insert(blocks.end(), own.begin(), own.end());
+    }
+    if (blocks.empty()) return;
+    ceres::CostFunction* cost = nullptr;
+    if (model.shapes() == 0 && observation.profile->loss == Loss::none)
+      cost = new CompressedResidual(
+          model, ProfileTriangle(observation, noise, columns, observation.values));
+    else
+      cost = new ProfileResidual(model, observation, noise, columns);
+    problem_.AddResidualBlock(cost, nullptr, blocks);
+  }
+
+  Unknowns unknowns_;
+  ceres::Problem problem_;
+};
+
+/// What is left of the values, where they are left out nothing.
+void set_residuals(const Model& model, Estimate& estimate, Linearisation& linear) {
+  for (std::size_t i = 0; i < linear.observations.size(); ++i)
+    estimate.nuisances[i].tail(linear.observations[i]->left_out()).setZero();
+  relinearise(model, estimate, linear);
+  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+    const Observation& observation = *linear.observations[i];
+    const Eigen::Index count = observation.left_out();
+    if (count == 0) continue;
+    const auto columns = observation.nuisances.rightCols(count);
+    const Eigen::VectorXd there = columns.transpose() * linear.residuals[i];
+    linear.residuals[i] -= columns * there;
+    estimate.nuisances[i].tail(count) = there;
+  }
+}
+
+/// One step of iterative refinement: what rounding has left of the normal equations.
+void refine_linear(const Model& model, const std::vector<Noise>& noise, Estimate& estimate,
+                   Linearisation& linear) {
+  const Compressed rest = compress(linear, noise);
+  const Eigen::MatrixXd basis =
+      analyse_rank(rest.triangle, rest.scale, model.gates.rank_tolerance).basis;
+  const Eigen::VectorXd change =
+      basis * (basis.transpose() * (rest.triangle.transpose() * rest.target));
+  estimate.amplitudes += change;
+  for (std::size_t i = 0; i < rest.profiles.size(); ++i)
+    estimate.nuisances[i].head(rest.profiles[i].levelling()) += rest.profiles[i].levelled(change);
+  set_residuals(model, estimate, linear);
+}
+
+/// Pseudo-values (Huber 1981): the residual of a profile with a loss as a quadratic loss would have
+/// it for the same estimate and covariance, ψ(w) / mean ψ' for each white value w.
+void count_by_loss(Linearisation& linear, const std::vector<Noise>& noise) {
+  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+    const std::unique_ptr<ceres::LossFunction> loss =
+        make_loss(linear.observations[i]->profile->loss);
+    if (!loss) continue;
+    Eigen::VectorXd& white = linear.residuals[i];
+    noise[i].whiten(white);
+    double slope = 0.0;
+    for (double& w : white) {
+      double rho[3];
+      loss->Evaluate(w * w, rho);
+      slope += rho[1] + 2.0 * w * w * rho[2];
+      w *= rho[1];
+    }
+    white *= static_cast<double>(white.size()) / slope;
+    noise[i].colour(white);
+  }
+}
+
+std::vector<bool> bounds_met(const Model& model, const Estimate& estimate) {
+  std::vector<bool> out;
+  for (const ModelTerm& term : model.terms)
+    for (const Shape& shape : term.effect->shapes()) {
+      const Parameter& parameter = term.effect->parameters()[shape.parameter];
+      const double value = estimate.shapes[static_cast<Eigen::Index>(out.size())];
+      const double near = 1e-9 * std::max(1.0, std::abs(value));
+      out.push_back(value - parameter.lower < near || parameter.upper - value < near);
+    }
+  return out;
 }
 
 }  // namespace
@@ -99,28 +198,44 @@ Estimate initial_estimate(const Model& model, const std::optional<Eigen::VectorX
   return start;
 }
 
-SolveSummary solve(const Model& model, Linearisation& linear, const std::vector<double>& weights,
-                   const Estimate& start, bool scan) {
-  Estimate zero = start;  // residuals of the linear part are counted from zero amplitudes
-  zero.amplitudes.setZero();
-  for (Eigen::VectorXd& nuisances : zero.nuisances) nuisances.setZero();
-  relinearise(model, zero, linear);
-  const Residual residual(model, linear, weights, start);
-  Eigen::VectorXd shapes = start.shapes;
-  if (scan) scan_shapes(residual, model, shapes);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(residual.size());
-  if (!residual.shapes().empty()) x = residual.linear_optimum(shapes, nullptr);
+void scan_shapes(const Model& model, const std::vector<Noise>& noise, Estimate& estimate) {
+  if (model.shapes() == 0) return;
+  const Linearisation linear = linearise(model, estimate);
+  const EliminatedResidual eliminated(model, linear, noise);
+  for (const ModelTerm& term : model.terms)
+    for (int s = 0; s < static_cast<int>(term.effect->shapes().size()); ++s) {
+      double& shape = estimate.shapes[term.first_shape + s];
+      double least = INFINITY, best = shape;
+      for (const double value : shape_grid(model, term, s)) {
+        shape = value;
+        const double cost = eliminated.cost(estimate.shapes);
+        if (cost < least) least = cost, best = value;
+      }
+      shape = best;
+    }
+}
+
+SolveSummary solve(const Model& model, Linearisation& linear, const std::vector<Noise>& noise,
+                   const Estimate& start) {
   SolveSummary out;
-  out.converged = true;
-  if (residual.size() > 0) run_ceres(residual, x, out);
-  out.estimate = residual.estimate(x);
-  out.shape_at_bound = bounds_met(residual, out.estimate);
-  refit_nuisances(model, out.estimate, linear);
-  if (residual.shapes().empty() && residual.size() > 0) {  // iterative refinement
-    const Residual rest(model, linear, weights, start);
-    out.estimate.amplitudes += rest.estimate(rest.linear_optimum(shapes, nullptr)).amplitudes;
-    refit_nuisances(model, out.estimate, linear);
-  }
+  out.estimate = start;
+  if (model.shapes() > 0)
+    out.estimate.shapes = eliminated_optimum(model, linear, noise, start.shapes);
+  FitProblem problem(model, linear, noise, out.estimate);
+  const ceres::Solver::Summary summary = problem.solve();
+  out.converged = summary.termination_type == ceres::CONVERGENCE;
+  out.message = summary.message;
+  out.estimate = problem.unknowns().estimate(model);
+  set_residuals(model, out.estimate, linear);
+  const bool linear_least_squares =
+      model.shapes() == 0 &&
+      std::ranges::all_of(linear.observations, [](const Observation* observation) {
+        return observation->profile->loss == Loss::none;
+      });
+  if (linear_least_squares && model.amplitudes() > 0)
+    refine_linear(model, noise, out.estimate, linear);
+  count_by_loss(linear, noise);
+  out.shape_at_bound = bounds_met(model, out.estimate);
   return out;
 }
 

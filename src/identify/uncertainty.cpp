@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "residual.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
 
@@ -14,46 +13,47 @@ namespace {
 constexpr Eigen::Index kLarge = 1 << 14;  // low-band values that are worth a second thread
 constexpr double kInfinite = 1e6;  // degrees of freedom: above it k is 2, and they are rounding
 
-/// @param covariance  columns' Σ columns
-Uncertainty::NoiseEffect noise_effect(const Noise& noise,
-                                      const Eigen::Ref<const Eigen::MatrixXd>& columns,
-                                      const Eigen::MatrixXd& covariance) {
-  constexpr double kStep = 1e-3;  // of atanh π
-  Uncertainty::NoiseEffect out{noise.covariance, {}};
-  const Eigen::VectorXd at = noise.parameters();
-  const auto gram = [&](Eigen::Index j, double step) {
-    Eigen::VectorXd moved = at;
-    moved[j] += step;
-    return covariance_under(noise.at(moved), columns);
-  };
-  const auto differentiate = [&](std::size_t j) {
-    const auto moved = static_cast<Eigen::Index>(j);
-    out.derivatives[j] = (gram(moved, kStep) - gram(moved, -kStep)) / (2.0 * kStep);
-  };
-  const auto correlations = static_cast<std::size_t>(at.size() - 1);
-  out.derivatives.resize(correlations + 1);
-  if (columns.rows() < kLarge) {
-    for (std::size_t j = 0; j < correlations; ++j) differentiate(j);
-  } else {
-    parallel_for(correlations, differentiate);
-  }
-  out.derivatives.back() = 2.0 * covariance;  // by ln σ
-  return out;
+/// Information of one profile on w under another noise, its nuisances eliminated.
+Eigen::MatrixXd information_under(const Noise& noise, const Observation& observation,
+                                  const Eigen::MatrixXd& columns) {
+  const Eigen::Index m = observation.nuisances.cols(), r = columns.cols();
+  Eigen::MatrixXd rows(columns.rows(), m + r);
+  rows << observation.nuisances, columns;
+  noise.whiten(rows);
+  const Eigen::MatrixXd gram = rows.transpose() * rows;
+  if (m == 0) return gram;
+  const Eigen::MatrixXd cross = gram.topRightCorner(m, r);
+  return gram.bottomRightCorner(r, r) -
+         cross.transpose() *
+             gram.topLeftCorner(m, m).completeOrthogonalDecomposition().solve(cross);
 }
 
-/// Variance of ln(weight²) of a profile whose noise was estimated.
-double weight_variance(const Noise& noise) {
-  constexpr double kStep = 1e-3;
+/// How the covariance of w moves with the noise of one profile: against the information.
+Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Observation& observation,
+                                      const Eigen::MatrixXd& columns,
+                                      const Eigen::MatrixXd& information) {
+  constexpr double kStep = 1e-3;  // of atanh π
+  Uncertainty::NoiseEffect out;
+  out.covariance = noise.covariance;
   const Eigen::VectorXd at = noise.parameters();
-  Eigen::VectorXd gradient(at.size());
-  for (Eigen::Index j = 0; j < at.size(); ++j) {
-    Eigen::VectorXd up = at, down = at;
-    up[j] += kStep;
-    down[j] -= kStep;
-    gradient[j] =
-        std::log(noise.at(up).weight_deviation() / noise.at(down).weight_deviation()) / kStep;
+  const auto count = static_cast<std::size_t>(at.size() - 1);
+  out.derivatives.resize(count + 1);
+  const auto differentiate = [&](std::size_t j) {
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(at.size(), std::ptrdiff_t(j));
+    out.derivatives[j] = (information_under(noise.at(at - step), observation, columns) -
+                          information_under(noise.at(at + step), observation, columns)) /
+                         (2.0 * kStep);
+  };
+  if (columns.rows() < kLarge) {
+    for (std::size_t j = 0; j < count; ++j) differentiate(j);
+  } else {
+    parallel_for(count, differentiate);
   }
-  return gradient.dot(noise.covariance * gradient);
+  out.derivatives.back() = 2.0 * information;  // by ln σ
+  const auto n = static_cast<double>(columns.rows());
+  const double effective = n / std::min(noise.correlation.long_run_ratio(), n);
+  out.degrees_of_freedom = std::max(1.0, effective - information.trace());
+  return out;
 }
 
 }  // namespace
@@ -67,7 +67,9 @@ Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
     Eigen::VectorXd gradient(effect.derivatives.size());
     for (std::size_t j = 0; j < effect.derivatives.size(); ++j)
       gradient[j] = (c * effect.derivatives[j] * c.transpose()).value();
-    spread_of_variance += gradient.dot(effect.covariance * gradient);
+    const double share = (c * information[effect.observation] * c.transpose()).value();
+    spread_of_variance += std::max(gradient.dot(effect.covariance * gradient),
+                                   2.0 * share * share / effect.degrees_of_freedom);
   }
   const double freedom = 2.0 * variance * variance / spread_of_variance;
   if (spread_of_variance > 0.0 && freedom < kInfinite)
@@ -75,39 +77,26 @@ Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
   return spread;
 }
 
-Uncertainty assess(const Linearisation& linear, const std::vector<double>& weights,
+Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
                    const std::vector<Noise>& noise, const Eigen::MatrixXd& basis) {
+  const Eigen::Index r = basis.cols();
   Uncertainty out;
   out.basis = basis;
-  const Eigen::MatrixXd priors = linear.prior_rows * basis;
-  out.covariance = priors.transpose() * priors;
-  std::vector<Eigen::MatrixXd> crosses, gains, own;
-  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
-    const Observation& observation = *linear.observations[i];
-    const Eigen::MatrixXd& n = observation.nuisances;
-    const Eigen::Index m = n.cols(), r = basis.cols();
-    const double square = weights[i] * weights[i];
-    Eigen::MatrixXd both(n.rows(), m + r);
-    auto k = both.leftCols(m), z = both.rightCols(r);
-    if (m > 0) k.noalias() = n * (n.transpose() * n).inverse();
-    z.noalias() = linear.columns[i] * (basis / square);
-    project_out(linear.nuisance_bases[i], z);
-    const Eigen::MatrixXd together = covariance_under(noise[i], both);
-    out.covariance += together.bottomRightCorner(r, r);
-    if (noise[i].is_estimated()) {
-      out.noise.push_back(noise_effect(noise[i], z, together.bottomRightCorner(r, r)));
-      const Eigen::MatrixXd share = square * (z.transpose() * z);
-      out.covariance += 2.0 * weight_variance(noise[i]) * (share - share * share);
-    }
-    crosses.emplace_back(together.topRightCorner(m, r));
-    gains.emplace_back(k.transpose() * linear.columns[i] * basis);
-    own.emplace_back(together.topLeftCorner(m, m));
+  out.covariance = Eigen::MatrixXd::Identity(r, r);
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    const ProfileTriangle& profile = compressed.profiles[i];
+    const Eigen::MatrixXd rows = profile.free().leftCols(profile.columns()) * basis;
+    const Eigen::MatrixXd& information = out.information.emplace_back(rows.transpose() * rows);
+    if (!noise[i].is_estimated()) continue;
+    out.noise.push_back(
+        noise_effect(noise[i], *linear.observations[i], linear.columns[i] * basis, information));
+    out.noise.back().observation = i;
+    out.covariance += 2.0 * noise[i].log_long_run_variance() *
+                      (information - information * information);
   }
-  for (std::size_t i = 0; i < gains.size(); ++i) {
-    const Eigen::MatrixXd cross = crosses[i] * gains[i].transpose();
-    out.nuisance_covariances.emplace_back(own[i] - cross - cross.transpose() +
-                                          gains[i] * out.covariance * gains[i].transpose());
-  }
+  const Eigen::MatrixXd of_columns = basis * out.covariance * basis.transpose();
+  for (const ProfileTriangle& profile : compressed.profiles)
+    out.nuisance_covariances.push_back(profile.levelling_covariance(of_columns));
   return out;
 }
 

@@ -42,7 +42,7 @@ Json options(const Problem& problem) {
               {"runout", nullptr},
               {"candidates", problem.trace.candidates},
               {"max_effects", problem.trace.max_effects},
-              {"significance", problem.trace.significance}};
+              {"significance", problem.trace.gates.significance}};
   if (problem.runout)
     out["runout"] = {{"r_um", problem.runout->r_um},
                      {"p_um", problem.runout->p_um},

@@ -9,7 +9,6 @@
 namespace slideway {
 namespace {
 
-constexpr Eigen::Index kResamples = 99;
 constexpr double kMostSpread = 0.3;  // of atanh π and ln σ: a flat likelihood is no wider
 constexpr std::uint64_t kSeed = 20120712;
 
@@ -42,21 +41,21 @@ Eigen::MatrixXd null_residuals(const Whitened& data, Eigen::Index count) {
     for (std::size_t i = 0; i < data.observations(); ++i) {
       const Noise noise = drawn(data.noise()[i], random);
       auto rows = out.block(data.first_row(i), j, data.count(i), 1);
-      noise.correlation.colour(rows);
-      rows *= noise.innovation;
+      noise.colour(rows);
     }
   }
   return data.outside(std::move(out));
 }
 
-Calibration calibrate(const Whitened& data, const Candidates& candidates,
-                      const std::function<void(double)>& told) {
+Calibration calibrate(const Whitened& data, const Candidates& candidates, const Gates& gates,
+                      const std::function<void(double)>& progress) {
+  const auto resamples = static_cast<Eigen::Index>(gates.resamples);
   const Eigen::VectorXd gains =
-      largest_gains(data, candidates, null_residuals(data, kResamples), told);
+      largest_gains(data, candidates, null_residuals(data, resamples), progress);
   constexpr double kEuler = 0.5772156649015329;
   const double mean = gains.mean();
   const double variance =
-      (gains.array() - mean).square().sum() / static_cast<double>(kResamples - 1);
+      (gains.array() - mean).square().sum() / static_cast<double>(resamples - 1);
   Calibration out;
   out.scale = std::max(std::sqrt(6.0 * variance) / kPi, 1e-6);
   out.location = mean - kEuler * out.scale;

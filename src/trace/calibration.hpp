@@ -1,6 +1,7 @@
 #pragma once
 
 #include "search.hpp"
+#include "slideway/identify/gates.hpp"
 
 namespace slideway {
 
@@ -18,8 +19,8 @@ struct Calibration {
 /// is drawn from what its estimate leaves open, and made white with the estimate itself.
 Eigen::MatrixXd null_residuals(const Whitened& data, Eigen::Index count);
 
-/// @param told  as largest_gains()
-Calibration calibrate(const Whitened& data, const Candidates& candidates,
-                      const std::function<void(double)>& told = {});
+/// @param progress  as largest_gains()
+Calibration calibrate(const Whitened& data, const Candidates& candidates, const Gates& gates = {},
+                      const std::function<void(double)>& progress = {});
 
 }  // namespace slideway

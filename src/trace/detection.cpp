@@ -6,7 +6,7 @@
 
 #include "background.hpp"
 #include "gates.hpp"
-#include "linear_algebra.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "background.hpp"
-
 namespace slideway {
 namespace {
 
@@ -16,8 +14,8 @@ Problem for_search(Problem problem, const std::vector<Profile>& profiles) {
   return problem;
 }
 
-Model with(Model model, const std::vector<Added>& added) {
-  for (const Added& effect : added)
+Model with(Model model, const std::vector<AcceptedEffect>& effects) {
+  for (const AcceptedEffect& effect : effects)
     if (effect.candidate->raises_degree)
       remake_term(model, effect.name(), effect.candidate->options);
     else
@@ -27,56 +25,87 @@ Model with(Model model, const std::vector<Added>& added) {
 
 }  // namespace
 
-std::vector<Added> all_but(std::vector<Added> added, std::size_t i) {
-  added.erase(std::next(added.begin(), static_cast<std::ptrdiff_t>(i)));
-  return added;
+std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::size_t i) {
+  effects.erase(std::next(effects.begin(), static_cast<std::ptrdiff_t>(i)));
+  return effects;
 }
 
-Extender::Extender(const Problem& problem, const std::vector<Profile>& profiles,
-                   const FittedModel& declared)
-    : declared_(declared) {
+ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
+                             const FittedModel& declared, const Progress& progress)
+    : declared_(declared), progress_(progress) {
   const Problem search = for_search(problem, profiles);
   if (search.low_band.level != problem.low_band.level) coarser_ = fit_declared(search, profiles);
+  if (progress_) progress_("making the columns of every candidate", 0.0);
+  dictionary_ = make_dictionary(base().model, problem, base().fit.linear.prior_rows.rows());
 }
 
-Extended Extender::extend(std::vector<Added> added) const {
-  if (added.empty()) return {{base().model, base().fit}, {}};
-  FittedModel with_effects = fitted(with(base().model, added), shapes_of(added));
-  Extended out(std::move(with_effects), std::move(added));
-  out.lost_centre_mm = lost_centre(out.model, out.fit);
-  if (out.lost_centre_mm > 0.0) {
-    leave_out_centre(out.model, out.lost_centre_mm);
-    out.fit = fit(out.model, out.fit.estimate.shapes);
+ModelExtender::Key ModelExtender::key_of(const std::vector<AcceptedEffect>& effects) {
+  Key key;
+  for (const AcceptedEffect& effect : effects)
+    key.emplace_back(effect.name(), effect.candidate->options.degree.value_or(0));
+  std::ranges::sort(key);
+  return key;
+}
+
+const FittedModel& ModelExtender::extended(const std::vector<AcceptedEffect>& effects) {
+  if (effects.empty()) return base();
+  const Key key = key_of(effects);
+  auto found = models_.find(key);
+  if (found == models_.end())
+    found = models_.emplace(key, fit_model(with(base().model, effects), shapes_of(effects))).first;
+  return found->second;
+}
+
+const FitResult& ModelExtender::summary(const std::vector<AcceptedEffect>& effects) {
+  const Key key = key_of(effects);
+  auto found = summaries_.find(key);
+  if (found != summaries_.end()) return found->second;
+  if (coarser_) {
+    const FittedModel fine = in_declared_band(effects);
+    return summaries_.emplace(key, summarise(fine.model, fine.fit)).first->second;
   }
+  const FittedModel& fitted = extended(effects);
+  return summaries_.emplace(key, summarise(fitted.model, fitted.fit)).first->second;
+}
+
+const SearchRound& ModelExtender::search(const std::vector<AcceptedEffect>& effects) {
+  const Key key = key_of(effects);
+  if (const auto found = rounds_.find(key); found != rounds_.end()) return found->second;
+  const std::string stage = "searching round " + std::to_string(effects.size() + 1);
+  if (progress_) progress_(stage, 0.0);
+  const FittedModel& fitted = extended(effects);
+  const auto tell = [&](double done) {
+    if (progress_) progress_(done < 1.0 ? "bootstrap" : stage, done < 1.0 ? done : 0.0);
+  };
+  return rounds_
+      .emplace(key, search_round(fitted.model, fitted.fit, candidates_beside(effects),
+                                 calibration_, tell))
+      .first->second;
+}
+
+FittedModel ModelExtender::take_in_declared_band(const std::vector<AcceptedEffect>& effects) {
+  if (coarser_) return in_declared_band(effects);
+  extended(effects);
+  return std::move(models_.extract(key_of(effects)).mapped());
+}
+
+FittedModel ModelExtender::in_declared_band(const std::vector<AcceptedEffect>& effects) const {
+  return fit_model(with(declared_.model, effects), shapes_of(effects));
+}
+
+Candidates ModelExtender::candidates_beside(const std::vector<AcceptedEffect>& effects) const {
+  Candidates out;
+  for (const Candidate& candidate : dictionary_.candidates)
+    if (std::ranges::find(effects, candidate.name(), &AcceptedEffect::name) == effects.end())
+      out.push_back(&candidate);
   return out;
 }
 
-const FitResult& Extender::summary(const Extended& extended) const {
-  if (!extended.numbers) extended.numbers = summarised(extended);
-  return *extended.numbers;
-}
-
-FitResult Extender::summarised(const Extended& extended) const {
-  if (!coarser_) return summarise(extended.model, extended.fit);
-  const auto& [model, fit] = refitted(extended);
-  return summarise(model, fit);
-}
-
-FittedModel Extender::refitted(const Extended& extended) const {
-  Model model = with(declared_.model, extended.added);
-  leave_out_centre(model, extended.lost_centre_mm);
-  return fitted(std::move(model), shapes_of(extended.added));
-}
-
-FittedModel Extender::in_declared_band(Extended extended) const {
-  if (coarser_) return refitted(extended);
-  return extended;
-}
-
-Eigen::VectorXd Extender::shapes_of(const std::vector<Added>& added) const {
+Eigen::VectorXd ModelExtender::shapes_of(const std::vector<AcceptedEffect>& effects) const {
   const Eigen::VectorXd& own = base().fit.estimate.shapes;
   std::vector<double> all(own.begin(), own.end());
-  for (const Added& effect : added) all.insert(all.end(), effect.shape.begin(), effect.shape.end());
+  for (const AcceptedEffect& effect : effects)
+    all.insert(all.end(), effect.shape.begin(), effect.shape.end());
   return Eigen::Map<const Eigen::VectorXd>(all.data(), std::ssize(all));
 }
 

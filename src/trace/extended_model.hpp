@@ -1,13 +1,15 @@
 #pragma once
 
-#include "dictionary.hpp"
+#include <map>
+
+#include "search_round.hpp"
 #include "slideway/identify/fit.hpp"
 #include "slideway/trace/trace.hpp"
 
 namespace slideway {
 
-/// An effect that has been added to the declared model.
-struct Added {
+/// An effect that was added to the declared model.
+struct AcceptedEffect {
   const Candidate* candidate = nullptr;
   std::vector<double> shape;
   TraceRound round;
@@ -15,43 +17,56 @@ struct Added {
   [[nodiscard]] const std::string& name() const { return candidate->name(); }
 };
 
-std::vector<Added> all_but(std::vector<Added> added, std::size_t i);
+std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::size_t i);
 
-/// The declared model with added effects, fitted.
-struct Extended : FittedModel {
-  Extended(FittedModel with_effects, std::vector<Added> effects)
-      : FittedModel(std::move(with_effects)), added(std::move(effects)) {}
-
-  std::vector<Added> added;
-  double lost_centre_mm = 0.0;               // values within this radius are left out of the fit
-  mutable std::optional<FitResult> numbers;  // Extender::summary(), made once
-};
-
-/// Makes Extended models of one problem, in the low band effects are searched in: the declared one,
-/// or the first coarser one that leaves every profile few enough values.
-class Extender {
+/// Makes and searches models of one problem, in the low band effects are searched in: that of each
+/// profile, or the first coarser one that leaves it few enough values. What was made once for a set
+/// of effects is kept.
+class ModelExtender {
  public:
   /// The profiles and the declared model must outlive it and what it makes.
-  Extender(const Problem& problem, const std::vector<Profile>& profiles,
-           const FittedModel& declared);
+  ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
+                const FittedModel& declared, const Progress& progress);
 
+  /// The declared model, in the low band of the search.
   [[nodiscard]] const FittedModel& base() const { return coarser_ ? *coarser_ : declared_; }
 
-  [[nodiscard]] Extended extend(std::vector<Added> added) const;
+  /// The declared model with effects, fitted.
+  const FittedModel& extended(const std::vector<AcceptedEffect>& effects);
 
-  /// The report's numbers, in the declared low band. They live as long as `extended`.
-  [[nodiscard]] const FitResult& summary(const Extended& extended) const;
+  /// Its numbers for the report, in the declared low band.
+  const FitResult& summary(const std::vector<AcceptedEffect>& effects);
 
-  /// The same model, fitted in the declared low band.
-  [[nodiscard]] FittedModel in_declared_band(Extended extended) const;
+  /// Its residual searched for every candidate whose name is not among the effects.
+  const SearchRound& search(const std::vector<AcceptedEffect>& effects);
+
+  /// The same model, fitted in the declared low band, taken out of what is kept: the last call.
+  FittedModel take_in_declared_band(const std::vector<AcceptedEffect>& effects);
+
+  [[nodiscard]] const Dictionary& dictionary() const { return dictionary_; }
+  /// Candidates whose name is not among the effects.
+  [[nodiscard]] Candidates candidates_beside(const std::vector<AcceptedEffect>& effects) const;
+  /// Null distribution of the search; none before the first search, or without candidates.
+  [[nodiscard]] const std::optional<Calibration>& calibration() const { return calibration_; }
+  /// How many searches were made: one for each set of effects that was looked at.
+  [[nodiscard]] std::size_t searches() const { return rounds_.size(); }
 
  private:
-  [[nodiscard]] FitResult summarised(const Extended& extended) const;
-  [[nodiscard]] FittedModel refitted(const Extended& extended) const;
-  [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<Added>& added) const;
+  [[nodiscard]] FittedModel in_declared_band(const std::vector<AcceptedEffect>& effects) const;
+
+  using Key = std::vector<std::pair<std::string, int>>;  // names with degrees, in order
+
+  static Key key_of(const std::vector<AcceptedEffect>& effects);
+  [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<AcceptedEffect>& effects) const;
 
   const FittedModel& declared_;
+  const Progress& progress_;
   std::optional<FittedModel> coarser_;
+  Dictionary dictionary_;
+  std::optional<Calibration> calibration_;
+  std::map<Key, FittedModel> models_;
+  std::map<Key, FitResult> summaries_;
+  std::map<Key, SearchRound> rounds_;
 };
 
 }  // namespace slideway

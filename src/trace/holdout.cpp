@@ -2,13 +2,10 @@
 
 #include <cmath>
 
-#include "linear_algebra.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
 namespace {
-
-constexpr double kCertain = 25.0;    // gain of an effect of 5 standard uncertainties
-constexpr double kLeastShare = 0.1;  // of what all profiles know of it
 
 /// White columns [model, effect, residual] of one profile, free of its nuisances and loose values,
 /// as the triangle that has the same inner products.
@@ -20,12 +17,10 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
   const auto own = [&](const Eigen::MatrixXd& stacked) {
     return stacked.middleRows(data.first_row(i), data.count(i));
   };
-  Eigen::MatrixXd rows(observation.values.size(), free + data.loose().cols() + k + a + 1);
-  rows << observation.nuisances, own(data.loose()), linear.columns[i], own(effect),
+  Eigen::MatrixXd rows(observation.values.size(), free + data.undescribed().cols() + k + a + 1);
+  rows << observation.nuisances, own(data.undescribed()), linear.columns[i], own(effect),
       linear.residuals[i];
-  const Noise& noise = data.noise()[i];
-  noise.correlation.whiten(rows);
-  rows /= noise.innovation;
+  data.noise()[i].whiten(rows);
   const Eigen::MatrixXd basis = orthonormal(rows.leftCols(rows.cols() - k - a - 1));
   Eigen::MatrixXd rest = rows.rightCols(k + a + 1);
   rest -= basis * (basis.transpose() * rest).eval();
@@ -33,11 +28,11 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
 }
 
 /// What some profiles say: model, and model with effect, fitted to their rows and the priors.
-struct Told {
+struct FitOfOthers {
   LeastSquares without, with;
 
   /// @param amplitudes  of the effect as all profiles have it
-  Told(const Linearisation& linear, const std::vector<Eigen::MatrixXd>& rows, std::size_t left_out,
+  FitOfOthers(const Linearisation& linear, const std::vector<Eigen::MatrixXd>& rows, std::size_t left_out,
        const Eigen::VectorXd& amplitudes) {
     const Eigen::Index k = linear.prior_rows.cols(), priors = linear.prior_rows.rows();
     const Eigen::Index a = amplitudes.size();
@@ -84,7 +79,8 @@ Eigen::VectorXd left_over(const Observation& observation, Eigen::VectorXd rest) 
 }  // namespace
 
 std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened& data,
-                                     const Refined& candidate) {
+                                     const Refined& candidate, const Gates& gates) {
+  const double certain = gates.size * gates.size;  // gain of an effect of that size
   const std::size_t count = linear.observations.size();
   const Eigen::Index k = linear.prior_rows.cols(), a = candidate.columns.cols();
   const Projection& whole = candidate.projection;
@@ -98,8 +94,8 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
   for (std::size_t i = 0; i < count; ++i) {
     const auto model = rows[i].leftCols(k), effect = rows[i].middleCols(k, a);
     if (effect.isZero(0.0)) continue;
-    const Told others(linear, rows, i, amplitudes);
-    if (!(others.expected() >= kLeastShare * whole.gain)) continue;
+    const FitOfOthers others(linear, rows, i, amplitudes);
+    if (!(others.expected() >= gates.holdout_share * whole.gain)) continue;
     const Eigen::VectorXd carried = others.with.values.bottomRows(a);
     const Eigen::VectorXd astray = carried - amplitudes;
     shown += whole.gain - others.expected();
@@ -108,7 +104,7 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
     const auto outside = [&](const Eigen::VectorXd& column) -> Eigen::VectorXd {
       return column - basis * (basis.transpose() * column);
     };
-    if (others.expected() >= kCertain && outside(effect * amplitudes).squaredNorm() >= kCertain) {
+    if (others.expected() >= certain && outside(effect * amplitudes).squaredNorm() >= certain) {
       const Eigen::VectorXd residual = rows[i].col(k + a);
       beyond_model.add(outside(residual), outside(residual - effect * carried));
     }
@@ -121,7 +117,7 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
                                            own * carried));
     samples += static_cast<double>(observation.low_band.samples());
   }
-  if (!(shown >= kCertain)) return std::nullopt;
+  if (!(shown >= certain)) return std::nullopt;
   HeldOut out{support > 0.0 && beyond_model.after <= beyond_model.before, {}, {}};
   if (samples > 0.0) {
     out.before_um = std::sqrt(heights.before / samples) / kMicrometre;

@@ -7,15 +7,16 @@
 
 namespace slideway {
 
-std::vector<TriedEffect> tried(const Look& seen, const Seen* except,
+std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
+                               const TestedCandidate* except,
                                std::optional<double> before_rms_um) {
   std::vector<TriedEffect> out;
-  const double square = seen.data.residual().squaredNorm();
-  for (const Seen& each : seen.seen) {
+  const double square = round.data.residual().squaredNorm();
+  for (const TestedCandidate& each : round.tested) {
     if (&each == except) continue;
     const Refined& refined = each.refined;
     TriedEffect entry{each.name(), refined.delta_bic, each.p_value};
-    entry.refused = each.refused;
+    entry.refused = each.refused(gates);
     if (before_rms_um)
       entry.rms_um =
           *before_rms_um * std::sqrt(std::max(0.0, 1.0 - refined.projection.gain / square));

@@ -1,13 +1,14 @@
 #pragma once
 
 #include "extended_model.hpp"
-#include "round.hpp"
+#include "search_round.hpp"
 
 namespace slideway {
 
-/// What a look saw, for the report, without `except` (what was accepted of it; null: nothing).
+/// The candidates of a search for the report, without `except` (what was accepted; null: nothing).
 /// @param before_rms_um  residual of the declared model
-std::vector<TriedEffect> tried(const Look& seen, const Seen* except,
+std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
+                               const TestedCandidate* except,
                                std::optional<double> before_rms_um);
 
 /// Why the form that the fit puts into the carriages cannot be theirs, or "": the run-out or a

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "linear_algebra.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
 namespace {

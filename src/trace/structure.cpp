@@ -5,19 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "background.hpp"
-#include "calibration.hpp"
-#include "linear_algebra.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 #include "slideway/base/distribution.hpp"
+#include "slideway/identify/noise_model.hpp"
 
 namespace slideway {
 namespace {
 
-constexpr Eigen::Index kResamples = 99;
-// Relative standard uncertainty of an estimated noise's power below the band it was measured in,
-// beyond that of its parameters. With it the p-values of 300 clean faces of bench/quality are below
-// 0.05 in 5.7 %, below 0.01 in 2.3 %; without, in 16 % and 7 %.
-constexpr double kBelow = 0.25;
+// Largest variance of ln(long-run variance) that a flat likelihood is taken for.
+constexpr double kMostSpread = 1.0;
 constexpr Eigen::Index kCosines = 24;
 constexpr double kLengths[] = {0.03, 0.05, 0.1, 0.2, 0.4, 0.8};  // of the clock's range
 constexpr double kSizes[] = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0};  // of the noise
@@ -207,35 +203,52 @@ Structure find_structure(const Model& model, const Whitened& data, const Lineari
   return found;
 }
 
-LackOfFit lack_of_fit(const Whitened& data, const Linearisation& linear) {
-  Eigen::Index total = 0;
+namespace {
+
+/// Orthonormal basis of the white slow band outside the model's span.
+Eigen::MatrixXd slow_band(const Whitened& data, const Linearisation& linear, const Gates& gates) {
+  Eigen::Index total = 0, next = 0;
   for (const Observation* observation : linear.observations)
-    total += slow_cosine_count(observation->values.size());
-  if (total == 0) return {};
-  Eigen::Index next = 0;
+    total += slow_cosine_count(observation->values.size(), gates);
   Eigen::MatrixXd slow = stack(linear, total, [&](std::size_t i) {
-    const Eigen::Index n = linear.observations[i]->values.size(), own = slow_cosine_count(n);
+    const Eigen::Index n = linear.observations[i]->values.size();
+    const Eigen::Index own = slow_cosine_count(n, gates);
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n, total);
     rows.middleCols(next, own) = slow_cosines(n, own);
     next += own;
     return rows;
   });
+  if (total == 0) return slow;
   data.whiten(slow);
   for (Eigen::Index j = 0; j < slow.cols(); ++j) slow.col(j).normalize();
   slow -= data.basis() * (data.basis().transpose() * slow).eval();
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
   qr.setThreshold(1e-6);
   qr.compute(slow);
-  const Eigen::MatrixXd basis =
-      qr.householderQ() * Eigen::MatrixXd::Identity(slow.rows(), qr.rank());
+  return qr.householderQ() * Eigen::MatrixXd::Identity(slow.rows(), qr.rank());
+}
+
+}  // namespace
+
+bool LackOfFit::significant(const Gates& gates) const {
+  return p_value < gates.lack_of_fit_p && ratio > gates.lack_of_fit_ratio;
+}
+
+LackOfFit lack_of_fit(const Whitened& data, const Linearisation& linear, const Gates& gates) {
+  const Eigen::MatrixXd basis = slow_band(data, linear, gates);
+  if (basis.cols() == 0) return {};
   const double found = (basis.transpose() * data.residual()).squaredNorm();
-  const Eigen::VectorXd null =
-      (basis.transpose() * null_residuals(data, kResamples)).colwise().squaredNorm().transpose();
-  const double mean = null.mean();
-  double variance = (null.array() - mean).square().sum() / static_cast<double>(kResamples - 1);
-  if (std::ranges::any_of(data.noise(), &Noise::is_estimated))
-    variance += std::pow(kBelow * mean, 2);
-  if (!(variance > 0.0)) return {};
+  double mean = 0.0, variance = 0.0;
+  for (std::size_t i = 0; i < data.observations(); ++i) {
+    const double share = basis.middleRows(data.first_row(i), data.count(i)).squaredNorm();
+    const Noise& noise = data.noise()[i];
+    const double spread = std::min(noise.log_long_run_variance(), kMostSpread);
+    const double own = share * std::exp(0.5 * spread);
+    const double below = noise.is_estimated() ? std::pow(gates.noise_extrapolation, 2) : 0.0;
+    mean += own;
+    variance += own * own * (std::expm1(spread) + below);
+  }
+  variance += 2.0 * mean * mean / static_cast<double>(basis.cols());
   return {gamma_tail(mean * mean / variance, found * mean / variance), found / mean};
 }
 

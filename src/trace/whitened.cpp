@@ -1,6 +1,6 @@
 #include "whitened.hpp"
 
-#include "linear_algebra.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
 
@@ -22,17 +22,19 @@ Eigen::MatrixXd model_span(const Linearisation& linear) {
   return out;
 }
 
-Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, Eigen::MatrixXd loose)
-    : noise_(std::move(noise)), loose_(std::move(loose)) {
+Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, Eigen::MatrixXd undescribed)
+    : noise_(std::move(noise)), undescribed_(std::move(undescribed)) {
   for (const Observation* observation : linear.observations) {
     first_.push_back(values_);
     values_ += observation->values.size();
   }
   first_.push_back(values_);
   rows_ = values_ + linear.prior_rows.rows();
+  if (undescribed_.cols() == 0) undescribed_.resize(rows_, 0);
   const Eigen::MatrixXd model = model_span(linear);
-  Eigen::MatrixXd span(rows_, model.cols() + loose_.cols());
-  span << model, loose_;
+  Eigen::MatrixXd span(rows_, model.cols() + undescribed_.cols());
+  span.leftCols(model.cols()) = model;
+  span.rightCols(undescribed_.cols()) = undescribed_;
   whiten(span);
   basis_ = orthonormal(std::move(span));
   residual_ = stack(linear, 1, [&](std::size_t i) { return linear.residuals[i]; });
@@ -42,11 +44,7 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, Eigen:
 
 void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
   for (std::size_t i = 0; i < noise_.size(); ++i)
-    for (Eigen::Index j = 0; j < stacked.cols(); ++j) {
-      auto rows = stacked.block(first_[i], j, count(i), 1);
-      noise_[i].correlation.whiten(rows);
-      rows /= noise_[i].innovation;
-    }
+    noise_[i].whiten(stacked.middleRows(first_[i], count(i)));
 }
 
 Eigen::MatrixXd Whitened::outside(Eigen::MatrixXd stacked) const {

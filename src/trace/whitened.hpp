@@ -17,8 +17,10 @@ class Whitened {
  public:
   /// @param linear  the model at its fit
   /// @param noise   per fitted observation
-  /// @param loose   further stacked columns that are left free (loose_values())
-  Whitened(const Linearisation& linear, std::vector<Noise> noise, Eigen::MatrixXd loose);
+  /// @param undescribed  stacked columns that are left free beside the model's
+  ///                     (undescribed_columns()); 0 by 0: none
+  Whitened(const Linearisation& linear, std::vector<Noise> noise,
+           Eigen::MatrixXd undescribed = Eigen::MatrixXd(0, 0));
 
   [[nodiscard]] Eigen::Index rows() const { return rows_; }
   /// Values without the priors.
@@ -42,14 +44,14 @@ class Whitened {
   [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
 
   /// Stacked columns that are left free beside the model.
-  [[nodiscard]] const Eigen::MatrixXd& loose() const { return loose_; }
+  [[nodiscard]] const Eigen::MatrixXd& undescribed() const { return undescribed_; }
 
   /// White residual outside that span.
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
 
  private:
   std::vector<Noise> noise_;
-  Eigen::MatrixXd loose_;
+  Eigen::MatrixXd undescribed_;
   std::vector<Eigen::Index> first_;
   Eigen::Index values_ = 0;
   Eigen::Index rows_ = 0;

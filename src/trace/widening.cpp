@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "gates.hpp"
-#include "linear_algebra.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
 namespace {
@@ -29,8 +28,8 @@ Eigen::MatrixXd response(const Solution& fit, const Eigen::MatrixXd& signals) {
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {
     const Eigen::Index count = linear.observations[i]->values.size();
-    design.middleRows(row, count) /= fit.weights[i];
-    targets.middleRows(row, count) /= fit.weights[i];
+    fit.noise[i].whiten(design.middleRows(row, count));
+    fit.noise[i].whiten(targets.middleRows(row, count));
     row += count;
   }
   return least_squares(design, targets).values.topRows(k);
@@ -43,14 +42,15 @@ double Widening::variance(const Eigen::RowVectorXd& row) const {
   return (row * process).squaredNorm() + change * change / 3.0;
 }
 
-Widening widening(const Solution& fit, const Structure& structure, const Look& last) {
+Widening widening(const Model& model, const Solution& fit, const Structure& structure,
+                  const SearchRound& last) {
   Widening out;
   out.process = response(fit, stack(fit.linear, structure.columns[0].cols(),
                                     [&](std::size_t i) { return structure.columns[i]; })) *
                 structure.sizes.asDiagonal();
   out.refused.resize(out.process.rows(), 0);
-  for (const Seen& each : last.seen) {
-    if (each.refined.delta_bic > -kEnough || !is_possible(each)) continue;
+  for (const TestedCandidate& each : last.tested) {
+    if (each.refined.delta_bic > -model.gates.delta_bic || !each.is_possible()) continue;
     out.refused.conservativeResize(Eigen::NoChange, out.refused.cols() + 1);
     out.refused.rightCols(1) =
         response(fit, each.refined.columns * each.refined.projection.amplitudes);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "round.hpp"
+#include "search_round.hpp"
 #include "structure.hpp"
 
 namespace slideway {
@@ -16,7 +16,8 @@ struct Widening {
   [[nodiscard]] double variance(const Eigen::RowVectorXd& row) const;
 };
 
-Widening widening(const Solution& fit, const Structure& structure, const Look& last);
+Widening widening(const Model& model, const Solution& fit, const Structure& structure,
+                  const SearchRound& last);
 
 /// Widens the uncertainties of the fitted parameters.
 void widen(const Model& model, const Solution& fit, const Widening& by,

@@ -53,7 +53,7 @@ TEST_F(OverriddenProblem, PutsInWhatIsNotThere) {
                                 {"runout.p_um", "2.5"},
                                 {"runout.diameter_mm", "1000"},
                                 {"runout.standard_uncertainty_um", "0.1"}});
-  EXPECT_EQ(problem.trace.significance, 0.05);
+  EXPECT_EQ(problem.trace.gates.significance, 0.05);
   EXPECT_EQ(problem.title, "2026-11-21");
   EXPECT_EQ(problem.profiles[0].source.window, std::pair(1.0, 9.5));
   EXPECT_FALSE(problem.profiles[0].profile.free_tilt);

@@ -7,6 +7,7 @@
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/model.hpp"
 #include "slideway/identify/result.hpp"
+#include "slideway/identify/solve.hpp"
 #include "slideway/identify/uncertainty.hpp"
 
 namespace slideway {
@@ -17,17 +18,16 @@ struct Solution {
   bool converged = false;
   std::string message;
   std::vector<bool> shape_at_bound;
-  std::vector<double> weights;  // per fitted observation
-  std::vector<Noise> noise;     // per fitted observation
-  Linearisation linear;         // at the estimate
+  std::vector<Noise> noise;  // per fitted observation
+  Linearisation linear;      // at the estimate; values far off as their loss counts them
   ParameterValues parameters;
   Rank rank;
   NullDirections null;
   Uncertainty uncertainty;
 };
 
-/// Fits all profiles jointly: weighted least squares, the weights from each profile's long-run
-/// noise (declared, or estimated from the residual), uncertainties for the noise's correlation.
+/// Fits all profiles jointly by generalised least squares, Eq. (16): solve() under noise_model(),
+/// each in turn until the noise stays.
 ///
 /// @param shapes  start from these shapes instead of searching their whole range
 /// @throws DataError  fewer low-band values than parameters
@@ -46,10 +46,12 @@ struct FittedModel {
   Solution fit;
 };
 
-/// A model together with fit().
-FittedModel fitted(Model model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
+/// A model together with fit(), the values left out that its columns do not describe
+/// (left_out.hpp).
+FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
 
-/// The declared model, built and fitted. @throws UsageError, DataError  as build_model(), fit()
+/// The declared model, built and fitted.
+/// @throws UsageError, DataError  as build_model(), fit()
 FittedModel fit_declared(const Problem& problem, const std::vector<Profile>& profiles);
 
 /// The fit for the report.

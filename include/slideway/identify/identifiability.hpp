@@ -23,7 +23,8 @@ struct Rank {
 /// @param scale     norm of each column before that projection: a column the nuisances swallow
 /// counts as
 ///                  gone, not as small
-Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale);
+Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
+                  double tolerance);
 
 /// Null directions in terms of parameters a person can read: each has one parameter of its own that
 /// appears in no other (the one a convention may set to 0: gauge terms b_0, b_1, then c_1 ...).

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "slideway/effects/effect.hpp"
+#include "slideway/identify/gates.hpp"
 #include "slideway/identify/problem.hpp"
 #include "slideway/signal/low_band.hpp"
 
@@ -47,8 +48,11 @@ struct SlideRange {
 };
 SlideRange slide_range(const Profile& profile, const Machine& machine);
 
-/// Leaves low-band values of an observation out of every fit.
-void leave_out(Observation& observation, const std::vector<Eigen::Index>& values);
+/// Leaves low-band values of an observation out of every fit. @return true if one was not yet
+bool leave_out(Observation& observation, const std::vector<Eigen::Index>& values);
+
+/// Those that are left out, rising.
+std::vector<Eigen::Index> left_out_values(const Observation& observation);
 
 /// The declared model and the data it is held against.
 struct Model {
@@ -57,6 +61,7 @@ struct Model {
   std::vector<ModelTerm> terms;
   std::vector<Observation>
       observations;  // one per profile, fit and holdout, in the problem's order
+  Gates gates;
 
   [[nodiscard]] Eigen::Index amplitudes() const;
   [[nodiscard]] Eigen::Index shapes() const;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "slideway/identify/gates.hpp"
 #include "slideway/signal/autoregression.hpp"
 
 namespace slideway {
@@ -21,9 +22,16 @@ struct Noise {
   [[nodiscard]] bool is_estimated() const { return !declared && covariance.size() > 0; }
   [[nodiscard]] double standard_deviation() const;
 
-  /// Standard deviation of white noise that would leave smooth parameters as uncertain as this one
-  /// does: sqrt(long-run variance), and never below the innovation's white equivalent.
-  [[nodiscard]] double weight_deviation() const;
+  /// Square root of the long-run variance: the standard deviation of white noise that would leave
+  /// smooth parameters as uncertain.
+  [[nodiscard]] double long_run_deviation() const;
+
+  /// Variance of the estimate of ln(long-run variance); 0 if declared.
+  [[nodiscard]] double log_long_run_variance() const;
+
+  /// Rows made independent with unit variance (whitening), and the inverse. In place.
+  void whiten(Eigen::Ref<Eigen::MatrixXd> rows) const;
+  void colour(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
   /// The noise with the same declared flags at other parameters of `covariance`'s kind.
   [[nodiscard]] Noise at(const Eigen::VectorXd& parameters) const;
@@ -40,21 +48,17 @@ struct LinearProfile {
   int least_order = 0;             // of the autoregression, whatever BIC says
 };
 
-/// Estimates the noise of every profile by restricted maximum likelihood, the parameters of the
-/// model left free (so that what the fit has taken out of the residual is put back), AR order by
-/// BIC, correlation length up to eight times the trace.
+/// Estimates the noise of every profile by restricted maximum likelihood: the parameters of the
+/// model are left free, so what the fit has taken out of the residual is allowed for. The order of
+/// the autoregression is that of the least BIC.
 ///
-/// Correlation is used only where it widens uncertainties: a
-/// residual that alternates does not make a smooth parameter better known than white noise would. A
-/// declared uncertainty stands unless the residual refutes it (likelihood gain over 10 beyond BIC,
-/// and a larger long-run variance).
+/// If the long-run variance is below the variance, white noise of that variance is used: a residual
+/// that alternates does not make a smooth parameter better known. A declared uncertainty stands
+/// unless the residual refutes it and has the larger long-run variance.
 ///
 /// @param prior_information  r by r, what priors add to the information on w
 std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,
-                                  const Eigen::MatrixXd& prior_information);
-
-/// columns' Σ columns, where Σ is the noise's covariance matrix.
-Eigen::MatrixXd covariance_under(const Noise& noise,
-                                 const Eigen::Ref<const Eigen::MatrixXd>& columns);
+                                  const Eigen::MatrixXd& prior_information,
+                                  const Gates& gates = {});
 
 }  // namespace slideway

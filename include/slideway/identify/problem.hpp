@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slideway/effects/effect.hpp"
+#include "slideway/identify/gates.hpp"
 #include "slideway/profile/profile.hpp"
 #include "slideway/signal/low_band.hpp"
 
@@ -37,7 +38,7 @@ struct Runout {
 struct TraceOptions {
   std::vector<std::string> candidates;  // effect names; "all" is written out
   int max_effects = 3;
-  double significance = 0.01;
+  Gates gates;
 };
 
 /// What `simulate` makes profiles from.

@@ -15,29 +15,37 @@ struct Spread {
   std::optional<double> degrees_of_freedom;
 };
 
-/// Uncertainty of a least-squares estimate under correlated noise.
+/// Uncertainty of a generalised least-squares estimate.
 ///
-/// The estimate is w = Σ_i Z_i' (values_i - ...) / weight_i² in orthonormal coordinates; its
-/// covariance is Σ_i Z_i' Σ_i Z_i / weight_i⁴ plus the priors' part, with Σ_i the noise of profile
-/// i: weights that do not fit the noise cost efficiency, never honesty. Weights taken from the data
-/// add 2 Σ_i var(ln weight_i²) (G_i - G_i²), G_i = the share of profile i in the information
-/// (Kenward and Roger 1997; Meier 1953 for a weighted mean). Degrees of freedom by Satterthwaite's
-/// formula (GUM G.4.1) from the uncertainty of the noise's own parameters.
+/// In coordinates w in which the information Σ_i G_i + priors is the unit matrix (G_i that of
+/// profile i), the covariance of w is
+///
+///   I + 2 Σ_i var(ln s_i) (G_i - G_i²)
+///
+/// with the long-run variance s_i of profile i's noise: the second part allows for weights that come
+/// from the same data (Kenward and Roger 1997, for columns slow against the noise; Meier 1953 for a
+/// weighted mean). Degrees of freedom by Satterthwaite's formula (GUM G.4.1) from the uncertainty of
+/// the noise's parameters, and no more from a profile than it has effective observations.
 struct Uncertainty {
-  Eigen::MatrixXd basis;                       // (A + S) by r
-  Eigen::MatrixXd covariance;                  // r by r, of w
-  struct NoiseEffect {                         // of one profile whose noise was estimated
+  Eigen::MatrixXd basis;                     // (A + S) by r
+  Eigen::MatrixXd covariance;                // r by r, of w
+  std::vector<Eigen::MatrixXd> information;  // G_i, r by r, per fitted observation
+  struct NoiseEffect {                       // of one profile whose noise was estimated
+    std::size_t observation = 0;
     Eigen::MatrixXd covariance;                // of the noise parameters
     std::vector<Eigen::MatrixXd> derivatives;  // of the covariance of w, r by r each
+    double degrees_of_freedom = 1.0;           // most that this noise was found with
   };
   std::vector<NoiseEffect> noise;
-  std::vector<Eigen::MatrixXd> nuisance_covariances;  // per fitted observation
+  std::vector<Eigen::MatrixXd> nuisance_covariances;  // levelling, per fitted observation
 
   /// Of row * (amplitudes, shapes). REQUIRES the row to be orthogonal to the null space.
   [[nodiscard]] Spread of(const Eigen::RowVectorXd& row) const;
 };
 
-Uncertainty assess(const Linearisation& linear, const std::vector<double>& weights,
+/// @param compressed  of the same model under the same noise
+/// @param basis       (A + S) by r, from analyse_rank()
+Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
                    const std::vector<Noise>& noise, const Eigen::MatrixXd& basis);
 
 /// Student's factor for a coverage probability of 95.45 % (GUM G.3.2): 2 for infinitely many

@@ -19,6 +19,9 @@ enum class Role {
   holdout  // never fitted, only predicted
 };
 
+/// What a value that lies far off counts in the fit: its square, or less (Huber 1964; Cauchy).
+enum class Loss { none, huber, cauchy };
+
 /// An outlier by its data row, counted from 1 as the file has them; mm or rad.
 struct OutlierRow {
   std::size_t row = 0;
@@ -51,6 +54,7 @@ struct Profile {
   bool free_offset = true;           // what levelling left undetermined: nuisances of this profile
   bool free_tilt = true;
   std::optional<double> standard_uncertainty;  // of one sample, mm or rad
+  Loss loss = Loss::none;
   std::vector<std::string> notes;              // what was done to the data on the way in
 
   [[nodiscard]] Stations stations(const Machine& machine) const {

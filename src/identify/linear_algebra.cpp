@@ -1,4 +1,4 @@
-#include "linear_algebra.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

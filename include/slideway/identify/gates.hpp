@@ -1,0 +1,59 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+/// The numbers that decide what slideway says, each a key of [trace].
+namespace slideway {
+
+/// A verdict hangs on comparisons with these. Every one has a name, a unit, a default, a range
+/// and a source: gate_table(), `slideway help trace`.
+struct Gates {
+  // What a candidate must bring.
+  double significance = 0.01;
+  double delta_bic = 10.0;
+  double size = 5.0;
+  double tie_bic = 10.0;
+  double exchange_bic = 2.0;
+  double alike = 0.3;
+  double holdout_share = 0.1;
+
+  // When the residual is structure.
+  double lack_of_fit_p = 1e-3;
+  double lack_of_fit_ratio = 2.0;
+  double noise_extrapolation = 0.25;
+
+  // The noise.
+  double slow_cosines = 16.0;
+  double values_per_cosine = 10.0;
+  double noise_order = 6.0;
+  double values_per_order = 10.0;
+  double correlation_traces = 8.0;
+  double declared_noise_bic = 10.0;
+  double false_line = 1e-3;
+  double most_lines = 12.0;
+
+  // What is left out of a face.
+  double nose_radius_mm = 2.0;
+  double most_lost = 0.1;
+
+  // What can be determined, and how the search is carried out.
+  double rank_tolerance = 1e-9;
+  double resamples = 99.0;
+  double detection_power = 0.8;
+};
+
+/// One gate, as the problem file and the help have it.
+struct Gate {
+  std::string_view name;  // the key of [trace]
+  double Gates::* value;
+  std::string_view unit;         // "" for a plain number
+  double lower, upper;           // range in which a value is accepted
+  std::string_view decides;      // in a sentence
+  std::string_view source;       // table, theorem or measurement
+};
+
+/// All gates, in the order of `slideway help trace`.
+std::span<const Gate> gate_table();
+
+}  // namespace slideway

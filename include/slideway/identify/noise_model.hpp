@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "slideway/identify/gates.hpp"
+#include "slideway/identify/noise.hpp"
+#include "slideway/identify/solve.hpp"
+
+namespace slideway {
+
+/// The noise of every fitted profile under one hypothesis, by restricted maximum likelihood. Fit,
+/// search, detection limits, predictions and lack of fit use this one.
+///
+/// A missing effect is not taken for noise. The estimate is made from what is faster than a band of
+/// slow cosines, which is left free; columns of the model as slow as that are left free with it.
+/// Other columns, and lines that stand out of the spectrum, are taken out of the residual first.
+/// A profile with too few values for that is estimated from its whole residual, the model left free.
+///
+/// @param linear   the model at its estimate
+/// @param suspect  per fitted observation: low-band columns of an effect the hypothesis adds, or none
+std::vector<Noise> noise_model(const Linearisation& linear, const Gates& gates,
+                               const std::vector<Eigen::MatrixXd>& suspect = {});
+
+/// White noise of the declared size, or of the size of the values after levelling: what a fit begins
+/// with.
+std::vector<Noise> first_noise(const Model& model);
+
+/// cos(π j (i + 1/2) / n), j = 1 ... count: the slow band, n by count.
+Eigen::MatrixXd slow_cosines(Eigen::Index n, Eigen::Index count);
+
+/// How many of them a profile of n values is given.
+Eigen::Index slow_cosine_count(Eigen::Index n, const Gates& gates);
+
+}  // namespace slideway

@@ -1,0 +1,109 @@
+#include "slideway/identify/left_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace slideway {
+namespace {
+
+/// Radii of the low-band values, and the width that one of them or one groove covers.
+struct Radii {
+  std::vector<double> radius, trace;
+  double width = 0.0, largest = 0.0;
+
+  Radii(const Observation& observation, const Machine& machine) {
+    const Setup& setup = observation.profile->setup;
+    const std::vector<double> positions =
+        observation.low_band.positions(observation.profile->positions);
+    const Stations stations(positions, setup, machine);
+    for (Eigen::Index i = 0; i < stations.size(); ++i) {
+      radius.push_back(stations.radius(i));
+      trace.push_back(stations.trace(i));
+      largest = std::max(largest, radius.back());
+    }
+    width = (setup.last_mm - setup.first_mm) / static_cast<double>(positions.size());
+    if (setup.feed_mm_per_min && setup.spindle_rpm)
+      width = std::max(width, *setup.feed_mm_per_min / *setup.spindle_rpm);
+  }
+
+  [[nodiscard]] ValueIndices within(double centre, double reach) const {
+    ValueIndices out;
+    for (std::size_t i = 0; i < radius.size(); ++i)
+      if (std::abs(radius[i] - centre) <= reach) out.push_back(static_cast<Eigen::Index>(i));
+    return out;
+  }
+};
+
+/// Radius out to which a nose cuts the curve visibly lower than it is; 0 if that is no matter of
+/// the centre alone.
+double lost_radius(const Radii& radii, const Observation& observation, const Gates& gates,
+                   const Eigen::VectorXd& curve, double noise) {
+  const double nose = gates.nose_radius_mm;
+  const double height = std::sqrt(static_cast<double>(radii.radius.size()) /
+                                  static_cast<double>(observation.low_band.samples()));
+  double lost = 0.0;
+  for (Eigen::Index i = 1; i < curve.size(); ++i) {
+    const double slope = height * (curve[i] - curve[i - 1]) / (radii.trace[i] - radii.trace[i - 1]);
+    if (0.5 * nose * slope * slope > height * noise)
+      lost = std::max(lost, 0.5 * (radii.radius[i] + radii.radius[i - 1]));
+  }
+  return lost < gates.most_lost * radii.largest ? lost : 0.0;
+}
+
+}  // namespace
+
+ValueIndices values_at_axis(const Observation& observation, const Machine& machine) {
+  if (observation.profile->setup.kind != Kind::face) return {};
+  const Radii radii(observation, machine);
+  return radii.within(0.0, radii.width);
+}
+
+ValueIndices undescribed_values(const Model& model, const Estimate& estimate,
+                                const Observation& observation, const Eigen::VectorXd& curve,
+                                double noise) {
+  const Setup& setup = observation.profile->setup;
+  if (setup.kind != Kind::face) return {};
+  const Radii radii(observation, model.machine);
+  ValueIndices out = radii.within(
+      0.0, std::max(radii.width, lost_radius(radii, observation, model.gates, curve, noise)));
+  for (const ModelTerm& term : model.terms)
+    for (std::size_t s = 0; s < term.effect->shapes().size(); ++s) {
+      if (!term.effect->shapes()[s].stepwise || !term.effect->applies_to(setup)) continue;
+      const double place = estimate.shapes[term.first_shape + static_cast<Eigen::Index>(s)];
+      const ValueIndices beside = radii.within(place, radii.width);
+      out.insert(out.end(), beside.begin(), beside.end());
+    }
+  std::ranges::sort(out);
+  const auto [first, last] = std::ranges::unique(out);
+  out.erase(first, last);
+  return out;
+}
+
+Eigen::VectorXd steep_curve(const Model& model, const Estimate& estimate,
+                            const Observation& observation) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(observation.values.size());
+  for (const ModelTerm& term : model.terms)
+    if (is_steep_at_centre(*term.effect))
+      out += low_band_columns(model, term, observation, shapes_of(term, estimate.shapes)) *
+             estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
+  return out;
+}
+
+bool is_steep_at_centre(const Effect& effect) {
+  return effect.description().clock == Clock::radius && !effect.shapes().empty() &&
+         !effect.shapes()[0].stepwise;
+}
+
+double left_out_radius(const Model& model) {
+  double largest = 0.0;
+  for (const Observation& observation : model.observations) {
+    if (observation.profile->setup.kind != Kind::face) continue;
+    const Radii radii(observation, model.machine);
+    for (const Eigen::Index row : left_out_values(observation))
+      if (radii.radius[row] <= model.gates.most_lost * radii.largest)
+        largest = std::max(largest, radii.radius[row]);
+  }
+  return largest;
+}
+
+}  // namespace slideway

@@ -1,0 +1,271 @@
+#include "slideway/identify/noise_model.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "slideway/base/parallel.hpp"
+#include "slideway/base/units.hpp"
+#include "slideway/identify/identifiability.hpp"
+#include "slideway/identify/linear_algebra.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr Eigen::Index kLeastSpare = 6;  // values beyond what is free, else the whole residual
+constexpr double kRounding = 1e-13;      // of the values: no noise, only rounding
+constexpr int kLeastOrder = 1;           // BIC on the fine band alone overlooks a short correlation
+constexpr Eigen::Index kNeighbours = 15;  // on either side, for the level of a spectrum
+
+double rms(const Eigen::VectorXd& values) {
+  return std::sqrt(values.squaredNorm() /
+                   static_cast<double>(std::max<Eigen::Index>(values.size(), 1)));
+}
+
+Eigen::MatrixXd line(Eigen::Index n, double cycles_per_value) {
+  Eigen::MatrixXd out(n, 2);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double angle = 2.0 * kPi * cycles_per_value * static_cast<double>(i);
+    out.row(i) << std::cos(angle), std::sin(angle);
+  }
+  return out;
+}
+
+/// Spectral power of the values, of each half of a diameter by itself: what the cut has laid down
+/// runs there and back. Of one half if `middle` is 0.
+double power(const Eigen::VectorXd& values, Eigen::Index middle, double cycles_per_value) {
+  const std::complex<double> turn = std::polar(1.0, -2.0 * kPi * cycles_per_value);
+  std::complex<double> phase = 1.0, far = 0.0, near = 0.0;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    (i < middle ? far : near) += values[i] * phase;
+    phase *= turn;
+  }
+  return std::norm(far) + std::norm(near);
+}
+
+/// Frequency near `frequency` where the power is largest, to a thousandth of a cycle a profile.
+double sharpened(const Eigen::VectorXd& values, Eigen::Index middle, double frequency) {
+  const auto n = static_cast<double>(values.size());
+  for (double step = 0.1; step > 5e-4; step /= 10.0) {
+    const double centre = frequency;
+    double largest = -1.0;
+    for (int i = -10; i <= 10; ++i) {
+      const double f = centre + i * step / n, size = power(values, middle, f);
+      if (size > largest) largest = size, frequency = f;
+    }
+  }
+  return frequency;
+}
+
+/// Frequency (cycles per value) of a line that stands out of the spectrum around it, or 0. The
+/// spectrum of smooth noise over its local level is exponential; the level is the median of the
+/// neighbours over ln 2.
+/// @param middle  first value of the near half of a diameter, or 0
+double outstanding_line(const Eigen::VectorXd& values, Eigen::Index middle, double false_line) {
+  const Eigen::Index n = values.size(), count = (n - 1) / 2;
+  if (count < 4 * kNeighbours) return 0.0;
+  Eigen::VectorXd spectrum(count);
+  for (Eigen::Index k = 0; k < count; ++k)
+    spectrum[k] = power(values, 0, static_cast<double>(k + 1) / static_cast<double>(n));
+  double best = std::log(static_cast<double>(count) / false_line);
+  Eigen::Index peak = -1;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::Index first =
+        std::clamp<Eigen::Index>(k - kNeighbours, 0, count - 2 * kNeighbours - 1);
+    std::vector<double> around(spectrum.data() + first,
+                               spectrum.data() + first + 2 * kNeighbours + 1);
+    std::nth_element(around.begin(), around.begin() + kNeighbours, around.end());
+    const double level = around[kNeighbours] / std::log(2.0);
+    if (spectrum[k] > best * level) best = spectrum[k] / level, peak = k;
+  }
+  if (peak < 0) return 0.0;
+  return sharpened(values, middle, static_cast<double>(peak + 1) / static_cast<double>(n));
+}
+
+/// First low-band value of the near half of a diameter; 0 where there is no far one.
+Eigen::Index near_half(const Observation& observation) {
+  const Setup& setup = observation.profile->setup;
+  if (setup.kind != Kind::face) return 0;
+  const std::vector<double> positions =
+      observation.low_band.positions(observation.profile->positions);
+  return std::ranges::lower_bound(positions, setup.center_mm) - positions.begin();
+}
+
+/// The line, each half of a diameter with a phase of its own.
+Eigen::MatrixXd line_on(Eigen::Index values, Eigen::Index middle, double cycles_per_value) {
+  Eigen::MatrixXd out = line(values, cycles_per_value);
+  if (middle == 0) return out;
+  out.conservativeResize(Eigen::NoChange, 4);
+  out.rightCols(2) = out.leftCols(2);
+  out.topRightCorner(middle, 2).setZero();
+  return out;
+}
+
+void append(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
+  Eigen::MatrixXd out(std::max(columns.rows(), more.rows()), columns.cols() + more.cols());
+  out << columns, more;
+  columns = std::move(out);
+}
+
+/// An orthonormal basis of what the columns add to two others.
+Eigen::MatrixXd beyond(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& more,
+                       Eigen::MatrixXd columns) {
+  constexpr double kNew = 1e-6;  // of a column: less is rounding
+  const Eigen::RowVectorXd whole = columns.colwise().norm();
+  for (int pass = 0; pass < 2; ++pass)
+    for (const Eigen::MatrixXd* taken : {&basis, &more})
+      columns -= *taken * (taken->transpose() * columns).eval();
+  for (Eigen::Index j = 0; j < columns.cols(); ++j)
+    if (columns.col(j).norm() <= kNew * whole[j]) columns.col(j).setZero();
+  return orthonormal(std::move(columns));
+}
+
+/// What the basis leaves of the residual, without the columns and without lines that stand out of
+/// the spectrum. Those are not left free as the basis is: noise could then be put into the gaps
+/// they make in the spectrum, where nobody would miss it. What they take of the noise's size is
+/// given back. Zeros if too little is left to know a noise by.
+/// @param middle  as outstanding_line()
+Eigen::VectorXd without_lines(const Eigen::VectorXd& residual, const Eigen::MatrixXd& basis,
+                              const Eigen::MatrixXd& columns, Eigen::Index middle,
+                              const Gates& gates) {
+  const Eigen::Index n = residual.size(), seen = n - basis.cols();
+  Eigen::MatrixXd known(n, 0);
+  Eigen::VectorXd rest = residual - basis * (basis.transpose() * residual);
+  const auto take_out = [&](const Eigen::MatrixXd& more) {
+    const Eigen::MatrixXd own = beyond(basis, known, more);
+    rest -= own * (own.transpose() * rest);
+    append(known, own);
+  };
+  take_out(columns);
+  for (int found = 0; found < static_cast<int>(gates.most_lines); ++found) {
+    const double frequency = outstanding_line(rest, middle, gates.false_line);
+    if (frequency == 0.0) break;
+    take_out(line_on(n, middle, frequency));
+  }
+  const Eigen::Index left = seen - known.cols();
+  if (left < kLeastSpare) return Eigen::VectorXd::Zero(n);
+  return rest * std::sqrt(static_cast<double>(seen) / static_cast<double>(left));
+}
+
+/// Columns that lie in the basis for the most part, and those that do not.
+std::pair<Eigen::MatrixXd, Eigen::MatrixXd> parted(const Eigen::MatrixXd& basis,
+                                                   const Eigen::MatrixXd& columns) {
+  std::array<std::vector<Eigen::Index>, 2> parts;
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    const double inside = (basis.transpose() * columns.col(j)).squaredNorm();
+    parts[inside < 0.5 * columns.col(j).squaredNorm() ? 1 : 0].push_back(j);
+  }
+  return {columns(Eigen::all, parts[0]), columns(Eigen::all, parts[1])};
+}
+
+
+/// What is left of a profile beside the slow band, or nothing if that is too little.
+std::optional<LinearProfile> fine_band(const Linearisation& linear, std::size_t i,
+                                       const Gates& gates,
+                                       const std::vector<Eigen::MatrixXd>& suspect) {
+  const Observation& observation = *linear.observations[i];
+  const Eigen::Index n = observation.values.size();
+  Eigen::MatrixXd free = observation.nuisances, columns = linear.columns[i];
+  append(free, slow_cosines(n, slow_cosine_count(n, gates)));
+  if (!suspect.empty()) append(columns, suspect[i]);
+  const auto [slow, lines] = parted(orthonormal(free), columns);
+  append(free, slow);
+  Eigen::MatrixXd basis = orthonormal(std::move(free));
+  if (n - basis.cols() < kLeastSpare) return std::nullopt;
+  Eigen::VectorXd rest =
+      without_lines(linear.residuals[i], basis, lines, near_half(observation), gates);
+  rest -= basis * (basis.transpose() * rest).eval();
+  if (rest.norm() <= kRounding * observation.values.norm()) return std::nullopt;
+  return LinearProfile{std::move(basis), Eigen::MatrixXd(n, 0), std::move(rest),
+                       observation.profile->standard_uncertainty, kLeastOrder};
+}
+
+/// White, of the size of a residual that is only rounding.
+Noise rounding_noise(const Observation& observation, const Eigen::VectorXd& residual,
+                     Eigen::Index taken) {
+  const Eigen::Index spare = std::max<Eigen::Index>(residual.size() - taken, 1);
+  const double size = std::sqrt(residual.squaredNorm() / static_cast<double>(spare));
+  const std::optional<double>& declared = observation.profile->standard_uncertainty;
+  Noise noise;
+  noise.innovation =
+      declared.value_or(std::max(size, 1e-17 * std::max(rms(observation.values), 1.0)));
+  noise.declared = declared.has_value();
+  return noise;
+}
+
+/// Noise of the profiles named, from their whole residuals, the model left free.
+void from_whole_residuals(const Linearisation& linear, const std::vector<std::size_t>& which,
+                          const Gates& gates, std::vector<Noise>& noise) {
+  const Compressed compressed = compress(linear, noise);
+  const Eigen::MatrixXd basis =
+      analyse_rank(compressed.triangle, compressed.scale, gates.rank_tolerance).basis;
+  std::vector<LinearProfile> profiles;
+  std::vector<std::size_t> measured;
+  for (const std::size_t i : which) {
+    const Observation& observation = *linear.observations[i];
+    const Eigen::VectorXd& residual = linear.residuals[i];
+    if (rms(residual) <= kRounding * rms(observation.values)) {
+      noise[i] = rounding_noise(observation, residual, basis.cols() + observation.nuisances.cols());
+      continue;
+    }
+    measured.push_back(i);
+    profiles.push_back({observation.nuisances, linear.columns[i] * basis, residual,
+                        observation.profile->standard_uncertainty});
+  }
+  const Eigen::MatrixXd priors = linear.prior_rows * basis;
+  const std::vector<Noise> estimated =
+      estimate_noise(profiles, priors.transpose() * priors, gates);
+  for (std::size_t i = 0; i < measured.size(); ++i) noise[measured[i]] = estimated[i];
+}
+
+}  // namespace
+
+Eigen::Index slow_cosine_count(Eigen::Index n, const Gates& gates) {
+  return std::min(static_cast<Eigen::Index>(gates.slow_cosines),
+                  static_cast<Eigen::Index>(static_cast<double>(n) / gates.values_per_cosine));
+}
+
+Eigen::MatrixXd slow_cosines(Eigen::Index n, Eigen::Index count) {
+  Eigen::MatrixXd out(n, count);
+  for (Eigen::Index j = 0; j < count; ++j)
+    for (Eigen::Index i = 0; i < n; ++i)
+      out(i, j) = std::cos(kPi * static_cast<double>(j + 1) * (static_cast<double>(i) + 0.5) /
+                           static_cast<double>(n));
+  return out;
+}
+
+std::vector<Noise> first_noise(const Model& model) {
+  std::vector<Noise> out;
+  for (const Observation* observation : fitted_observations(model)) {
+    const Eigen::VectorXd rest =
+        observation->values -
+        observation->nuisances * fitted_nuisances(*observation, observation->values);
+    const std::optional<double>& declared = observation->profile->standard_uncertainty;
+    Noise& noise = out.emplace_back();
+    noise.innovation = declared.value_or(rms(rest) > 0.0 ? rms(rest) : 1.0);
+    noise.declared = declared.has_value();
+  }
+  return out;
+}
+
+std::vector<Noise> noise_model(const Linearisation& linear, const Gates& gates,
+                               const std::vector<Eigen::MatrixXd>& suspect) {
+  std::vector<Noise> out(linear.observations.size());
+  std::vector<char> whole(out.size(), 0);
+  parallel_for(out.size(), [&](std::size_t i) {
+    const std::optional<LinearProfile> fine = fine_band(linear, i, gates, suspect);
+    if (fine)
+      out[i] = estimate_noise({&*fine, 1}, Eigen::MatrixXd(0, 0), gates).front();
+    else
+      whole[i] = 1, out[i].innovation = std::max(rms(linear.residuals[i]), 1e-300);
+  });
+  std::vector<std::size_t> rest;
+  for (std::size_t i = 0; i < whole.size(); ++i)
+    if (whole[i] != 0) rest.push_back(i);
+  if (!rest.empty()) from_whole_residuals(linear, rest, gates, out);
+  return out;
+}
+
+}  // namespace slideway

@@ -1,0 +1,213 @@
+#include "search_round.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "slideway/base/parallel.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/left_out.hpp"
+#include "slideway/identify/noise_model.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr double kWorthRefining = 30.0;  // behind the best on the grid, or
+constexpr double kWorthShare = 0.6;      // of it: a line between two points of the grid loses some
+constexpr std::size_t kMostRefined = 12;
+constexpr int kNoiseRounds = 3;
+
+const Finding& best_of(const std::vector<Finding>& findings) {
+  return *std::min_element(findings.begin(), findings.end(),
+                           [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
+}
+
+/// What a hypothesis adds to the model, profile by profile: values left undescribed, and the columns
+/// of a finding and of its neighbours on the grid (its shape lies between them).
+std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
+                                                const Eigen::MatrixXd& undescribed,
+                                                const Finding* finding) {
+  Eigen::MatrixXd columns(0, 0);
+  if (finding) {
+    const Eigen::Index a = finding->candidate->amplitudes();
+    const Eigen::Index first = std::max<Eigen::Index>(finding->atom - 1, 0);
+    const Eigen::Index last = std::min(finding->atom + 1, finding->candidate->atoms() - 1);
+    columns = finding->candidate->columns.middleCols(first * a, (last - first + 1) * a);
+  }
+  std::vector<Eigen::MatrixXd> out;
+  Eigen::Index first = 0;
+  for (const Observation* observation : linear.observations) {
+    const Eigen::Index count = observation->values.size();
+    Eigen::MatrixXd& own = out.emplace_back(count, columns.cols() + undescribed.cols());
+    if (columns.cols() > 0) own.leftCols(columns.cols()) = columns.middleRows(first, count);
+    if (undescribed.cols() > 0)
+      own.rightCols(undescribed.cols()) = undescribed.middleRows(first, count);
+    first += count;
+  }
+  return out;
+}
+
+std::string implausible(const Refined& refined) {
+  const std::vector<Parameter>& parameters = refined.candidate->term.effect->parameters();
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const double value = refined.values[static_cast<Eigen::Index>(p)];
+    if (value < parameters[p].lower || value > parameters[p].upper)
+      return parameters[p].name + " = " + significant(value, 3) + " is physically impossible";
+  }
+  return "";
+}
+
+/// Whether two parts of the residual are one and the same rather than each its own.
+bool alike(const TestedCandidate& a, const TestedCandidate& b, const Gates& gates) {
+  return std::abs(a.fitted.dot(b.fitted)) > gates.alike * a.fitted.norm() * b.fitted.norm();
+}
+
+/// Candidates refined to their best shapes, best BIC first: those near the best, and on down while
+/// none of them passes.
+std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
+                                       const Whitened& data, std::vector<Finding> findings,
+                                       const Calibration& calibration) {
+  std::ranges::stable_sort(findings, {}, &Finding::delta_bic);
+  const auto test = [&](const Finding& finding) {
+    TestedCandidate tested;
+    tested.refined = refine(model, data, finding);
+    tested.p_value = calibration.p_value(-tested.refined.delta_bic);
+    tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
+    tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
+    return tested;
+  };
+  const auto worth = [&](double most) {
+    const auto first_not = std::ranges::find_if(
+        findings, [&](const Finding& f) { return f.rank == 0 || f.delta_bic > most; });
+    return std::min<std::size_t>(first_not - findings.begin(), kMostRefined);
+  };
+  const double best = findings.front().delta_bic;
+  std::vector<TestedCandidate> out(worth(std::max(best + kWorthRefining, kWorthShare * best)));
+  parallel_for(out.size(), [&](std::size_t i) { out[i] = test(findings[i]); });
+  const std::size_t pay = worth(kWorthRefining - model.gates.delta_bic);
+  const auto passes = [&](const TestedCandidate& t) { return t.refused(model.gates).empty(); };
+  while (out.size() < pay && std::ranges::none_of(out, passes))
+    out.push_back(test(findings[out.size()]));
+  std::ranges::stable_sort(out, {}, [](const auto& each) { return each.refined.delta_bic; });
+  return out;
+}
+
+/// The data made white for a model that lacks what the candidates can bring, and their findings:
+/// the noise is that of the hypothesis which adds the best of them.
+std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, const Solution& fit,
+                                                        const Eigen::MatrixXd& undescribed,
+                                                        const Candidates& candidates) {
+  const auto noise_beside = [&](const Finding* suspect) {
+    return noise_model(fit.linear, model.gates,
+                       columns_by_profile(fit.linear, undescribed, suspect));
+  };
+  Whitened data(fit.linear, noise_beside(nullptr), undescribed);
+  if (candidates.empty()) return {std::move(data), std::vector<Finding>{}};
+  std::vector<Finding> findings = search(data, candidates);
+  for (int round = 0; round < kNoiseRounds && best_of(findings).delta_bic < 0.0; ++round) {
+    const Finding suspect = best_of(findings);
+    data = Whitened(fit.linear, noise_beside(&suspect), undescribed);
+    findings = search(data, candidates);
+    if (best_of(findings).candidate == suspect.candidate) break;
+  }
+  return {std::move(data), std::move(findings)};
+}
+
+}  // namespace
+
+std::string TestedCandidate::refused(const Gates& gates) const {
+  if (refined.projection.rank == 0) return "the model makes the same columns";
+  if (refined.delta_bic > -gates.delta_bic)
+    return "gains too little: difference in BIC " + significant(refined.delta_bic, 3);
+  if (p_value > gates.significance) return "noise gives as much: p = " + significant(p_value, 2);
+  if (std::string why = implausible(refined); !why.empty()) return why;
+  if (refined.at_end) return "its shape runs to the end of what is possible";
+  if (refined.size_in_uncertainties < gates.size)
+    return "its size is only " + significant(refined.size_in_uncertainties, 2) +
+           " of its standard uncertainties";
+  if (held_out && !held_out->helps) return "it predicts left-out profiles worse";
+  return "";
+}
+
+bool TestedCandidate::is_possible() const {
+  return refined.projection.rank > 0 && implausible(refined).empty();
+}
+
+const TestedCandidate* SearchRound::choice(const Gates& gates,
+                                           const std::vector<std::string>& excluded) const {
+  for (auto each = tested.begin(); each != tested.end(); ++each) {
+    if (!each->refused(gates).empty() || std::ranges::count(excluded, each->name()) > 0) continue;
+    const auto stands_before = [&](const TestedCandidate& better) {
+      return better.refined.delta_bic < each->refined.delta_bic - gates.tie_bic &&
+             alike(better, *each, gates);
+    };
+    if (std::none_of(tested.begin(), each, stands_before)) return &*each;
+  }
+  return nullptr;
+}
+
+std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& chosen,
+                                                        const Gates& gates) const {
+  std::vector<const TestedCandidate*> out;
+  const auto unknowns = [](const TestedCandidate& each) {
+    return each.refined.candidate->unknowns(each.refined.projection.rank);
+  };
+  for (const TestedCandidate& each : tested) {
+    const bool counts = each.refused(gates).empty() ||
+                        (each.is_possible() &&
+                         (unknowns(each) <= unknowns(chosen) || is_carriage_effect(chosen.name())));
+    const bool known =
+        std::ranges::any_of(out, [&](const auto* other) { return other->name() == each.name(); });
+    if (counts && !known && each.name() != chosen.name() &&
+        each.refined.delta_bic <= chosen.refined.delta_bic + gates.tie_bic &&
+        alike(each, chosen, gates))
+      out.push_back(&each);
+  }
+  return out;
+}
+
+Eigen::MatrixXd undescribed_columns(const Model& model, const Solution& fit,
+                                    const std::vector<Noise>& noise,
+                                    const Eigen::VectorXd& suspect) {
+  std::vector<Eigen::Index> rows;
+  Eigen::Index first = 0;
+  for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
+    const Observation& observation = *fit.linear.observations[i];
+    const Eigen::VectorXd curve = steep_curve(model, fit.estimate, observation) +
+                                  suspect.segment(first, observation.values.size());
+    const ValueIndices undescribed = undescribed_values(model, fit.estimate, observation, curve,
+                                                        noise[i].standard_deviation());
+    const ValueIndices known = left_out_values(observation);
+    for (const Eigen::Index value : undescribed)
+      if (!std::ranges::binary_search(known, value)) rows.push_back(first + value);
+    first += observation.values.size();
+  }
+  Eigen::MatrixXd out =
+      Eigen::MatrixXd::Zero(first + fit.linear.prior_rows.rows(), std::ssize(rows));
+  for (std::size_t j = 0; j < rows.size(); ++j) out(rows[j], static_cast<Eigen::Index>(j)) = 1.0;
+  return out;
+}
+
+SearchRound search_round(const Model& model, const Solution& fit, const Candidates& candidates,
+                         std::optional<Calibration>& calibration,
+                         const std::function<void(double)>& progress) {
+  const Eigen::MatrixXd none(0, 0);
+  auto [data, findings] = whiten_beside(model, fit, none, candidates);
+  SearchRound out{std::move(data), {}};
+  if (candidates.empty()) return out;
+  if (!calibration) calibration = calibrate(out.data, candidates, model.gates, progress);
+  out.tested = test_best(model, fit, out.data, findings, *calibration);
+  if (out.tested.empty() ||
+      !is_steep_at_centre(*out.tested.front().refined.candidate->term.effect))
+    return out;
+  const Refined& best = out.tested.front().refined;
+  const Eigen::MatrixXd undescribed = undescribed_columns(
+      model, fit, out.data.noise(), best.columns * best.projection.amplitudes);
+  if (undescribed.cols() == 0) return out;
+  std::tie(out.data, findings) = whiten_beside(model, fit, undescribed, candidates);
+  out.tested = test_best(model, fit, out.data, findings, *calibration);
+  return out;
+}
+
+}  // namespace slideway

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "calibration.hpp"
+#include "holdout.hpp"
+#include "slideway/identify/gates.hpp"
+#include "slideway/trace/trace.hpp"
+
+namespace slideway {
+
+/// A candidate at its best shape, with the statistics the gates are held against.
+struct TestedCandidate {
+  Refined refined;
+  double p_value = 1.0;
+  std::optional<HeldOut> held_out;
+  Eigen::VectorXd fitted;  // what it takes of the white residual
+
+  [[nodiscard]] const std::string& name() const { return refined.candidate->name(); }
+  /// Why it is not accepted; empty: it passes.
+  [[nodiscard]] std::string refused(const Gates& gates) const;
+  /// Physically possible, and not of the model's own span.
+  [[nodiscard]] bool is_possible() const;
+};
+
+/// A search of what one model leaves over.
+struct SearchRound {
+  Whitened data;
+  std::vector<TestedCandidate> tested;  // best BIC first
+
+  /// The candidate to accept, none of `excluded`: the one of least BIC that passes, if no better
+  /// one that does not pass takes the same part of the residual. Null: none.
+  [[nodiscard]] const TestedCandidate* choice(const Gates& gates,
+                                              const std::vector<std::string>& excluded = {}) const;
+
+  /// Other effects that take the same part of the residual, within tie_bic of `chosen`: those that
+  /// pass, and those too uncertain to pass that need no more unknowns. Where the chosen one is a
+  /// carriage's polynomial, which comes near every smooth effect, all that are possible.
+  [[nodiscard]] std::vector<const TestedCandidate*> rivals(const TestedCandidate& chosen,
+                                                           const Gates& gates) const;
+};
+
+/// @param calibration  null distribution of the search; made here if it is not there yet
+/// @param progress     is given the part of that which is done
+SearchRound search_round(const Model& model, const Solution& fit, const Candidates& candidates,
+                         std::optional<Calibration>& calibration,
+                         const std::function<void(double)>& progress = {});
+
+/// Unit columns, stacked as Whitened has its rows, for low-band values that an effect under
+/// suspicion leaves undescribed beyond those already left out (left_out.hpp).
+/// @param suspect  its stacked low band
+Eigen::MatrixXd undescribed_columns(const Model& model, const Solution& fit,
+                                    const std::vector<Noise>& noise,
+                                    const Eigen::VectorXd& suspect);
+
+}  // namespace slideway

@@ -1,0 +1,217 @@
+#include "selection.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fit_numbers.hpp"
+#include "outcome.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
+
+namespace slideway {
+namespace {
+
+using Effects = std::vector<AcceptedEffect>;
+
+/// "" if the residuals, in the units of the report, fall; else why the effect does not help.
+std::string worsens(const FitResult& without, const FitResult& with) {
+  const auto rises = [](const std::optional<double>& before, const std::optional<double>& after) {
+    return before && after && *after > *before;
+  };
+  if (const auto before = holdout_rms_um(without); before && !(*holdout_rms_um(with) < *before))
+    return "it predicts the held-out profiles worse";
+  if (rises(without.rms_um, with.rms_um) || rises(without.rms_urad, with.rms_urad))
+    return "the residual rises with it";
+  return "";
+}
+
+class Selector {
+ public:
+  Selector(const Problem& problem, ModelExtender& extender, const Gates& gates,
+           const Progress& progress)
+      : problem_(problem), extender_(extender), gates_(gates), progress_(progress) {}
+
+  Selection run() {
+    grow();
+    exchange();
+    take_back();
+    name_rivals();
+    out_.lack_of_fit = left_over();
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] LackOfFit left_over() {
+    const FittedModel& fitted = extender_.extended(out_.effects);
+    return lack_of_fit(extender_.search(out_.effects).data, fitted.fit.linear, gates_);
+  }
+
+  /// The effect a candidate becomes, with the statistics of the search that found it.
+  AcceptedEffect accepted(const SearchRound& round, const TestedCandidate& choice) {
+    AcceptedEffect out{choice.refined.candidate, choice.refined.shape, {}};
+    out.round.accepted = choice.name();
+    out.round.delta_bic = choice.refined.delta_bic;
+    out.round.p_value = choice.p_value;
+    out.round.candidates = tried(round, gates_, &choice, extender_.summary({}).rms_um);
+    if (choice.held_out) {
+      out.round.before_holdout_rms_um = choice.held_out->before_um;
+      out.round.after_holdout_rms_um = choice.held_out->after_um;
+    }
+    return out;
+  }
+
+  void grow() {
+    std::vector<std::string> ruled_out;
+    while (std::ssize(out_.effects) < problem_.trace.max_effects) {
+      const SearchRound& round = extender_.search(out_.effects);
+      const TestedCandidate* choice = round.choice(gates_, ruled_out);
+      if (!choice) return;
+      Effects more = out_.effects;
+      more.push_back(accepted(round, *choice));
+      const std::string why = reason_against(more, more.size() - 1);
+      if (!why.empty()) {
+        ruled_out.push_back(choice->name());
+        out_.notes.push_back(choice->name() + " was refused: " + why);
+        continue;
+      }
+      out_.effects = std::move(more);
+      drop_superfluous(ruled_out);
+    }
+  }
+
+  /// Why an effect of a set does not help beside the others; "": it does. A carriage's polynomial
+  /// comes near everything smooth: it must outdo a process without a name.
+  std::string reason_against(const Effects& effects, std::size_t which) {
+    const Effects others = all_but(effects, which);
+    std::string why = worsens(extender_.summary(others), extender_.summary(effects));
+    if (why.empty() && is_carriage_effect(effects[which].name()) &&
+        !outdoes_process(effects, which))
+      why = "a smooth process without a name fits as well";
+    return why;
+  }
+
+  /// Whether an effect says more than a process without a name would in its place.
+  bool outdoes_process(const Effects& effects, std::size_t which) {
+    const FittedModel& with = extender_.extended(effects);
+    const FittedModel& without = extender_.extended(all_but(effects, which));
+    const std::vector<Noise>& noise = with.fit.noise;
+    const Whitened with_it(with.fit.linear, noise), without_it(without.fit.linear, noise);
+    const double gain = (without_it.residual().squaredNorm() - with_it.residual().squaredNorm()) +
+                        find_structure(with.model, with_it, with.fit.linear).gain() -
+                        find_structure(without.model, without_it, without.fit.linear).gain();
+    const Candidate& candidate = *effects[which].candidate;
+    return gain - penalty(with_it, candidate.unknowns(candidate.amplitudes())) >=
+           gates_.delta_bic;
+  }
+
+  /// -ΔBIC of an effect beside the others of the set.
+  double gain_beside(const Effects& effects, std::size_t which) {
+    const FittedModel& with = extender_.extended(effects);
+    const FittedModel& without = extender_.extended(all_but(effects, which));
+    const Whitened data(without.fit.linear, with.fit.noise);
+    const AcceptedEffect& effect = effects[which];
+    const Projection own =
+        project(data, stacked_columns(without.model, effect.candidate->term, effect.shape,
+                                      data.rows() - data.values()));
+    return own.gain - penalty(data, effect.candidate->unknowns(own.rank));
+  }
+
+  /// Earlier effects that the last one has made superfluous leave.
+  void drop_superfluous(std::vector<std::string>& ruled_out) {
+    for (std::size_t i = 0; i + 1 < out_.effects.size();) {
+      if (gain_beside(out_.effects, i) >= gates_.delta_bic) {
+        ++i;
+        continue;
+      }
+      ruled_out.push_back(out_.effects[i].name());
+      leave(i, out_.effects.back().name() + " has made it superfluous");
+    }
+  }
+
+  void leave(std::size_t which, const std::string& why) {
+    out_.left.emplace_back(out_.effects[which].name(), why);
+    out_.effects = all_but(std::move(out_.effects), which);
+  }
+
+  /// Each effect once more against all candidates, the others as they are: a better one takes its
+  /// place.
+  void exchange() {
+    for (std::size_t i = 0; i < out_.effects.size(); ++i) {
+      tell("comparing rivals", i);
+      const SearchRound& round = extender_.search(all_but(out_.effects, i));
+      const TestedCandidate* best = round.choice(gates_);
+      if (!best) continue;
+      const TestedCandidate* own = find_tested(round, out_.effects[i], gates_);
+      if (own && own->refined.delta_bic <= best->refined.delta_bic + gates_.exchange_bic) best = own;
+      if (best->refined.candidate == out_.effects[i].candidate) continue;
+      Effects changed = out_.effects;
+      changed[i] = accepted(round, *best);
+      if (!reason_against(changed, i).empty()) continue;
+      if (best->name() != out_.effects[i].name())
+        out_.left.emplace_back(out_.effects[i].name(), best->name() + " fits better");
+      out_.effects = std::move(changed);
+    }
+  }
+
+  /// Takes back what does not pass every gate beside the others as they are now.
+  void take_back() {
+    for (std::size_t i = out_.effects.size(); i-- > 0;) {
+      const std::string why = reason_to_leave(i);
+      if (why.empty()) continue;
+      leave(i, why);
+      i = out_.effects.size();  // the others once more
+    }
+  }
+
+  std::string reason_to_leave(std::size_t i) {
+    const AcceptedEffect& effect = out_.effects[i];
+    const SearchRound& round = extender_.search(all_but(out_.effects, i));
+    if (!find_tested(round, effect, gates_)) {
+      for (const TestedCandidate& each : round.tested)
+        if (each.refined.candidate == effect.candidate) return each.refused(gates_);
+      return "beside the others it gains too little";
+    }
+    std::string why = reason_against(out_.effects, i);
+    if (why.empty() && left_over().significant(gates_) && !outdoes_process(out_.effects, i))
+      why = "a smooth process without a name fits as well";
+    return why;
+  }
+
+  void name_rivals() {
+    for (std::size_t i = 0; i < out_.effects.size(); ++i) {
+      AcceptedEffect& effect = out_.effects[i];
+      const SearchRound& round = extender_.search(all_but(out_.effects, i));
+      for (const TestedCandidate* rival : round.rivals(*find_tested(round, effect, gates_), gates_))
+        effect.round.ambiguous_with.push_back(rival->name());
+    }
+  }
+
+  void tell(const std::string& stage, std::size_t i) const {
+    if (progress_)
+      progress_(stage, static_cast<double>(i) / static_cast<double>(out_.effects.size()));
+  }
+
+  const Problem& problem_;
+  ModelExtender& extender_;
+  const Gates& gates_;
+  const Progress& progress_;
+  Selection out_;
+};
+
+}  // namespace
+
+const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,
+                                   const Gates& gates) {
+  const auto is_it = [&](const TestedCandidate& each) {
+    return each.name() == effect.name() && each.refused(gates).empty();
+  };
+  const auto found = std::ranges::find_if(round.tested, is_it);
+  return found == round.tested.end() ? nullptr : &*found;
+}
+
+Selection select_effects(const Problem& problem, ModelExtender& extender, const Gates& gates,
+                         const Progress& progress) {
+  return Selector(problem, extender, gates, progress).run();
+}
+
+}  // namespace slideway

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "extended_model.hpp"
+#include "structure.hpp"
+
+namespace slideway {
+
+/// Which effects the gates let into the model.
+struct Selection {
+  std::vector<AcceptedEffect> effects;  // with their rivals
+  std::vector<std::pair<std::string, std::string>> left;  // accepted, then taken back; why
+  std::vector<std::string> notes;
+  LackOfFit lack_of_fit;  // of what these effects leave
+};
+
+/// Adds effects one by one, each the best of a search; exchanges them for better ones; takes back
+/// those that do not pass every gate beside the others as they are in the end.
+///
+/// A round adds an effect or rules one out, and what has left stays out: with c names the search
+/// ends after 2 c rounds at most. Every later step looks at subsets of what was found once. No set
+/// of effects is searched twice (ModelExtender::search()).
+Selection select_effects(const Problem& problem, ModelExtender& extender, const Gates& gates,
+                         const Progress& progress);
+
+/// The candidate of a search that is this effect and passes, or null.
+const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,
+                                   const Gates& gates);
+
+}  // namespace slideway
