@@ -47,6 +47,35 @@ Eigen::VectorXd parameter_scale(const Eigen::MatrixXd& jacobian, const Eigen::Ve
   return inverse.colwise().norm().transpose().unaryExpr(or_one);
 }
 
+bool is_linear_least_squares(const Model& model) {
+  return model.shapes() == 0 &&
+         std::ranges::all_of(model.observations, [](const Observation& observation) {
+           return observation.profile->loss == Loss::none;
+         });
+}
+
+/// Iterative refinement: what rounding has left of the normal equations is solved for once more.
+Compressed refined(const Model& model, Solution& fit) {
+  constexpr double kRounding = 1e-15;
+  constexpr int kMostSteps = 3;
+  Compressed compressed = compress(fit.linear, fit.noise);
+  fit.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
+  const Eigen::MatrixXd& basis = fit.rank.basis;
+  for (int step = 0; step < kMostSteps && is_linear_least_squares(model); ++step) {
+    const Eigen::VectorXd change =
+        basis * (basis.transpose() * (compressed.triangle.transpose() * compressed.target));
+    const double size = compressed.scale.cwiseProduct(change).norm();
+    fit.estimate.amplitudes += change;
+    for (std::size_t i = 0; i < compressed.profiles.size(); ++i)
+      fit.estimate.nuisances[i].head(compressed.profiles[i].levelling()) +=
+          compressed.profiles[i].levelled(change);
+    settle_residuals(model, fit.estimate, fit.linear);
+    if (!(size > kRounding * compressed.scale.cwiseProduct(fit.estimate.amplitudes).norm())) break;
+    compressed = compress(fit.linear, fit.noise);
+  }
+  return compressed;
+}
+
 /// Moves along the null directions to where their own parameters are 0: no prediction changes.
 void fix_gauge(const Model& model, const Compressed& compressed, Solution& fit) {
   if (fit.null.own.empty()) return;
@@ -65,8 +94,7 @@ void fix_gauge(const Model& model, const Compressed& compressed, Solution& fit) 
 
 /// Rank, gauge and uncertainty at the estimate.
 void conclude(const Model& model, Solution& fit) {
-  const Compressed compressed = compress(fit.linear, fit.noise);
-  fit.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
+  const Compressed compressed = refined(model, fit);
   fit.parameters = all_parameters(model, fit.estimate);
   fit.null = null_directions(model, fit.rank.null_space, fit.parameters.jacobian,
                              parameter_scale(fit.parameters.jacobian, compressed.scale));
@@ -85,7 +113,7 @@ Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   out.linear = linearise(model, start);
   SolveSummary solved = solve(model, out.linear, out.noise, start);
   for (int round = 0; round < kMostRounds; ++round) {
-    std::vector<Noise> noise = noise_model(out.linear, model.gates);
+    std::vector<Noise> noise = noise_under(out.linear, model.gates);
     const bool settled = has_settled(out.noise, noise);
     out.noise = std::move(noise);
     if (settled) break;

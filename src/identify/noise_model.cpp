@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <numeric>
 
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/identifiability.hpp"
+#include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
@@ -250,8 +252,8 @@ std::vector<Noise> first_noise(const Model& model) {
   return out;
 }
 
-std::vector<Noise> noise_model(const Linearisation& linear, const Gates& gates,
-                               const std::vector<Eigen::MatrixXd>& suspect) {
+std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
+                                const std::vector<Eigen::MatrixXd>& suspect) {
   std::vector<Noise> out(linear.observations.size());
   std::vector<char> whole(out.size(), 0);
   parallel_for(out.size(), [&](std::size_t i) {
@@ -266,6 +268,15 @@ std::vector<Noise> noise_model(const Linearisation& linear, const Gates& gates,
     if (whole[i] != 0) rest.push_back(i);
   if (!rest.empty()) from_whole_residuals(linear, rest, gates, out);
   return out;
+}
+
+std::vector<Noise> noise_under(const Linearisation& linear, const Gates& gates) {
+  std::vector<Noise> noise = noise_beside(linear, gates);
+  if (lack_of_fit(linear, noise, gates).significant(gates)) return noise;
+  std::vector<std::size_t> all(noise.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  from_whole_residuals(linear, all, gates, noise);
+  return noise;
 }
 
 }  // namespace slideway

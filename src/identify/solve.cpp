@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "residual.hpp"
-#include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/shape_grid.hpp"
 
 namespace slideway {
@@ -26,6 +25,7 @@ ceres::Solver::Options solver_options() {
   options.parameter_tolerance = 1e-13;
   options.initial_trust_region_radius = 1e16;  // one undamped step solves a linear problem
   options.max_trust_region_radius = 1e32;
+  options.max_num_consecutive_invalid_steps = 100;  // at the optimum a step is rounding
   return options;
 }
 
@@ -118,8 +118,9 @@ class FitProblem {
   ceres::Problem problem_;
 };
 
-/// What is left of the values, where they are left out nothing.
-void set_residuals(const Model& model, Estimate& estimate, Linearisation& linear) {
+}  // namespace
+
+void settle_residuals(const Model& model, Estimate& estimate, Linearisation& linear) {
   for (std::size_t i = 0; i < linear.observations.size(); ++i)
     estimate.nuisances[i].tail(linear.observations[i]->left_out()).setZero();
   relinearise(model, estimate, linear);
@@ -134,19 +135,7 @@ void set_residuals(const Model& model, Estimate& estimate, Linearisation& linear
   }
 }
 
-/// One step of iterative refinement: what rounding has left of the normal equations.
-void refine_linear(const Model& model, const std::vector<Noise>& noise, Estimate& estimate,
-                   Linearisation& linear) {
-  const Compressed rest = compress(linear, noise);
-  const Eigen::MatrixXd basis =
-      analyse_rank(rest.triangle, rest.scale, model.gates.rank_tolerance).basis;
-  const Eigen::VectorXd change =
-      basis * (basis.transpose() * (rest.triangle.transpose() * rest.target));
-  estimate.amplitudes += change;
-  for (std::size_t i = 0; i < rest.profiles.size(); ++i)
-    estimate.nuisances[i].head(rest.profiles[i].levelling()) += rest.profiles[i].levelled(change);
-  set_residuals(model, estimate, linear);
-}
+namespace {
 
 /// Pseudo-values (Huber 1981): the residual of a profile with a loss as a quadratic loss would have
 /// it for the same estimate and covariance, ψ(w) / mean ψ' for each white value w.
@@ -226,14 +215,7 @@ SolveSummary solve(const Model& model, Linearisation& linear, const std::vector<
   out.converged = summary.termination_type == ceres::CONVERGENCE;
   out.message = summary.message;
   out.estimate = problem.unknowns().estimate(model);
-  set_residuals(model, out.estimate, linear);
-  const bool linear_least_squares =
-      model.shapes() == 0 &&
-      std::ranges::all_of(linear.observations, [](const Observation* observation) {
-        return observation->profile->loss == Loss::none;
-      });
-  if (linear_least_squares && model.amplitudes() > 0)
-    refine_linear(model, noise, out.estimate, linear);
+  settle_residuals(model, out.estimate, linear);
   count_by_loss(linear, noise);
   out.shape_at_bound = bounds_met(model, out.estimate);
   return out;

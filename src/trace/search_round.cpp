@@ -98,16 +98,16 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
 std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, const Solution& fit,
                                                         const Eigen::MatrixXd& undescribed,
                                                         const Candidates& candidates) {
-  const auto noise_beside = [&](const Finding* suspect) {
-    return noise_model(fit.linear, model.gates,
+  const auto noise_of = [&](const Finding* suspect) {
+    return noise_beside(fit.linear, model.gates,
                        columns_by_profile(fit.linear, undescribed, suspect));
   };
-  Whitened data(fit.linear, noise_beside(nullptr), undescribed);
+  Whitened data(fit.linear, noise_of(nullptr), undescribed);
   if (candidates.empty()) return {std::move(data), std::vector<Finding>{}};
   std::vector<Finding> findings = search(data, candidates);
   for (int round = 0; round < kNoiseRounds && best_of(findings).delta_bic < 0.0; ++round) {
     const Finding suspect = best_of(findings);
-    data = Whitened(fit.linear, noise_beside(&suspect), undescribed);
+    data = Whitened(fit.linear, noise_of(&suspect), undescribed);
     findings = search(data, candidates);
     if (best_of(findings).candidate == suspect.candidate) break;
   }

@@ -7,6 +7,7 @@
 #include "outcome.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "structure.hpp"
 
 namespace slideway {
 namespace {
@@ -43,7 +44,7 @@ class Selector {
  private:
   [[nodiscard]] LackOfFit left_over() {
     const FittedModel& fitted = extender_.extended(out_.effects);
-    return lack_of_fit(extender_.search(out_.effects).data, fitted.fit.linear, gates_);
+    return lack_of_fit(fitted.fit.linear, extender_.search(out_.effects).data.noise(), gates_);
   }
 
   /// The effect a candidate becomes, with the statistics of the search that found it.

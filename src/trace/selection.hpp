@@ -1,7 +1,7 @@
 #pragma once
 
 #include "extended_model.hpp"
-#include "structure.hpp"
+#include "slideway/identify/lack_of_fit.hpp"
 
 namespace slideway {
 

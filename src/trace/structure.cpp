@@ -6,14 +6,10 @@
 #include <cmath>
 
 #include "slideway/identify/linear_algebra.hpp"
-#include "slideway/base/distribution.hpp"
-#include "slideway/identify/noise_model.hpp"
 
 namespace slideway {
 namespace {
 
-// Largest variance of ln(long-run variance) that a flat likelihood is taken for.
-constexpr double kMostSpread = 1.0;
 constexpr Eigen::Index kCosines = 24;
 constexpr double kLengths[] = {0.03, 0.05, 0.1, 0.2, 0.4, 0.8};  // of the clock's range
 constexpr double kSizes[] = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0};  // of the noise
@@ -201,55 +197,6 @@ Structure find_structure(const Model& model, const Whitened& data, const Lineari
   }
   for (auto& [symbol, evidence] : out.log_evidence) evidence -= best_evidence;
   return found;
-}
-
-namespace {
-
-/// Orthonormal basis of the white slow band outside the model's span.
-Eigen::MatrixXd slow_band(const Whitened& data, const Linearisation& linear, const Gates& gates) {
-  Eigen::Index total = 0, next = 0;
-  for (const Observation* observation : linear.observations)
-    total += slow_cosine_count(observation->values.size(), gates);
-  Eigen::MatrixXd slow = stack(linear, total, [&](std::size_t i) {
-    const Eigen::Index n = linear.observations[i]->values.size();
-    const Eigen::Index own = slow_cosine_count(n, gates);
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n, total);
-    rows.middleCols(next, own) = slow_cosines(n, own);
-    next += own;
-    return rows;
-  });
-  if (total == 0) return slow;
-  data.whiten(slow);
-  for (Eigen::Index j = 0; j < slow.cols(); ++j) slow.col(j).normalize();
-  slow -= data.basis() * (data.basis().transpose() * slow).eval();
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(1e-6);
-  qr.compute(slow);
-  return qr.householderQ() * Eigen::MatrixXd::Identity(slow.rows(), qr.rank());
-}
-
-}  // namespace
-
-bool LackOfFit::significant(const Gates& gates) const {
-  return p_value < gates.lack_of_fit_p && ratio > gates.lack_of_fit_ratio;
-}
-
-LackOfFit lack_of_fit(const Whitened& data, const Linearisation& linear, const Gates& gates) {
-  const Eigen::MatrixXd basis = slow_band(data, linear, gates);
-  if (basis.cols() == 0) return {};
-  const double found = (basis.transpose() * data.residual()).squaredNorm();
-  double mean = 0.0, variance = 0.0;
-  for (std::size_t i = 0; i < data.observations(); ++i) {
-    const double share = basis.middleRows(data.first_row(i), data.count(i)).squaredNorm();
-    const Noise& noise = data.noise()[i];
-    const double spread = std::min(noise.log_long_run_variance(), kMostSpread);
-    const double own = share * std::exp(0.5 * spread);
-    const double below = noise.is_estimated() ? std::pow(gates.noise_extrapolation, 2) : 0.0;
-    mean += own;
-    variance += own * own * (std::expm1(spread) + below);
-  }
-  variance += 2.0 * mean * mean / static_cast<double>(basis.cols());
-  return {gamma_tail(mean * mean / variance, found * mean / variance), found / mean};
 }
 
 Unnamed describe(const Structure& found, const Whitened& data, const Linearisation& linear) {

@@ -9,18 +9,20 @@
 
 namespace slideway {
 
-/// The noise of every fitted profile under one hypothesis, by restricted maximum likelihood. Fit,
-/// search, detection limits, predictions and lack of fit use this one.
-///
-/// A missing effect is not taken for noise. The estimate is made from what is faster than a band of
+/// The noise of every fitted profile beside what a model may lack, by restricted maximum likelihood:
+/// a missing effect is not taken for noise. The estimate is made from what is faster than a band of
 /// slow cosines, which is left free; columns of the model as slow as that are left free with it.
 /// Other columns, and lines that stand out of the spectrum, are taken out of the residual first.
 /// A profile with too few values for that is estimated from its whole residual, the model left free.
 ///
 /// @param linear   the model at its estimate
-/// @param suspect  per fitted observation: low-band columns of an effect the hypothesis adds, or none
-std::vector<Noise> noise_model(const Linearisation& linear, const Gates& gates,
-                               const std::vector<Eigen::MatrixXd>& suspect = {});
+/// @param suspect  per fitted observation: low-band columns of an effect under suspicion, or none
+std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
+                                const std::vector<Eigen::MatrixXd>& suspect = {});
+
+/// The noise of every fitted profile under the model: from the whole residual, unless the slow band
+/// holds structure (lack_of_fit()); then noise_beside() it.
+std::vector<Noise> noise_under(const Linearisation& linear, const Gates& gates);
 
 /// White noise of the declared size, or of the size of the values after levelling: what a fit begins
 /// with.

@@ -42,6 +42,9 @@ Linearisation linearise(const Model& model, const Estimate& estimate);
 /// The same at another estimate; columns are computed again only where a shape could move them.
 void relinearise(const Model& model, const Estimate& estimate, Linearisation& linear);
 
+/// relinearise() with nothing left of the values that are left out.
+void settle_residuals(const Model& model, Estimate& estimate, Linearisation& linear);
+
 /// Parameters of all terms and their Jacobian: P values, P by (A + S).
 ParameterValues all_parameters(const Model& model, const Estimate& estimate);
 
