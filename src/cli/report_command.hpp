@@ -59,7 +59,4 @@ class ProblemCommand : public ReportCommand {
   bool strict_ = false, ignore_checksum_ = false;
 };
 
-/// --data DIR, as read_problem() wants it.
-std::optional<std::filesystem::path> data_directory(const std::string& option);
-
 }  // namespace slideway

@@ -82,7 +82,7 @@ TEST(Documents, FaultsAreWhatTheProgramSays) {
       "`reason`, and stops no other: `bad_problem`, `bad_data` and `failed` as the exit codes 2, "
       "3\n"
       "and 1 of `identify`, `timeout`, `out_of_memory`, `crashed`\n"
-      "(`cli/Batch.OneBadItemStopsAndChangesNoOther`, `batch/Workers`).\n\n"
+      "(`cli/Batch.OneBadItemStopsAndChangesNoOther`, `batch/ProcessPool`).\n\n"
       "A file is written whole or not at all, also when a signal ends the program while it writes\n"
       "(`cli/Signal/Interrupted`, `base/WriteFile`). Every reader is fuzzed: `./dev fuzz`.\n" +
       section("Problem file", bad_problems()) + section("Data", bad_data()) +

@@ -10,11 +10,11 @@
 namespace slideway {
 namespace {
 
-const std::string kSquareness = "squareness.dbeta_xz";
+const std::string kSquarenessName = "squareness.dbeta_xz";
 
 /// An item that knows one parameter: value and standard uncertainty.
 PoolItem reading(const std::string& id, double value, double u) {
-  return {id, {}, {{kSquareness}, {"rad"}, {{1.0 / u}}, {value / u}}};
+  return {id, {}, {{kSquarenessName}, {"rad"}, {{1.0 / u}}, {value / u}}};
 }
 
 const FittedParameter& parameter(const PooledMachine& machine, const std::string& name) {
@@ -27,9 +27,9 @@ const FittedParameter& parameter(const PooledMachine& machine, const std::string
 TEST(Pool, OfReadingsIsTheirWeightedMean) {
   const PooledMachine pooled =
       pool("M", {reading("a", 10.0, 1.0), reading("b", 11.0, 2.0), reading("c", 9.0, 2.0)});
-  EXPECT_NEAR(parameter(pooled, kSquareness).value.value(), (10.0 + 11.0 / 4 + 9.0 / 4) / 1.5,
+  EXPECT_NEAR(parameter(pooled, kSquarenessName).value.value(), (10.0 + 11.0 / 4 + 9.0 / 4) / 1.5,
               1e-12);
-  EXPECT_NEAR(parameter(pooled, kSquareness).standard_uncertainty.value(), std::sqrt(1.0 / 1.5),
+  EXPECT_NEAR(parameter(pooled, kSquarenessName).standard_uncertainty.value(), std::sqrt(1.0 / 1.5),
               1e-12);
 }
 
@@ -45,16 +45,16 @@ TEST(Pool, EnIsThatOfTheDifferenceFromTheRest) {
 }
 
 TEST(Pool, DeterminesTogetherWhatNoItemDoesAlone) {
-  const std::vector<std::string> names{kSquareness, "vertical_straightness.c2", "thermal.a"},
+  const std::vector<std::string> names{kSquarenessName, "vertical_straightness.c2", "thermal.a"},
       units{"rad", "mm^-1", "um"};
   // Sum and difference of the two; what is the item's own is free in each.
   const PoolItem sum{"sum", {}, {names, units, {{1.0, 1.0, 0.5}, {0.0, 0.0, 2.0}}, {8.0, 2.0}}};
   const PoolItem difference{
       "difference", {}, {names, units, {{1.0, -1.0, 3.0}, {0.0, 0.0, 1.0}}, {5.0, 1.0}}};
-  EXPECT_FALSE(parameter(pool("M", {sum}), kSquareness).identifiable);
+  EXPECT_FALSE(parameter(pool("M", {sum}), kSquarenessName).identifiable);
   const PooledMachine pooled = pool("M", {sum, difference});
   // 1.0 is the item's own of both: a + b = 7.5, a - b = 2.
-  EXPECT_NEAR(parameter(pooled, kSquareness).value.value(), 4.75, 1e-12);
+  EXPECT_NEAR(parameter(pooled, kSquarenessName).value.value(), 4.75, 1e-12);
   EXPECT_NEAR(parameter(pooled, names[1]).value.value(), 2.75, 1e-12);
   EXPECT_EQ(pooled.parameters.size(), 2U);
   EXPECT_FALSE(pooled.items[0].En) << "the other says nothing of what this one says";
@@ -72,7 +72,7 @@ TEST(Pool, OneAmongThreeIsFlaggedAndLeftOut) {
   EXPECT_TRUE(pooled.items[0].fits);
   EXPECT_FALSE(pooled.items[1].fits);
   EXPECT_TRUE(pooled.items[2].fits);
-  EXPECT_NEAR(parameter(pooled, kSquareness).value.value(), 10.25, 1e-12);
+  EXPECT_NEAR(parameter(pooled, kSquarenessName).value.value(), 10.25, 1e-12);
   EXPECT_LT(*pooled.items[0].En, 1.0) << "held against what is left";
 }
 
@@ -85,7 +85,7 @@ TEST(Pool, MoreScatterThanUncertaintyWidensEveryUncertainty) {
   // The standard error of a scatter from the median of 60 is 15 %: three of them.
   EXPECT_NEAR(pooled.scatter, 5.0, 2.3);
   for (const PooledItem& item : pooled.items) EXPECT_TRUE(item.fits) << item.id;
-  EXPECT_NEAR(parameter(pooled, kSquareness).standard_uncertainty.value(),
+  EXPECT_NEAR(parameter(pooled, kSquarenessName).standard_uncertainty.value(),
               pooled.scatter / std::sqrt(60.0), 1e-9);
 }
 
@@ -102,7 +102,7 @@ PoolItem face_item(std::uint64_t seed, double more_squareness, bool with_prior =
                                [=](const turning::ToolPoint& p) { return -more_squareness * p.r; }};
   const std::vector<Profile> profiles = faces::quarter_faces(hidden, 2, faces::kBlunt, seed);
   Problem problem = faces::problem_of();
-  if (with_prior) problem.effects[0].priors = {{kSquareness.substr(11), 1e-3, 1e-7}};
+  if (with_prior) problem.effects[0].priors = {{kSquarenessName.substr(11), 1e-3, 1e-7}};
   PoolItem item{std::to_string(seed), {}, {}};
   const FittedModel declared = fit_declared(problem, profiles);
   item.evidence = evidence(declared.model, declared.fit);
@@ -114,12 +114,12 @@ TEST(PooledFaces, GiveTheMachineItsTruth) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) items.push_back(face_item(seed, 0.0));
   const PooledMachine pooled = pool("M", items);
   const PooledMachine alone = pool("M", {items[0]});
-  const FittedParameter& squareness = parameter(pooled, kSquareness);
+  const FittedParameter& squareness = parameter(pooled, kSquarenessName);
   const double u = squareness.standard_uncertainty.value();
   // Of the truth three standard uncertainties; of eight like readings 1/sqrt(8), by half again.
   EXPECT_NEAR(squareness.value.value(), turning::kFaceSquareness, 3.0 * u);
-  EXPECT_NEAR(u / parameter(alone, kSquareness).standard_uncertainty.value(), std::sqrt(1.0 / 8.0),
-              0.18);
+  EXPECT_NEAR(u / parameter(alone, kSquarenessName).standard_uncertainty.value(),
+              std::sqrt(1.0 / 8.0), 0.18);
   for (const PooledItem& item : pooled.items) EXPECT_TRUE(item.fits) << item.id;
 }
 
@@ -169,7 +169,7 @@ TEST(PooledFaces, ShowTheTrend) {
   const PooledMachine pooled = pool("M", items);
   for (const PooledItem& item : pooled.items) EXPECT_TRUE(item.fits) << item.id;
   for (const Trend& trend : pooled.trends)
-    if (trend.parameter == kSquareness) {
+    if (trend.parameter == kSquarenessName) {
       EXPECT_NEAR(trend.rate, kRate, 1.5 * trend.expanded_uncertainty);
       EXPECT_LT(trend.p_value, 0.01);
       return;
@@ -183,8 +183,9 @@ TEST(PooledFaces, TakeNoPriorIn) {
   const PooledMachine a = pool("M", {without}), b = pool("M", {with});
   // The prior is wrong by 500 times the face's own uncertainty, and is in the residual that the
   // noise is estimated from; the value is not moved.
-  const double u = parameter(b, kSquareness).standard_uncertainty.value();
-  EXPECT_NEAR(parameter(a, kSquareness).value.value(), parameter(b, kSquareness).value.value(), u);
+  const double u = parameter(b, kSquarenessName).standard_uncertainty.value();
+  EXPECT_NEAR(parameter(a, kSquarenessName).value.value(),
+              parameter(b, kSquarenessName).value.value(), u);
 }
 
 // Ordinary least squares in closed form: equal uncertainties, residuals beyond them.
