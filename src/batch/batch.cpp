@@ -21,13 +21,13 @@ std::size_t item_of(const std::string& task) {
   return item;
 }
 
-std::string joined(const Fingerprint& print) {
+std::string text_of(const Fingerprint& print) {
   return print.input_sha256 + " " + print.options_hash;
 }
 
 std::string fingerprint_text(const ManifestItem& item, const ItemOptions& options) {
   try {
-    return joined(fingerprint(item, options));
+    return text_of(fingerprint(item, options));
   } catch (const std::exception&) {
     return "none";  // the line of the item says why
   }
@@ -95,7 +95,7 @@ class Batch {
         throw UsageError(options_->out.string() + ": holds the id '" + printable(head.id, 60) +
                          "', which is not among the items; accepted: the manifest and the --shard "
                          "it was begun with, or another name");
-      if (is_current(head)) prints.emplace(item->second, joined(head.print));
+      if (is_current(head)) prints.emplace(item->second, text_of(head.print));
     });
     std::vector<std::size_t> candidates;
     for (const std::size_t item : items_)
@@ -107,7 +107,7 @@ class Batch {
     if (lines > kept.size())
       results.keep([&](const ResultHead& head) {
         return kept.contains(head.id) && is_current(head) &&
-               prints.at(by_id.at(head.id)) == joined(head.print);
+               prints.at(by_id.at(head.id)) == text_of(head.print);
       });
     std::erase_if(items_,
                   [&](std::size_t item) { return kept.contains(manifest_->items[item].id); });

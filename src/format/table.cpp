@@ -10,9 +10,8 @@
 #include "append.hpp"
 #include "dialect.hpp"
 #include "encoding.hpp"
-#include "fast_number.hpp"
 #include "fields.hpp"
-#include "plain_rows.hpp"
+#include "number_at.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 #include "slideway/base/parallel.hpp"
@@ -133,17 +132,12 @@ const char* Reader::next_field(const char* at) const {
   return after_padding(at + 1);
 }
 
-// Reads a row of two numbers; returns the next, or nullptr if it is not as plain.
+// Reads a row of two numbers; returns the next, or nullptr if it holds anything else. REQUIRES a
+// newline at its end.
 inline const char* Reader::after_plain_row(const char* at, double& first, double& second) const {
-#ifdef __SSE2__
-  if (at - first_ >= PlainRow::kBefore && end_ - at >= PlainRow::kRoom) {
-    PlainRow row(at, dialect_.decimal);
-    if (row.read(dialect_.delimiter, first) && row.read('\n', second)) return row.at();
-  }
-#endif
-  at = read_number(at, end_, dialect_.decimal, first);
+  at = number_at(at, end_, dialect_.decimal, first);
   if (!at || *at != dialect_.delimiter) return nullptr;
-  at = read_number(at + 1, end_, dialect_.decimal, second);
+  at = number_at(at + 1, end_, dialect_.decimal, second);
   if (!at) return nullptr;
   at += *at == '\r';
   return *at == '\n' ? at + 1 : nullptr;
@@ -157,7 +151,7 @@ const char* Reader::read_row(const char* at) {
   for (Target& target : targets_) {
     for (; column < target.column; ++column)
       if (at = next_field(at); !at) return nullptr;
-    at = read_number(at, end_, dialect_.decimal, target.value);
+    at = number_at(at, end_, dialect_.decimal, target.value);
     if (!at) return nullptr;
     if (dialect_.delimiter != kBlanks) at = after_padding(at);
     if (*at != '\n' && *at != '\r' && !ends_field(*at, dialect_.delimiter)) return nullptr;

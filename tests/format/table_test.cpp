@@ -99,6 +99,9 @@ TEST_F(ReadTable, SaysWhichFieldIsNoNumber) {
   EXPECT_EQ(complaint("0,0\n1e,1\n"), "line 2, column 1: '1e' is no number");
   EXPECT_EQ(complaint("0,0\n1.2.3,1\n"), "line 2, column 1: '1.2.3' is no number");
   EXPECT_EQ(complaint("0,0\n1e999,1\n"), "line 2, column 1: '1e999' is no number");
+  EXPECT_EQ(complaint("0,0\n1e-999,1\n"), "line 2, column 1: '1e-999' is no number");
+  EXPECT_EQ(complaint("0,0\n+-1,1\n"), "line 2, column 1: '+-1' is no number");
+  EXPECT_EQ(complaint("0;0\n-1e-999;0,5\n"), "line 2, column 1: '-1e-999' is no number");
   EXPECT_EQ(complaint("0,0\n1 5,1\n"), "line 2, column 1: '1 5' is no number");
 }
 
