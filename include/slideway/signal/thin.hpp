@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-/// Series made short enough for a picture.
+/// Series reduced for plotting.
 namespace slideway {
 
 /// Indices, rising, of at most `limit` samples of series that share their positions: from each of
@@ -18,13 +18,5 @@ struct Envelope {
   std::vector<double> low, high;
 };
 Envelope envelope(std::span<const double> series, std::size_t stretches);
-
-/// Amplitude of each frequency of a uniform series, its mean removed (discrete Fourier transform of
-/// the series padded with zeros): a sine of amplitude A at a frequency of its own has A there. Of
-/// neighbouring frequencies only the largest is kept, so many to a decade.
-struct Spectrum {
-  std::vector<double> cycles_per_sample, amplitude;
-};
-Spectrum amplitude_spectrum(std::span<const double> series, int per_decade);
 
 }  // namespace slideway
