@@ -2,7 +2,8 @@
 #
 # Reads every include line under include/slideway/<room> and src/<room>: a room may include itself
 # and the rooms before it, and a library stays in the rooms that own it. Also: no file above
-# MAX_LINES, no header without #pragma once. Every breach is printed; one or more is a failure.
+# MAX_LINES, no header without #pragma once, and docs/architecture.md draws the rooms in this order.
+# Every breach is printed; one or more is a failure.
 cmake_minimum_required(VERSION 3.25)
 set(ROOMS base format machine profile signal effects identify trace report batch python cli)
 set(MAX_LINES 400)
@@ -39,6 +40,12 @@ macro(check_library_include file room line)
     endif()
   endforeach()
 endmacro()
+
+string(JOIN "` ← `" drawing ${ROOMS})
+file(STRINGS ${ROOT}/docs/architecture.md lines ENCODING UTF-8)
+if(NOT "`${drawing}`" IN_LIST lines)
+  breach("docs/architecture.md: has no line `${drawing}`")
+endif()
 
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/include/*.hpp ${ROOT}/src/*.hpp ${ROOT}/src/*.cpp)
 if(NOT files)

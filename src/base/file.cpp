@@ -151,6 +151,14 @@ FileBytes::FileBytes(const fs::path& path) {
   size_ = owned_.size();
 }
 
+FileBytes FileBytes::of_regular_file(const fs::path& path) {
+  std::error_code ignored;  // the constructor reports what is missing
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_other(status))
+    throw DataError(path.string() + ": is a pipe or a device, expected a file");
+  return FileBytes(path);
+}
+
 FileBytes::~FileBytes() {
   if (mapped_) ::munmap(const_cast<char*>(data_), size_);
 }

@@ -1,6 +1,7 @@
 #include "slideway/batch/process_pool.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -66,6 +67,7 @@ std::optional<std::string> receive_text(int socket) {
 void limit_memory(std::uint64_t bytes) {
   struct rlimit limit {};
   if (kHasShadow || bytes == 0 || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  ::malloc_trim(0);  // the limit counts what the heap has kept
   limit.rlim_cur = std::min<rlim_t>(bytes, limit.rlim_max);
   ::setrlimit(RLIMIT_DATA, &limit);
 }

@@ -1,3 +1,4 @@
+#include <glog/logging.h>
 #include <malloc.h>
 #include <sys/mman.h>
 
@@ -62,6 +63,7 @@ int failed(int code, std::string_view message) {
 int main(int argc, char** argv) {
   using namespace slideway;
   prepare_memory();
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres logs by glog; messages are ours alone
   // A closed pipe or a file beyond the limit is a failed write, reported as one.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

@@ -129,6 +129,8 @@ std::size_t Head::find_first_row() {
     lines_.push_back({line_at(text_, at), at, number});
     const Line& line = lines_.back();
     bytes += line.text.size();
+    if (lone_return(line.text) != std::string_view::npos)
+      throw DataError("line " + std::to_string(number) + kLoneReturn);
     if (bytes > kLongestHeader)
       throw DataError("line " + std::to_string(number) + ": no row of numbers in " +
                       std::to_string(kLongestHeader) + " bytes of header");

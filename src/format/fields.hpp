@@ -19,6 +19,12 @@ inline bool ends_field(char c, char delimiter) {
 std::vector<std::string_view> split(std::string_view line, char delimiter,
                                     std::size_t most = std::string_view::npos);
 
+// Where a carriage return is not followed by the end of its line, or npos: what follows it may be a
+// row that nothing else would miss.
+std::size_t lone_return(std::string_view text);
+inline constexpr const char* kLoneReturn =
+    ": a carriage return inside the line; accepted: lines that end in CR LF or LF";
+
 // The number a field spells with this decimal mark, NaN and infinity included.
 std::optional<double> parse_number(std::string_view field, char decimal);
 

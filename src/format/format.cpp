@@ -105,7 +105,7 @@ Trace Format::read_in_parts(std::string_view bytes, const TraceRequest& request,
 
 TraceFile read_trace(const std::filesystem::path& path, const TraceRequest& request,
                      const TakePoints& take) {
-  const FileBytes bytes(path);
+  const FileBytes bytes = FileBytes::of_regular_file(path);
   try {
     if (bytes.text().empty()) throw DataError("is empty");
     const Format& format = recognised_format(bytes.text());

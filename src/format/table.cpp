@@ -71,8 +71,9 @@ class Reader {
   const char* read_row(const char* at);
   void read_irregular_row();
   double read_missing(std::string_view field, const Target& target, bool ends_text);
-  [[noreturn]] void refuse(const std::string& what) const {
-    const auto line = dialect_.first_line + static_cast<std::size_t>(std::count(first_, at_, '\n'));
+  [[noreturn]] void refuse(const std::string& what) const { refuse_at(at_, what); }
+  [[noreturn]] void refuse_at(const char* at, const std::string& what) const {
+    const auto line = dialect_.first_line + static_cast<std::size_t>(std::count(first_, at, '\n'));
     throw DataError("line " + std::to_string(line) + what);
   }
   [[nodiscard]] std::string name_of(std::size_t column) const;
@@ -238,6 +239,8 @@ void Reader::read_rows(Rows& rows) {
   rows.columns.resize(dialect_.columns.size());
   rows.count = 0;
   const std::string_view rest(at_, static_cast<std::size_t>(end_ - at_));
+  const std::size_t lone = lone_return(rest);
+  if (lone != std::string_view::npos) refuse_at(at_ + lone, kLoneReturn);
   const char* const regular_end = at_ + (rest.rfind('\n') + 1);  // at_ if there is no newline
   for (;;) {
     rows.make_room();
@@ -330,7 +333,7 @@ Table parse_table(std::string_view bytes, const TableRequest& request) {
 }
 
 Table read_table(const std::filesystem::path& path, std::span<const std::string> columns) {
-  const FileBytes bytes(path);
+  const FileBytes bytes = FileBytes::of_regular_file(path);
   try {
     const Format& format = recognised_format(bytes.text());
     if (&format != formats().back())

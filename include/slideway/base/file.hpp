@@ -13,6 +13,8 @@ namespace slideway {
 class FileBytes {
  public:
   explicit FileBytes(const std::filesystem::path& path);
+  /// @throws DataError  also for a pipe, a socket or a device, which may never end
+  static FileBytes of_regular_file(const std::filesystem::path& path);
   ~FileBytes();
   FileBytes(FileBytes&& other) noexcept;
   FileBytes& operator=(FileBytes&& other) noexcept;

@@ -34,7 +34,8 @@ std::string counted(std::size_t count, const std::string& singular);
 std::string hexadecimal(std::span<const unsigned char> bytes);
 
 /// Foreign text fit for a one-line message: its first `limit` characters, "..." if that cut it,
-/// and '?' for control characters and for bytes that are no UTF-8.
+/// and '?' for control characters, those of the writing direction included, and for bytes that are
+/// no UTF-8.
 std::string printable(std::string_view text, std::size_t limit = 24);
 
 /// " (did you mean 'squareness'?)" for the accepted word nearest to a mistyped one, or "" if none
