@@ -38,7 +38,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-// Bytes of the printable UTF-8 character the text starts with, or 0 if it starts with none.
+// Number of bytes of the printable UTF-8 character at the start of the text; 0 if there is none.
 std::size_t printable_size(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);

@@ -153,7 +153,7 @@ class BatchCommand : public ReportCommand {
     return failed_of(summary.counts) > 0 ? kFailedItems : kDone;
   }
 
-  /// Before hours of work.
+  /// Checks the columns for --pool before the items are run.
   static void check_pool(const Manifest& manifest) {
     static_cast<void>(read_times(manifest));
     for (const ManifestItem& item : manifest.items)

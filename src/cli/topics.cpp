@@ -15,7 +15,7 @@ struct Section {
   std::vector<Key> keys;
 };
 
-// The words of the problem file; a test holds them against what the reader accepts.
+// The keys of the problem file; a test compares them with those the reader accepts.
 const std::vector<Section>& sections() {
   static const std::vector<Section> kSections{
       {"",

@@ -47,7 +47,7 @@ void check(std::span<const double> positions, std::span<const double> values, st
   }
 }
 
-// Hands on what was read of a file, checked, and forgets the bytes it was read from.
+// Checks the points of a part, passes them on, and releases the pages of the file behind them.
 class Passage {
  public:
   Passage(const FileBytes& bytes, const TakePoints& take) : bytes_(&bytes), take_(&take) {}
