@@ -249,7 +249,7 @@ void Head::refuse_commas_for_both(const Line& row, const Dialect& dialect,
       fields == 2 * named_columns)
     throw DataError("line " + std::to_string(row.number) + ": " + std::to_string(fields) +
                     " fields under " + std::to_string(named_columns) +
-                    " names; decimal commas between commas cannot be told apart (if they are "
+                    " names; decimal commas between commas are ambiguous (if they are "
                     "none, say decimal = \".\")");
 }
 
