@@ -2,15 +2,16 @@
 #
 # Reads every include line under include/slideway/<room> and src/<room>: a room may include itself
 # and the rooms before it, and a library stays in the rooms that own it. Also: no file above
-# MAX_LINES, no header without #pragma once. Every breach is printed; one or more is a failure.
+# MAX_LINES, no header without #pragma once, and docs/architecture.md draws the rooms in this order.
+# Every breach is printed; one or more is a failure.
 cmake_minimum_required(VERSION 3.25)
 set(ROOMS base format machine profile signal effects identify trace report batch python cli)
 set(MAX_LINES 400)
 # A library and the rooms whose sources (never public headers) may include it.
 set(LIBRARIES "ceres/" "nlohmann/" "toml\\+\\+/" "pugixml\\.hpp" "zip\\.h" "pybind11/" "mpi\\.h"
-    "boost/math/")
+    "boost/math/" "fast_float/")
 set(OWNERS "identify trace" "report batch cli" "identify" "format" "format" "python" "batch"
-    "base signal")
+    "base signal" "format")
 
 set(breaches 0)
 macro(breach text)
@@ -39,6 +40,12 @@ macro(check_library_include file room line)
     endif()
   endforeach()
 endmacro()
+
+string(JOIN "` ← `" drawing ${ROOMS})
+file(STRINGS ${ROOT}/docs/architecture.md lines ENCODING UTF-8)
+if(NOT "`${drawing}`" IN_LIST lines)
+  breach("docs/architecture.md: has no line `${drawing}`")
+endif()
 
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/include/*.hpp ${ROOT}/src/*.hpp ${ROOT}/src/*.cpp)
 if(NOT files)

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 std::string cause(int error) { return std::generic_category().message(error); }
 
-// A file descriptor that closes itself.
+// Closes its file descriptor.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -35,12 +35,12 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
 
   [[nodiscard]] int number() const { return number_; }
-  // 0, or what went wrong.
+  // 0 or errno.
   int open(const fs::path& path, int flags) {
     number_ = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
     return number_ < 0 ? errno : 0;
   }
-  // 0, or what went wrong (a full disk may tell only here).
+  // 0 or errno; a full disk may be reported only here.
   int close() { return number_ < 0 || ::close(std::exchange(number_, -1)) == 0 ? 0 : errno; }
 
  private:
@@ -61,7 +61,7 @@ std::string read_all(int file, const fs::path& path) {
   }
 }
 
-// Signals wait as long as it lives.
+// Blocks all signals during its lifetime.
 class SignalsHeld {
  public:
   SignalsHeld() {
@@ -77,7 +77,7 @@ class SignalsHeld {
   sigset_t before_{};
 };
 
-// Makes a temporary file beside the target by `make(name)`, 0 or an error.
+// Makes a temporary file in the target's folder by `make(name)`. Returns 0 or errno.
 template <typename Make>
 int make_beside(const fs::path& target, const Make& make, fs::path& temporary) {
   const std::string stem = ".slideway." + std::to_string(::getpid()) + ".";
@@ -120,8 +120,8 @@ class Sha256 {
   std::unique_ptr<EVP_MD_CTX, decltype(&::EVP_MD_CTX_free)> context_;
 };
 
-// A device, a pipe, or a name for something the process holds open: /dev/stdout may end at a
-// regular file, which a rename would cut off from its other writers.
+// A device, a pipe, or a link to an open file of the process: /dev/stdout may be a regular file
+// with other writers, which a rename would replace.
 bool is_stream(const fs::path& path, const struct stat& status) {
   if (!S_ISREG(status.st_mode)) return true;
   const std::string whole = fs::absolute(path).lexically_normal().string();
@@ -149,6 +149,14 @@ FileBytes::FileBytes(const fs::path& path) {
   owned_ = read_all(file.number(), path);
   data_ = owned_.data();
   size_ = owned_.size();
+}
+
+FileBytes FileBytes::of_regular_file(const fs::path& path) {
+  std::error_code ignored;  // the constructor reports what is missing
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::is_other(status))
+    throw DataError(path.string() + ": is a pipe or a device, expected a file");
+  return FileBytes(path);
 }
 
 FileBytes::~FileBytes() {
@@ -201,7 +209,7 @@ void make_directory(const fs::path& path) {
                            (error ? error.message() : cause(ENOTDIR)));
 }
 
-// Where the bytes go until the file is whole. What can fail returns 0, or what went wrong.
+// Where the bytes go until the file is complete. Functions that can fail return 0 or errno.
 class WholeFile::Target {
  public:
   ~Target() {
@@ -216,7 +224,7 @@ class WholeFile::Target {
 
   Descriptor file_;
   fs::path target_;     // empty: written directly
-  fs::path temporary_;  // of a file that needs a name from the start
+  fs::path temporary_;  // on file systems without O_TMPFILE
   std::optional<SignalsHeld> held_;
 };
 
@@ -242,7 +250,7 @@ int WholeFile::Target::open(const fs::path& path) {
   return error;
 }
 
-// At once where the name is free.
+// Links the unnamed file directly if the name is free.
 int WholeFile::Target::give_name() {
   const std::string nameless = "/proc/self/fd/" + std::to_string(file_.number());
   const auto link = [&](const fs::path& name) {

@@ -31,7 +31,7 @@ double sum_of(std::span<const double> values, Term&& term) {
 
 Part part_of(std::span<const double> values) {
   Part out{static_cast<double>(values.size())};
-  const double first = values[0];  // what is counted from it keeps its digits
+  const double first = values[0];  // differences from it avoid cancellation
   out.mean = first + sum_of(values, [&](double v) { return v - first; }) / out.count;
   out.squares = sum_of(values, [&](double v) { return (v - out.mean) * (v - out.mean); });
   std::array<double, 2 * kLanes> least, largest;

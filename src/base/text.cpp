@@ -38,7 +38,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-// Bytes of the printable UTF-8 character the text starts with, or 0 if it starts with none.
+// Number of bytes of the printable UTF-8 character at the start of the text; 0 if there is none.
 std::size_t printable_size(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);
@@ -52,7 +52,9 @@ std::size_t printable_size(std::string_view text) {
   }
   constexpr std::uint32_t kSmallest[] = {0xa0, 0x800, 0x10000};  // by size; below 0xa0: controls
   const bool surrogate = code >= 0xd800 && code <= 0xdfff;
-  return code >= kSmallest[size - 2] && code <= 0x10ffff && !surrogate ? size : 0;
+  const bool bidi_control =
+      (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
+  return code >= kSmallest[size - 2] && code <= 0x10ffff && !surrogate && !bidi_control ? size : 0;
 }
 
 }  // namespace

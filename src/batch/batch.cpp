@@ -21,28 +21,28 @@ std::size_t item_of(const std::string& task) {
   return item;
 }
 
-std::string joined(const Fingerprint& print) {
+std::string text_of(const Fingerprint& print) {
   return print.input_sha256 + " " + print.options_hash;
 }
 
 std::string fingerprint_text(const ManifestItem& item, const ItemOptions& options) {
   try {
-    return joined(fingerprint(item, options));
+    return text_of(fingerprint(item, options));
   } catch (const std::exception&) {
-    return "none";  // why, its line will say
+    return "none";  // the line of the item says why
   }
 }
 
-/// Has the tasks done, in any order.
-void have_done(
-    Hands& hands, char what, const std::vector<std::size_t>& items,
-    const std::function<void(std::size_t item, Answer&)>& done,
-    const std::function<void()>& waited = [] {}) {
-  constexpr std::chrono::seconds kAwhile{1};
-  for (auto next = items.begin(); next != items.end() || hands.busy() > 0;) {
-    while (next != items.end() && hands.has_idle()) hands.give(task(what, *next++));
-    for (Answer& answer : hands.wait(kAwhile)) done(item_of(answer.task), answer);
-    waited();
+/// Runs one task for each item, in any order.
+void run_tasks(
+    TaskPool& pool, char what, const std::vector<std::size_t>& items,
+    const std::function<void(std::size_t item, TaskResult&)>& done,
+    const std::function<void()>& progress = [] {}) {
+  constexpr std::chrono::seconds kProgressInterval{1};
+  for (auto next = items.begin(); next != items.end() || pool.pending() > 0;) {
+    while (next != items.end() && pool.has_idle()) pool.submit(task(what, *next++));
+    for (TaskResult& result : pool.collect(kProgressInterval)) done(item_of(result.task), result);
+    progress();
   }
 }
 
@@ -58,9 +58,9 @@ bool is_there(const std::filesystem::path& path) {
 
 class Batch {
  public:
-  Batch(const Manifest& manifest, const BatchOptions& options, Hands& hands,
+  Batch(const Manifest& manifest, const BatchOptions& options, TaskPool& pool,
         const BatchProgress& progress)
-      : manifest_(&manifest), options_(&options), hands_(&hands), progress_(&progress) {
+      : manifest_(&manifest), options_(&options), pool_(&pool), progress_(&progress) {
     for (std::size_t i = 0; i < manifest.items.size(); ++i)
       if (options.shard.holds(manifest.items[i].id)) items_.push_back(i);
   }
@@ -72,9 +72,9 @@ class Batch {
     ResultsFile results(options_->out);
     if (options_->resumes) resume(results);
     const std::size_t total = summary_.present + items_.size();
-    have_done(
-        *hands_, kIdentify, items_,
-        [&](std::size_t item, Answer& answer) { results.append(line_of(item, answer)); },
+    run_tasks(
+        *pool_, kIdentify, items_,
+        [&](std::size_t item, TaskResult& result) { results.append(line_of(item, result)); },
         [&] {
           if (*progress_) (*progress_)(summary_, total);
         });
@@ -82,7 +82,7 @@ class Batch {
   }
 
  private:
-  /// Leaves in the results what need not be done again, and out of the items what is there.
+  /// Keeps the lines that are current, and removes their items from those to run.
   void resume(ResultsFile& results) {
     std::unordered_map<std::string, std::size_t> by_id;
     for (const std::size_t item : items_) by_id.emplace(manifest_->items[item].id, item);
@@ -95,19 +95,19 @@ class Batch {
         throw UsageError(options_->out.string() + ": holds the id '" + printable(head.id, 60) +
                          "', which is not among the items; accepted: the manifest and the --shard "
                          "it was begun with, or another name");
-      if (is_current(head)) prints.emplace(item->second, joined(head.print));
+      if (is_current(head)) prints.emplace(item->second, text_of(head.print));
     });
     std::vector<std::size_t> candidates;
     for (const std::size_t item : items_)
       if (prints.contains(item)) candidates.push_back(item);
     std::unordered_set<std::string> kept;
-    have_done(*hands_, kFingerprint, candidates, [&](std::size_t item, const Answer& answer) {
-      if (answer.reply == prints.at(item)) kept.insert(manifest_->items[item].id);
+    run_tasks(*pool_, kFingerprint, candidates, [&](std::size_t item, const TaskResult& result) {
+      if (result.reply == prints.at(item)) kept.insert(manifest_->items[item].id);
     });
     if (lines > kept.size())
       results.keep([&](const ResultHead& head) {
         return kept.contains(head.id) && is_current(head) &&
-               prints.at(by_id.at(head.id)) == joined(head.print);
+               prints.at(by_id.at(head.id)) == text_of(head.print);
       });
     std::erase_if(items_,
                   [&](std::size_t item) { return kept.contains(manifest_->items[item].id); });
@@ -115,11 +115,11 @@ class Batch {
     if (!kept.empty()) summary_.counts[status::kOk] = kept.size();
   }
 
-  std::string line_of(std::size_t item, Answer& answer) {
+  std::string line_of(std::size_t item, TaskResult& result) {
     const std::string& id = manifest_->items[item].id;
-    if (!answer.reply) answer.reply = failed_line(id, answer.cause, answer.reason);
-    // The head alone: the line is ours.
-    const ResultHead head = parse_head(*answer.reply).value();
+    if (!result.reply) result.reply = failed_line(id, result.cause, result.reason);
+    // The head suffices: this program wrote the line.
+    const ResultHead head = parse_head(*result.reply).value();
     ++summary_.counts[head.status];
     if (head.status != status::kOk) {
       const auto [at, is_new] = first_.emplace(head.status, item);
@@ -128,12 +128,12 @@ class Batch {
         summary_.first[head.status] = {id, head.reason};
       }
     }
-    return std::move(*answer.reply);
+    return std::move(*result.reply);
   }
 
   const Manifest* manifest_;
   const BatchOptions* options_;
-  Hands* hands_;
+  TaskPool* pool_;
   const BatchProgress* progress_;
   std::vector<std::size_t> items_;
   std::map<std::string, std::size_t> first_;  // item that failed first, by status
@@ -142,14 +142,15 @@ class Batch {
 
 }  // namespace
 
-std::string do_task(const Manifest& manifest, const ItemOptions& options, const std::string& task) {
+std::string run_task(const Manifest& manifest, const ItemOptions& options,
+                     const std::string& task) {
   const ManifestItem& item = manifest.items.at(item_of(task));
   return task[0] == kFingerprint ? fingerprint_text(item, options) : identify_item(item, options);
 }
 
-BatchSummary run_batch(const Manifest& manifest, const BatchOptions& options, Hands& hands,
+BatchSummary run_batch(const Manifest& manifest, const BatchOptions& options, TaskPool& pool,
                        const BatchProgress& progress) {
-  return Batch(manifest, options, hands, progress).run();
+  return Batch(manifest, options, pool, progress).run();
 }
 
 }  // namespace slideway

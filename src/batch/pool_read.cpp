@@ -56,12 +56,13 @@ std::optional<double> parse_date(std::string_view text) {
 }
 
 /// The part of a line that a joint evaluation is made of.
-PoolItem pool_item(const ManifestItem& item, std::string_view line) {
+PoolItem pool_item(const std::string& id, const std::optional<double>& time,
+                   std::string_view line) {
   constexpr std::string_view kFrom = ",\"evidence\":", kTo = ",\"report\":";
   const std::size_t from = line.find(kFrom) + kFrom.size();
   const auto json = nlohmann::json::parse(line.substr(from, line.find(kTo, from) - from));
-  return {item.id,
-          item.time,
+  return {id,
+          time,
           {json.at("parameters").get<std::vector<std::string>>(),
            json.at("units").get<std::vector<std::string>>(),
            json.at("rows").get<std::vector<std::vector<double>>>(),
@@ -110,28 +111,22 @@ std::vector<PooledMachine> pool_machines(const Manifest& manifest,
   read_results(results, [&](const ResultHead& head, std::string_view line) {
     const auto at = by_id.find(head.id);
     if (at == by_id.end() || head.status != status::kOk) return;
-    PoolItem item = pool_item(manifest.items[at->second], line);
+    PoolItem item = pool_item(head.id, times.values[at->second], line);
     if (!is_sound(item))
       throw DataError(results.string() + ": id '" + printable(head.id, 60) +
                       "': its evidence is damaged");
     items.emplace(at->second, std::move(item));
   });
 
-  struct Group {
-    std::vector<PoolItem> items;
-    std::vector<std::optional<double>> times;
-  };
-  std::map<std::string, Group> groups;
+  std::map<std::string, std::vector<PoolItem>> machines;
   std::vector<std::string> order;
   for (auto& [place, item] : items) {
     const std::string& machine = manifest.items[place].machine;
-    if (!groups.contains(machine)) order.push_back(machine);
-    groups[machine].items.push_back(std::move(item));
-    groups[machine].times.push_back(times.values[place]);
+    if (!machines.contains(machine)) order.push_back(machine);
+    machines[machine].push_back(std::move(item));
   }
   std::vector<PooledMachine> out;
-  for (const std::string& machine : order)
-    out.push_back(pool(machine, groups[machine].items, groups[machine].times));
+  for (const std::string& machine : order) out.push_back(pool(machine, machines[machine]));
   return out;
 }
 

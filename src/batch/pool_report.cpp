@@ -9,11 +9,13 @@
 namespace slideway {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+OrderedJson or_null(const std::optional<double>& value) {
+  return value ? OrderedJson(*value) : OrderedJson(nullptr);
+}
 
-Json parameter_json(const FittedParameter& p) {
+OrderedJson parameter_json(const FittedParameter& p) {
   return {{"name", p.name},
           {"value", or_null(p.value)},
           {"unit", p.unit},
@@ -28,7 +30,7 @@ std::string rate_unit(const Trend& trend, bool are_dates) {
   return (unit.empty() ? "1" : unit) + (are_dates ? "/day" : "/time");
 }
 
-Json trend_json(const Trend& trend, bool are_dates) {
+OrderedJson trend_json(const Trend& trend, bool are_dates) {
   return {{"parameter", trend.parameter},
           {"items", trend.items},
           {"rate", trend.rate},
@@ -115,9 +117,10 @@ std::string pooled_text(const std::vector<PooledMachine>& machines, bool are_dat
 }
 
 std::string pooled_json(const std::vector<PooledMachine>& machines, bool are_dates) {
-  Json out = Json::array();
+  OrderedJson out = OrderedJson::array();
   for (const PooledMachine& machine : machines) {
-    Json parameters = Json::array(), trends = Json::array(), items = Json::array();
+    OrderedJson parameters = OrderedJson::array(), trends = OrderedJson::array(),
+                items = OrderedJson::array();
     for (const FittedParameter& p : machine.parameters) parameters.push_back(parameter_json(p));
     for (const Trend& trend : machine.trends) trends.push_back(trend_json(trend, are_dates));
     for (const PooledItem& item : machine.items)
@@ -132,7 +135,7 @@ std::string pooled_json(const std::vector<PooledMachine>& machines, bool are_dat
                    {"items", items},
                    {"left_out", machine.left_out}});
   }
-  return out.dump(2, ' ', false, Json::error_handler_t::replace);
+  return out.dump(2, ' ', false, OrderedJson::error_handler_t::replace);
 }
 
 }  // namespace slideway

@@ -7,15 +7,16 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "environment.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "report_command.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/batch/batch.hpp"
-#include "slideway/batch/crew.hpp"
+#include "slideway/batch/distributed_pool.hpp"
 #include "slideway/batch/pool.hpp"
-#include "slideway/batch/workers.hpp"
+#include "slideway/batch/process_pool.hpp"
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 
@@ -126,20 +127,20 @@ class BatchCommand : public ReportCommand {
     const Manifest manifest = read_manifest(words_[0]);
     if (!pool_.empty()) check_pool(manifest);
     const ItemOptions item{data_directory(data_), !no_trace_, ignore_checksum_};
-    // Before MPI begins, which does not like processes that fork.
-    Workers own(
-        jobs(), [&](const std::string& task) { return do_task(manifest, item, task); }, limits());
-    const std::unique_ptr<Messenger> messenger = find_messenger();
-    if (messenger && messenger->rank() > 0) {
-      serve(own, *messenger, jobs() + 1);
+    // Before MPI starts, which does not support processes that fork.
+    ProcessPool local(
+        jobs(), [&](const std::string& task) { return run_task(manifest, item, task); }, limits());
+    const std::unique_ptr<Transport> transport = mpi_transport();
+    if (transport && transport->rank() > 0) {
+      serve_tasks(local, *transport, jobs() + 1);
       return kDone;
     }
     const BatchSummary summary = [&] {
-      std::optional<Crew> crew;
-      if (messenger) crew.emplace(own, *messenger);
-      Hands& hands = crew ? static_cast<Hands&>(*crew) : own;
+      std::optional<DistributedPool> all_ranks;
+      if (transport) all_ranks.emplace(local, *transport);
+      TaskPool& pool = all_ranks ? static_cast<TaskPool&>(*all_ranks) : local;
       const ProgressLine line(!is_quiet());
-      return run_batch(manifest, {out_, checked_shard_, resume_}, hands,
+      return run_batch(manifest, {out_, checked_shard_, resume_}, pool,
                        [&](const BatchSummary& so_far, std::size_t total) {
                          line.show(batch_progress(so_far, total, line.elapsed()));
                        });
@@ -152,7 +153,7 @@ class BatchCommand : public ReportCommand {
     return failed_of(summary.counts) > 0 ? kFailedItems : kDone;
   }
 
-  /// Before hours of work.
+  /// Checks the columns for --pool before the items are run.
   static void check_pool(const Manifest& manifest) {
     static_cast<void>(read_times(manifest));
     for (const ManifestItem& item : manifest.items)

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "environment.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "report_command.hpp"

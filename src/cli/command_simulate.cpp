@@ -3,6 +3,7 @@
 #include <charconv>
 #include <memory>
 
+#include "environment.hpp"
 #include "output.hpp"
 #include "report_command.hpp"
 

@@ -7,7 +7,7 @@
 
 namespace slideway {
 
-/// An effect to look at: on the paper's lathe, with what it cannot do without.
+/// An effect on the paper's lathe with its required options, for its description.
 std::unique_ptr<Effect> sample_effect(const std::string& name);
 
 }  // namespace slideway

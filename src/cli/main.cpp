@@ -1,3 +1,4 @@
+#include <glog/logging.h>
 #include <malloc.h>
 #include <sys/mman.h>
 
@@ -35,14 +36,14 @@ int run(const std::vector<std::string>& arguments) {
   return command->run();
 }
 
-// Fresh pages cost more than the arithmetic on them: what a matrix gives back serves the next, and
-// the pages are huge ones where the system has them.
+// Page faults cost more than the arithmetic on the pages: freed memory stays in the heap for the
+// next matrix, and the heap uses huge pages where the system has them.
 void prepare_memory() {
   if (kHasShadow) return;
   constexpr std::size_t kRoom = 1 << 30, kHugePage = 1 << 21;
   mallopt(M_MMAP_THRESHOLD, kRoom);
   mallopt(M_TRIM_THRESHOLD, kRoom);
-  void* const room = std::malloc(kRoom - kHugePage);  // addresses only, no memory yet
+  void* const room = std::malloc(kRoom - kHugePage);  // address space only
   if (room == nullptr) return;
   void* first = room;
   std::size_t left = kRoom - kHugePage;
@@ -62,7 +63,8 @@ int failed(int code, std::string_view message) {
 int main(int argc, char** argv) {
   using namespace slideway;
   prepare_memory();
-  // A closed pipe or a file beyond the limit is a failed write, reported as one.
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres logs by glog to stderr
+  // Writing to a closed pipe, or beyond the file size limit, is then a failed write.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   try {

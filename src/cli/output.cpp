@@ -44,20 +44,24 @@ bool obeys_escapes(Stream stream) {
          terminal != nullptr && std::string_view(terminal) != "dumb";
 }
 
+// A name in a file may hold what a terminal obeys.
 void print_report(const std::string& text) {
   const char* const refused = std::getenv("NO_COLOR");
   const bool coloured = (refused == nullptr || *refused == '\0') && obeys_escapes(Stream::out);
-  print(coloured ? with_emphasis(text) : text);
+  std::string safe;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    safe += printable(rest.substr(0, end), end) + (end < rest.size() ? "\n" : "");
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+  }
+  print(coloured ? with_emphasis(safe) : safe);
 }
 
 void say(std::string_view message) {
-  std::string line = "slideway: " + std::string(message);
+  std::string line(message);
   for (char& c : line)
-    if (c == '\n' || c == '\r')
-      c = ' ';
-    else if ((c >= 0 && c < ' ') || c == 0x7f)
-      c = '?';  // a name may hold what a terminal obeys
-  std::cerr << line << std::endl;
+    if (c == '\n' || c == '\r') c = ' ';
+  std::cerr << "slideway: " << printable(line, line.size()) << std::endl;
 }
 
 }  // namespace slideway

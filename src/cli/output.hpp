@@ -6,7 +6,7 @@
 
 namespace slideway {
 
-/// Writes to stdout and makes sure that it arrived.
+/// Writes to stdout and flushes it.
 /// @throws std::runtime_error  the disk is full, the pipe is closed
 void print(std::string_view text);
 
@@ -21,11 +21,11 @@ enum class Stream { out, err };
 /// Whether a stream ends in a terminal that obeys escape sequences.
 bool obeys_escapes(Stream stream);
 
-/// print() of a text whose headings and verdicts are coloured where that is seen: on a terminal,
-/// unless NO_COLOR is set (no-color.org).
+/// print() of a text without control characters, with coloured headings and verdicts if stdout is a
+/// terminal and NO_COLOR is not set (no-color.org).
 void print_report(const std::string& text);
 
-/// A message for people, one line on stderr: "slideway: ...".
+/// A message of one line on stderr: "slideway: ...".
 void say(std::string_view message);
 
 }  // namespace slideway

@@ -11,7 +11,7 @@
 namespace slideway {
 namespace {
 
-constexpr std::chrono::seconds kAwhile{1};
+constexpr std::chrono::seconds kInterval{1};
 
 /// "28 s", "3 min 20 s", "2 h 5 min".
 std::string in_words(std::chrono::duration<double> time) {
@@ -36,15 +36,15 @@ ProgressLine::~ProgressLine() { show(""); }
 
 void ProgressLine::show(std::string_view text) const {
   constexpr std::string_view kEraseLine = "\r\033[K";
-  if (shown_ && elapsed() >= kAwhile) std::cerr << kEraseLine << text << std::flush;
+  if (shown_ && elapsed() >= kInterval) std::cerr << kEraseLine << text << std::flush;
 }
 
 StageLine::StageLine(bool wanted) : line_(wanted) {
   if (!line_.is_shown()) return;
-  clock_ = std::jthread([this](const std::stop_token& stop) {
+  refresh_ = std::jthread([this](const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!stop.stop_requested()) {
-      never_.wait_for(lock, stop, kAwhile, [] { return false; });
+      stopped_.wait_for(lock, stop, kInterval, [] { return false; });
       if (!stop.stop_requested()) draw();
     }
   });
@@ -54,18 +54,18 @@ void StageLine::show(std::string stage, double done) {
   const std::lock_guard lock(mutex_);
   const bool is_new = stage != stage_;
   stage_ = std::move(stage);
-  told_ = line_.elapsed();
+  reported_ = line_.elapsed();
   done_ = done;
   if (!is_new) return;
-  began_ = told_;
+  started_ = reported_;
   draw();
 }
 
 void StageLine::draw() const {
   std::string text = stage_ + ", " + in_words(line_.elapsed());
-  const Seconds taken = told_ - began_;
-  const Seconds left = taken * ((1.0 - done_) / done_) - (line_.elapsed() - told_);
-  if (done_ > 0.0 && taken >= kAwhile && left > Seconds(0.0))
+  const Seconds taken = reported_ - started_;
+  const Seconds left = taken * ((1.0 - done_) / done_) - (line_.elapsed() - reported_);
+  if (done_ > 0.0 && taken >= kInterval && left > Seconds(0.0))
     text += ", this step about " + in_words(left) + " more";
   line_.show(text);
 }

@@ -11,8 +11,8 @@
 
 namespace slideway {
 
-/// One line of stderr that is overwritten and gone in the end; nothing where stderr is no terminal
-/// that can overwrite, and nothing in the first second.
+/// A progress line on stderr: overwritten by each show(), erased at the end. Nothing is written if
+/// stderr is not a terminal, and nothing in the first second.
 class ProgressLine {
  public:
   explicit ProgressLine(bool wanted);
@@ -30,8 +30,8 @@ class ProgressLine {
   Clock::time_point start_ = Clock::now();
 };
 
-/// The stages of one job, each with the time since the job's beginning, which goes on by itself,
-/// and from its second second on with what is left of the stage, where it says which part is done.
+/// The stage of a job with the elapsed time of the job, refreshed every second. If the stage
+/// reports its progress, the remaining time of the stage follows after one second.
 class StageLine {
  public:
   explicit StageLine(bool wanted);
@@ -44,15 +44,15 @@ class StageLine {
 
   ProgressLine line_;
   std::mutex mutex_;
-  std::condition_variable_any never_;
+  std::condition_variable_any stopped_;
   std::string stage_;
-  Seconds began_{0.0}, told_{0.0};  // when the stage, and when the part of it that is done
+  Seconds started_{0.0}, reported_{0.0};  // start of the stage, and its last progress report
   double done_ = 0.0;
-  std::jthread clock_;  // the last: ends before the others do
+  std::jthread refresh_;  // the last member: it is joined before the others are destroyed
 };
 
-/// How far a batch is: "12 of 100 items, 1 failed, 3.2 a second, 28 s left". What was there before
-/// says nothing of the rate.
+/// Progress of a batch: "12 of 100 items, 1 failed, 3.2 a second, 28 s left". The rate excludes
+/// items kept from an earlier run.
 std::string batch_progress(const BatchSummary& so_far, std::size_t total,
                            std::chrono::duration<double> elapsed);
 

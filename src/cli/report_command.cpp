@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "environment.hpp"
 #include "output.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/report/report.hpp"
@@ -98,11 +99,6 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
   report([&] { return text_report(analysis.result, analysis.trace, analysis.details); },
          [&] { return json_report(analysis.result, analysis.trace, analysis.details); });
   return strict_ && is_negative(analysis) ? kNegativeVerdict : kDone;
-}
-
-std::optional<std::filesystem::path> data_directory(const std::string& option) {
-  if (option.empty()) return std::nullopt;
-  return option;
 }
 
 }  // namespace slideway

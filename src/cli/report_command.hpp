@@ -13,13 +13,13 @@
 
 namespace slideway {
 
-/// A command whose result is a text for people and, with --json, a JSON document; with --html the
-/// page made of that.
+/// A command whose result is a text and, with --json, a JSON document; with --html a page made from
+/// the JSON.
 class ReportCommand : public Command {
  protected:
   ReportCommand(std::string name, std::string arguments, std::string summary);
 
-  /// Writes what the options ask for, and makes no more than that.
+  /// Makes and writes the outputs that the options request.
   void report(const std::function<std::string()>& text,
               const std::function<std::string()>& json) const;
 
@@ -29,7 +29,7 @@ class ReportCommand : public Command {
   /// @throws UsageError  an output would replace the input
   void keep(const std::filesystem::path& input) const;
 
-  /// Profiles of a problem, none of which an output replaces; the line shows how far they are read.
+  /// Reads the profiles of a problem, after a check that no output replaces one.
   [[nodiscard]] std::vector<Profile> profiles_of(Problem problem, bool ignore_checksum,
                                                  StageLine& line) const;
 
@@ -58,8 +58,5 @@ class ProblemCommand : public ReportCommand {
   std::string input_, data_;
   bool strict_ = false, ignore_checksum_ = false;
 };
-
-/// --data DIR, as read_problem() wants it.
-std::optional<std::filesystem::path> data_directory(const std::string& option);
 
 }  // namespace slideway

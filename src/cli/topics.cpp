@@ -15,7 +15,7 @@ struct Section {
   std::vector<Key> keys;
 };
 
-// The words of the problem file; a test holds them against what the reader accepts.
+// The keys of the problem file; a test compares them with those the reader accepts.
 const std::vector<Section>& sections() {
   static const std::vector<Section> kSections{
       {"",
@@ -55,10 +55,10 @@ const std::vector<Section>& sections() {
         {"value_column", "text: header name or number"},
         {"position_unit", "m mm um nm inch, or s with feed_mm_per_min; not where the file says it"},
         {"value_unit", "m mm um nm inch; slope: rad mrad urad arcsec um_per_m mm_per_m"},
-        {"delimiter", "text, where it cannot be told: , ; tab blank"},
-        {"decimal", "text, where it cannot be told: . or ,"},
-        {"encoding", "text, where it cannot be told: utf-8 utf-16 latin-1"},
-        {"header_lines", "text, where it cannot be told: lines before the first numbers"},
+        {"delimiter", "text, if not detected: , ; tab blank"},
+        {"decimal", "text, if not detected: . or ,"},
+        {"encoding", "text, if not detected: utf-8 utf-16 latin-1"},
+        {"header_lines", "text, if not detected: lines before the first numbers"},
         {"line", R"(areal file: "row:12", "column:3", "diameter:30")"},
         {"base_mm", "slope: foot spacing of the mirror or level; none: the local slope"},
         {"window", "[from, to] in position_unit: keep only this part"},

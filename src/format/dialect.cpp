@@ -129,6 +129,8 @@ std::size_t Head::find_first_row() {
     lines_.push_back({line_at(text_, at), at, number});
     const Line& line = lines_.back();
     bytes += line.text.size();
+    if (lone_return(line.text) != std::string_view::npos)
+      throw DataError("line " + std::to_string(number) + kLoneReturn);
     if (bytes > kLongestHeader)
       throw DataError("line " + std::to_string(number) + ": no row of numbers in " +
                       std::to_string(kLongestHeader) + " bytes of header");
@@ -247,7 +249,7 @@ void Head::refuse_commas_for_both(const Line& row, const Dialect& dialect,
       fields == 2 * named_columns)
     throw DataError("line " + std::to_string(row.number) + ": " + std::to_string(fields) +
                     " fields under " + std::to_string(named_columns) +
-                    " names; decimal commas between commas cannot be told apart (if they are "
+                    " names; decimal commas between commas are ambiguous (if they are "
                     "none, say decimal = \".\")");
 }
 

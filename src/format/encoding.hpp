@@ -7,9 +7,9 @@ namespace slideway {
 
 /// A text as UTF-8 or Latin-1 bytes without a byte order mark.
 struct DecodedText {
-  std::string_view given;  // the bytes that came in, unless they had to be written anew
+  std::string_view given;  // the input, if it needed no conversion
   std::string converted;
-  std::string encoding;  // "utf-8" "utf-16" "latin-1"; empty if nothing told yet
+  std::string encoding;  // "utf-8" "utf-16" "latin-1"; empty if not yet known
   [[nodiscard]] std::string_view bytes() const {
     return converted.empty() ? given : std::string_view(converted);
   }

@@ -51,6 +51,16 @@ std::vector<std::string_view> split(std::string_view line, char delimiter, std::
   return fields;
 }
 
+std::size_t lone_return(std::string_view text) {
+  for (std::size_t at = text.find('\r'); at != std::string_view::npos; at = text.find('\r', at)) {
+    const std::size_t next = text.find_first_not_of('\r', at);
+    if (next == std::string_view::npos) break;
+    if (text[next] != '\n') return next - 1;
+    at = next;
+  }
+  return std::string_view::npos;
+}
+
 std::optional<double> parse_number(std::string_view field, char decimal) {
   if (decimal == '.') return parse_double(field);
   if (field.find('.') != std::string_view::npos) return std::nullopt;

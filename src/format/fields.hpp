@@ -5,8 +5,7 @@
 #include <string_view>
 #include <vector>
 
-// One line of delimited text, taken apart at leisure: the header, the first rows, and whatever is
-// not regular.
+// Parsing of one line of delimited text, for the header, the first rows, and irregular rows.
 namespace slideway {
 
 inline constexpr char kBlanks = ' ';  // as delimiter: any run of blanks and tabs
@@ -19,7 +18,13 @@ inline bool ends_field(char c, char delimiter) {
 std::vector<std::string_view> split(std::string_view line, char delimiter,
                                     std::size_t most = std::string_view::npos);
 
-// The number a field spells with this decimal mark, NaN and infinity included.
+// Position of the first carriage return that does not end its line, or npos. The text after it may
+// be a row that would be lost.
+std::size_t lone_return(std::string_view text);
+inline constexpr const char* kLoneReturn =
+    ": a carriage return inside the line; accepted: lines that end in CR LF or LF";
+
+// The value of a field with this decimal mark, NaN and infinity included.
 std::optional<double> parse_number(std::string_view field, char decimal);
 
 // An empty field, nan, na, n/a, #n/a, null, in capitals or not.
@@ -28,7 +33,7 @@ bool is_missing(std::string_view field);
 // "1,234", "1.234,5", "1 234", "1'234.5": digits in groups of three. "0,123" is none.
 bool has_thousands(std::string_view field);
 
-// Whether the field is meant as a number, however it is written.
+// Whether the field is a number in any notation.
 bool is_numeric(std::string_view field);
 
 // ';', tab, ',' or kBlanks, whichever separates the numbers of a row.

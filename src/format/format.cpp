@@ -47,7 +47,7 @@ void check(std::span<const double> positions, std::span<const double> values, st
   }
 }
 
-// Hands on what was read of a file, checked, and forgets the bytes it was read from.
+// Checks the points of a part, passes them on, and releases the pages of the file behind them.
 class Passage {
  public:
   Passage(const FileBytes& bytes, const TakePoints& take) : bytes_(&bytes), take_(&take) {}
@@ -105,7 +105,7 @@ Trace Format::read_in_parts(std::string_view bytes, const TraceRequest& request,
 
 TraceFile read_trace(const std::filesystem::path& path, const TraceRequest& request,
                      const TakePoints& take) {
-  const FileBytes bytes(path);
+  const FileBytes bytes = FileBytes::of_regular_file(path);
   try {
     if (bytes.text().empty()) throw DataError("is empty");
     const Format& format = recognised_format(bytes.text());

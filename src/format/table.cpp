@@ -10,9 +10,8 @@
 #include "append.hpp"
 #include "dialect.hpp"
 #include "encoding.hpp"
-#include "fast_number.hpp"
 #include "fields.hpp"
-#include "plain_rows.hpp"
+#include "number_at.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 #include "slideway/base/parallel.hpp"
@@ -23,11 +22,11 @@ namespace slideway {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-// Bytes read at a time, up to the end of a line; fewer of a text that is read at once.
+// Bytes of a chunk, up to the end of a line.
 constexpr std::size_t kLargestChunk = 1 << 18, kLeastChunk = kLargestChunk / 4;
-constexpr std::size_t kTogether = 8;  // chunks that are read at once
+constexpr std::size_t kTogether = 8;  // chunks read in parallel
 
-// The rows of a chunk. The memory serves the next one.
+// The rows of a chunk. The memory is reused for the next one.
 struct Rows {
   std::vector<std::vector<double>> columns;  // longer than the rows
   std::size_t count = 0;
@@ -50,7 +49,7 @@ class Reader {
   struct Target {
     std::size_t column;  // in the file
     std::size_t slot;    // among those asked for
-    double value;        // in the row at hand
+    double value;        // in the current row
   };
 
   [[nodiscard]] std::string_view rest_of_line(const char* at) const;
@@ -72,8 +71,9 @@ class Reader {
   const char* read_row(const char* at);
   void read_irregular_row();
   double read_missing(std::string_view field, const Target& target, bool ends_text);
-  [[noreturn]] void refuse(const std::string& what) const {
-    const auto line = dialect_.first_line + static_cast<std::size_t>(std::count(first_, at_, '\n'));
+  [[noreturn]] void refuse(const std::string& what) const { refuse_at(at_, what); }
+  [[noreturn]] void refuse_at(const char* at, const std::string& what) const {
+    const auto line = dialect_.first_line + static_cast<std::size_t>(std::count(first_, at, '\n'));
     throw DataError("line " + std::to_string(line) + what);
   }
   [[nodiscard]] std::string name_of(std::size_t column) const;
@@ -82,7 +82,7 @@ class Reader {
   const TableRequest* request_;
   Dialect dialect_;
   const char* first_;  // row of the text
-  const char* at_;     // start of the line at hand
+  const char* at_;     // start of the current line
   const char* end_;
   bool last_is_target_ = false;  // nothing but delimiters may follow the last value of a row
   std::size_t missing_ = 0;
@@ -110,12 +110,12 @@ std::string_view Reader::rest_of_line(const char* at) const {
   return {at, newline ? static_cast<std::size_t>(static_cast<const char*>(newline) - at) : size};
 }
 
-// Ends the line at hand, of which everything before `stop` has been read.
+// Moves to the next line. The current one has been read up to `stop`.
 void Reader::pass_line(const char* stop) {
   at_ = *stop == '\n' ? stop + 1 : std::min(end_, stop + rest_of_line(stop).size() + 1);
 }
 
-// Goes on to the first line, from the one at hand on, that is neither empty nor a comment.
+// Moves to the first line that is neither empty nor a comment, from the current one.
 bool Reader::to_next_line() {
   for (; at_ < end_; pass_line(at_)) {
     const char* first = at_;
@@ -133,31 +133,26 @@ const char* Reader::next_field(const char* at) const {
   return after_padding(at + 1);
 }
 
-// Reads a row of two numbers; returns the next, or nullptr if it is not as plain.
+// Reads a row of two numbers; returns the next, or nullptr if it holds anything else. REQUIRES a
+// newline at its end.
 inline const char* Reader::after_plain_row(const char* at, double& first, double& second) const {
-#ifdef __SSE2__
-  if (at - first_ >= PlainRow::kBefore && end_ - at >= PlainRow::kRoom) {
-    PlainRow row(at, dialect_.decimal);
-    if (row.read(dialect_.delimiter, first) && row.read('\n', second)) return row.at();
-  }
-#endif
-  at = read_number(at, end_, dialect_.decimal, first);
+  at = number_at(at, end_, dialect_.decimal, first);
   if (!at || *at != dialect_.delimiter) return nullptr;
-  at = read_number(at + 1, end_, dialect_.decimal, second);
+  at = number_at(at + 1, end_, dialect_.decimal, second);
   if (!at) return nullptr;
   at += *at == '\r';
   return *at == '\n' ? at + 1 : nullptr;
 }
 
-// Reads the row into targets_ in one go; returns a place in it after the last value, or nullptr if
-// anything is not regular. REQUIRES a newline at its end.
+// Reads a row into targets_. Returns a position in it after the last value, or nullptr if the row
+// is irregular. REQUIRES a newline at its end.
 const char* Reader::read_row(const char* at) {
   std::size_t column = 0;
   at = after_padding(at);
   for (Target& target : targets_) {
     for (; column < target.column; ++column)
       if (at = next_field(at); !at) return nullptr;
-    at = read_number(at, end_, dialect_.decimal, target.value);
+    at = number_at(at, end_, dialect_.decimal, target.value);
     if (!at) return nullptr;
     if (dialect_.delimiter != kBlanks) at = after_padding(at);
     if (*at != '\n' && *at != '\r' && !ends_field(*at, dialect_.delimiter)) return nullptr;
@@ -186,7 +181,7 @@ void Reader::refuse_field(std::string_view field, std::size_t column) const {
 }
 
 double Reader::read_missing(std::string_view field, const Target& target, bool ends_text) {
-  // A row that was cut may look like one whose last value is missing.
+  // A truncated row can resemble one with a missing last value.
   if (field.empty() && ends_text && last_is_target_ && target.column == targets_.back().column)
     refuse(": the text ends within a row");
   if (!request_->may_miss || target.slot == 0) refuse_field(field, target.column);
@@ -194,7 +189,7 @@ double Reader::read_missing(std::string_view field, const Target& target, bool e
   return kMissing;
 }
 
-// The same field by field, to take what is merely unusual and say what is wrong with the rest.
+// Reads the current row field by field: accepts unusual notation, and names the fault of the rest.
 void Reader::read_irregular_row() {
   const std::string_view line = rest_of_line(at_);
   const bool ends_text = line.data() + line.size() == end_;
@@ -221,7 +216,7 @@ void Reader::read_irregular_row() {
            ", as the rows before it have");
 }
 
-// Appends the rows from the one at hand on that are two numbers, a delimiter and nothing else.
+// Appends rows of two numbers and a delimiter, up to the first row that holds anything else.
 void Reader::read_plain_rows(const char* regular_end, Rows& rows) {
   const bool plain = last_is_target_ && targets_.size() == 2 && targets_[0].column == 0 &&
                      targets_[1].column == 1 && dialect_.delimiter != kBlanks;
@@ -244,6 +239,8 @@ void Reader::read_rows(Rows& rows) {
   rows.columns.resize(dialect_.columns.size());
   rows.count = 0;
   const std::string_view rest(at_, static_cast<std::size_t>(end_ - at_));
+  const std::size_t lone = lone_return(rest);
+  if (lone != std::string_view::npos) refuse_at(at_ + lone, kLoneReturn);
   const char* const regular_end = at_ + (rest.rfind('\n') + 1);  // at_ if there is no newline
   for (;;) {
     rows.make_room();
@@ -261,7 +258,7 @@ void Reader::read_rows(Rows& rows) {
   }
 }
 
-// A reader of the next lines, of so many bytes, which this one passes.
+// A reader of the next `size` bytes, up to the end of a line. This reader continues after them.
 Reader Reader::take_chunk(std::size_t size) {
   Reader chunk = *this;
   if (static_cast<std::size_t>(end_ - at_) > size)
@@ -270,7 +267,7 @@ Reader Reader::take_chunk(std::size_t size) {
   return chunk;
 }
 
-// Every column asked for; one that was asked for twice is there once.
+// The requested columns; a repeated request shares its storage.
 std::vector<std::span<const double>> Reader::columns_of(const Rows& rows) const {
   std::vector<std::span<const double>> columns;
   for (const std::size_t column : dialect_.columns) {
@@ -280,8 +277,8 @@ std::vector<std::span<const double>> Reader::columns_of(const Rows& rows) const 
   return columns;
 }
 
-// Where the chunks begin and the order of what is in them do not depend on the number of threads.
-// Rows are taken while those of the next chunks are read.
+// The boundaries and the order of chunks do not depend on the number of threads. Rows are passed on
+// while the next chunks are read.
 Table Reader::read(const TakeRows& take) {
   Table table;
   table.names = dialect_.names;
@@ -336,7 +333,7 @@ Table parse_table(std::string_view bytes, const TableRequest& request) {
 }
 
 Table read_table(const std::filesystem::path& path, std::span<const std::string> columns) {
-  const FileBytes bytes(path);
+  const FileBytes bytes = FileBytes::of_regular_file(path);
   try {
     const Format& format = recognised_format(bytes.text());
     if (&format != formats().back())

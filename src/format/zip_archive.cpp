@@ -58,7 +58,7 @@ bool is_archive(std::string_view name) {
 }
 
 void check_names(zip_t* archive) {
-  std::set<std::string, std::less<>> seen;
+  std::set<std::string, std::less<>> names;
   const zip_int64_t count = zip_get_num_entries(archive, 0);
   for (zip_int64_t i = 0; i < count; ++i) {
     const char* const name = zip_get_name(archive, static_cast<zip_uint64_t>(i), ZIP_FL_ENC_RAW);
@@ -66,7 +66,7 @@ void check_names(zip_t* archive) {
       throw DataError("zip: entry " + std::to_string(i + 1) + " has no name");
     if (leads_out(name)) throw DataError("zip: " + quoted(name) + ": its path leads out");
     if (is_archive(name)) throw DataError("zip: " + quoted(name) + " is an archive in the archive");
-    if (!seen.insert(name).second) throw DataError("zip: " + quoted(name) + " is there twice");
+    if (!names.insert(name).second) throw DataError("zip: " + quoted(name) + " is there twice");
   }
 }
 

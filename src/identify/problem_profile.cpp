@@ -17,13 +17,11 @@ constexpr std::string_view kKeys =
     "traverse_mm_per_s free standard_uncertainty role";
 
 std::filesystem::path data_directory(const Section& section, const ProblemRules& rules) {
-  if (rules.data_dir) return std::filesystem::absolute(*rules.data_dir);
-  const char* variable = std::getenv("SLIDEWAY_DATA");
-  if (variable == nullptr || *variable == '\0')
+  if (!rules.data_dir)
     section.fail("file",
                  "needs the directory ${SLIDEWAY_DATA}, which is not set; accepted: --data DIR or "
                  "the environment variable SLIDEWAY_DATA");
-  return std::filesystem::absolute(variable);
+  return std::filesystem::absolute(*rules.data_dir);
 }
 
 std::filesystem::path resolved(const Section& section, std::string file,

@@ -15,8 +15,8 @@ struct MachineDefaults {
   double spindle_position_mm = 0.0;
 };
 
-/// Paths of the problem file: relative to `base`, ${SLIDEWAY_DATA} replaced by `data_dir` or else
-/// by the environment variable; and what it may do without.
+/// Paths of the problem file: relative to `base`, ${SLIDEWAY_DATA} replaced by `data_dir`; and
+/// which parts are optional.
 struct ProblemRules {
   std::filesystem::path base;
   std::optional<std::filesystem::path> data_dir;

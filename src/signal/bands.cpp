@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "middle.hpp"
+#include "interior_blocks.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/wide.hpp"
 #include "slideway/signal/decomposition.hpp"
@@ -55,8 +55,8 @@ Bands whole_bands(const Wavelet& wavelet, Boundary boundary, const Decomposition
   return bands;
 }
 
-// The bands of a long signal. Its ends are those of one without its middle; between them nothing
-// knows of the boundary, and all bands of a part are made while it is in the cache.
+// The bands of a long signal. Near the ends they are those of the signal without its interior. The
+// interior does not depend on the boundary: all bands of a part are made while it is in the cache.
 class LongSignal {
  public:
   LongSignal(const Wavelet& wavelet, Boundary boundary, const Decomposition& parts)
@@ -66,15 +66,15 @@ class LongSignal {
         levels_(static_cast<Index>(parts.details.size())),
         half_(wavelet.taps() / 2),
         shift_(upsampling_shift(boundary, half_)),
-        middle_(wavelet.taps(), levels_, parts.lengths[0]) {}
+        blocks_(wavelet.taps(), levels_, parts.lengths[0]) {}
 
-  [[nodiscard]] bool is_long() const { return size() >= kLong && middle_.left_out() > 0; }
+  [[nodiscard]] bool is_long() const { return size() >= kLong && blocks_.omitted_blocks() > 0; }
 
   [[nodiscard]] Bands bands() const {
     Bands out;
     resize(out, static_cast<std::size_t>(levels_), static_cast<std::size_t>(size()));
-    // Behind the samples that know of an end, where pairs of samples begin.
-    const Index first = (middle_.end() << levels_) + shift_ % 2;
+    // After the samples that depend on the boundary, at the start of a pair.
+    const Index first = (blocks_.boundary_blocks() << levels_) + shift_ % 2;
     const Index count = (size() - 2 * first) / 2 * 2;
     copy_ends(first, first + count, out);
     const auto make = [&](std::size_t /*task*/, std::size_t begin, std::size_t end) {
@@ -94,11 +94,12 @@ class LongSignal {
 
   void copy_ends(Index first, Index last, Bands& out) const {
     Decomposition parts;
-    parts.approximation = middle_.shortened(parts_.approximation, 0);
+    parts.approximation = blocks_.without_interior(parts_.approximation, 0);
     for (Index j = 1; j <= levels_; ++j) {
-      parts.details.push_back(middle_.shortened(parts_.details[j - 1], levels_ - j));
-      parts.lengths.push_back(parts_.lengths[j - 1] -
-                              static_cast<std::size_t>(middle_.left_out() << (levels_ - j + 1)));
+      parts.details.push_back(blocks_.without_interior(parts_.details[j - 1], levels_ - j));
+      parts.lengths.push_back(
+          parts_.lengths[j - 1] -
+          static_cast<std::size_t>(blocks_.omitted_blocks() << (levels_ - j + 1)));
     }
     const Bands ends = whole_bands(wavelet_, boundary_, parts);
     const auto copy = [&](const std::vector<Band>& from, std::vector<Band>& to) {
@@ -133,7 +134,7 @@ class LongSignal {
   template <typename Put>
   void restore(std::span<const double> filter, std::span<const double> coefficients, Index level,
                Index first, Index last, Scratch& scratch, const Put& put) const {
-    std::array<Index, Middle::kMostLevels + 1> from, to;
+    std::array<Index, InteriorBlocks::kMostLevels + 1> from, to;
     from[0] = first;
     to[0] = last;
     for (Index k = 1; k <= level; ++k) {
@@ -156,7 +157,7 @@ class LongSignal {
   Boundary boundary_;
   const Decomposition& parts_;
   Index levels_, half_, shift_;
-  Middle middle_;
+  InteriorBlocks blocks_;
 };
 
 }  // namespace

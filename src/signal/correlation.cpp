@@ -8,6 +8,7 @@
 #include <optional>
 #include <unsupported/Eigen/FFT>
 
+#include "fourier.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/signal/lagged_products.hpp"
 #include "slideway/signal/view.hpp"
@@ -92,21 +93,11 @@ Eigen::VectorXd means(const Eigen::VectorXd& x, Eigen::Index block) {
   return x.head(count * block).reshaped(block, count).colwise().mean().transpose();
 }
 
-// The next size whose transform is quick: a product of 2, 3 and 5.
-std::size_t quick_size(std::size_t least) {
-  for (std::size_t size = least;; ++size) {
-    std::size_t rest = size;
-    for (const std::size_t factor : {2, 3, 5})
-      while (rest % factor == 0) rest /= factor;
-    if (rest == 1) return size;
-  }
-}
-
 // Σ_t d_t d_(t+k) of two series at once for every k, by the fast Fourier transform: the real part
 // of the result is of x, the imaginary part of y.
 std::vector<std::complex<double>> all_lagged_products(const Eigen::VectorXd& x,
                                                       const Eigen::VectorXd& y) {
-  const std::size_t size = quick_size(2 * static_cast<std::size_t>(x.size()));
+  const std::size_t size = fast_length(2 * static_cast<std::size_t>(x.size()));
   std::vector<std::complex<double>> signal(size);
   std::vector<std::complex<double>> spectrum(size);
   for (Eigen::Index t = 0; t < x.size(); ++t) signal[t] = {x[t], y[t]};

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "downsample.hpp"
-#include "middle.hpp"
+#include "interior_blocks.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/wide.hpp"
@@ -29,9 +29,9 @@ Decomposition whole_decomposition(const Wavelet& wavelet, Boundary boundary, int
   return parts;
 }
 
-// The decomposition of a long signal. Coefficients near its ends are those of one without its
-// middle; between them nothing knows of the boundary, and a part goes through all levels while it
-// is in the cache.
+// The decomposition of a long signal. Near the ends the coefficients are those of the signal
+// without its interior. The interior does not depend on the boundary: a part goes through all
+// levels while it is in the cache.
 class LongTransform {
  public:
   LongTransform(const Wavelet& wavelet, Boundary boundary, int levels,
@@ -42,30 +42,31 @@ class LongTransform {
         signal_(signal),
         taps_(wavelet.taps()),
         start_(window_start(boundary, taps_)),
-        middle_(taps_, levels, signal.size()) {}
+        blocks_(taps_, levels, signal.size()) {}
 
   [[nodiscard]] bool is_long() const {
-    return std::ssize(signal_) >= kLong && middle_.left_out() > 0;
+    return std::ssize(signal_) >= kLong && blocks_.omitted_blocks() > 0;
   }
 
   [[nodiscard]] Decomposition decomposition() const {
-    const Decomposition ends =
-        whole_decomposition(wavelet_, boundary_, levels_, middle_.shortened(signal_, levels_));
+    const Decomposition ends = whole_decomposition(wavelet_, boundary_, levels_,
+                                                   blocks_.without_interior(signal_, levels_));
 
     Decomposition out;
     out.details.resize(ends.details.size());
     for (int j = 1; j <= levels_; ++j) {
-      out.lengths.push_back(ends.lengths[j - 1] + (middle_.left_out() << (levels_ - j + 1)));
+      out.lengths.push_back(ends.lengths[j - 1] + (blocks_.omitted_blocks() << (levels_ - j + 1)));
       copy_ends(ends.details[j - 1], levels_ - j, out.details[j - 1]);
     }
     copy_ends(ends.approximation, 0, out.approximation);
 
     const Index size = std::max<Index>(kPart >> levels_, 4 * taps_);
-    const auto count = static_cast<std::size_t>(middle_.blocks() - 2 * middle_.end());
+    const auto count =
+        static_cast<std::size_t>(blocks_.total_blocks() - 2 * blocks_.boundary_blocks());
     const auto transform = [&](std::size_t /*task*/, std::size_t begin, std::size_t end) {
       Scratch scratch;
-      const Index last = middle_.end() + static_cast<Index>(end);
-      for (Index at = middle_.end() + static_cast<Index>(begin); at < last; at += size)
+      const Index last = blocks_.boundary_blocks() + static_cast<Index>(end);
+      for (Index at = blocks_.boundary_blocks() + static_cast<Index>(begin); at < last; at += size)
         transform_part(at, std::min(last, at + size), scratch, out);
     };
     parallel_parts(count, static_cast<std::size_t>(kPartsOfTask * size), transform);
@@ -79,17 +80,17 @@ class LongTransform {
 
   // Coefficients of one level, 2^finer of them a block.
   void copy_ends(const Band& ends, int finer, Band& out) const {
-    const Index count = middle_.end() << finer, gap = middle_.left_out() << finer;
+    const Index count = blocks_.boundary_blocks() << finer, gap = blocks_.omitted_blocks() << finer;
     out.resize(ends.size() + static_cast<std::size_t>(gap));
     std::copy_n(ends.begin(), count, out.begin());
-    const Index behind = (middle_.blocks() - middle_.end()) << finer;
+    const Index behind = (blocks_.total_blocks() - blocks_.boundary_blocks()) << finer;
     std::copy(ends.begin() + (behind - gap), ends.end(), out.begin() + behind);
   }
 
   // Blocks first ... last - 1. Of level k - 1 the outputs from ... to - 1 of level k need
   // 2 from + start ... 2 (to - 1) + start + taps - 1, which are more than the part's own.
   void transform_part(Index first, Index last, Scratch& scratch, Decomposition& out) const {
-    std::array<Index, Middle::kMostLevels + 1> from, to;
+    std::array<Index, InteriorBlocks::kMostLevels + 1> from, to;
     from[levels_] = first;
     to[levels_] = last;
     for (int k = levels_; k > 0; --k) {
@@ -122,7 +123,7 @@ class LongTransform {
   int levels_;
   std::span<const double> signal_;
   Index taps_, start_;
-  Middle middle_;
+  InteriorBlocks blocks_;
 };
 
 }  // namespace

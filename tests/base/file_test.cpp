@@ -95,6 +95,17 @@ TEST(FileBytes, ReadsAPipe) {
   EXPECT_EQ(read.text(), bytes);
 }
 
+TEST(FileBytes, OfARegularFileRefusesWhatMayNeverEnd) {
+  const TemporaryFolder folder;
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const fs::path& path : {pipe, fs::path("/dev/zero")})
+    EXPECT_THAT(
+        [&] { FileBytes::of_regular_file(path); },
+        ThrowsMessage<DataError>(path.string() + ": is a pipe or a device, expected a file"));
+  EXPECT_EQ(FileBytes::of_regular_file(folder.file("a", "bytes")).text(), "bytes");
+}
+
 TEST(FileBytes, KeepsItsBytesWhenMoved) {
   const TemporaryFolder folder;
   FileBytes mapped(folder.file("a", "mapped"));

@@ -50,7 +50,7 @@ struct BadInputs {
 
 std::vector<BadInputs> bad_problems(), bad_data(), bad_formats();
 
-/// What a command is told that it cannot do.
+/// Arguments that a command refuses.
 struct BadUsage {
   std::string name;
   std::vector<std::string> arguments;

@@ -70,20 +70,21 @@ std::string section(const std::string& title, std::span<const BadManifest> list)
 TEST(Documents, FaultsAreWhatTheProgramSays) {
   const std::string text =
       "# Faults\n\n"
-      "What can be wrong with what slideway is given, and what it then says: one line on standard\n"
-      "error behind `slideway: `, nothing on standard output, no file written. Long messages are "
-      "cut\n"
-      "here. Each row is a case of the test above its table; the tables are made by running "
-      "them.\n\n"
+      "Faults of the input, and the message of each: one line on standard error after `slideway: "
+      "`,\n"
+      "nothing on standard output, no file written. Long messages are cut here. Each row is a case "
+      "of\n"
+      "the test named above its table; the tests write the tables.\n\n"
       "Exit codes: 0 done, 1 failed while working, 2 bad usage or bad problem file, 3 unreadable "
       "or\n"
       "invalid data, 4 negative verdict (`--strict` only), 5 batch finished with failed items.\n\n"
-      "What is wrong with one item of a batch stands in its line of the results, `status` and\n"
-      "`reason`, and stops no other: `bad_problem`, `bad_data` and `failed` as the exit codes 2, "
-      "3\n"
-      "and 1 of `identify`, `timeout`, `out_of_memory`, `crashed`\n"
-      "(`cli/Batch.OneBadItemStopsAndChangesNoOther`, `batch/Workers`).\n\n"
-      "A file is written whole or not at all, also when a signal ends the program while it writes\n"
+      "If an item of a batch fails, its line of the results has a `status` and a `reason`, and all "
+      "other\n"
+      "items are run. `bad_problem`, `bad_data` and `failed` correspond to the exit codes 2, 3 and "
+      "1 of\n"
+      "`identify`; the others are `timeout`, `out_of_memory` and `crashed`\n"
+      "(`cli/Batch.OneBadItemStopsAndChangesNoOther`, `batch/ProcessPool`).\n\n"
+      "A file is written completely or not at all, also when a signal ends the program\n"
       "(`cli/Signal/Interrupted`, `base/WriteFile`). Every reader is fuzzed: `./dev fuzz`.\n" +
       section("Problem file", bad_problems()) + section("Data", bad_data()) +
       section("File formats", bad_formats()) +

@@ -92,25 +92,26 @@ const std::map<std::string, std::string> kTooMany{
     {"[truth]", kGood + "[truth]\nzzz = 1\n"}};
 
 TEST_F(Help, ListsTheKeysOfTheProblemFileThatTheReaderAccepts) {
-  std::map<std::string, std::set<std::string>> told;
+  std::map<std::string, std::set<std::string>> documented;
   std::string section;
   for (const std::string& line : lines_of(run({"help", "problem-file"}).out)) {
     if (line.starts_with("[") || line.starts_with("priors = ")) section = line;
     if (line.starts_with("    ") && line[4] != ' ')
-      told[section].insert(line.substr(4, line.find(' ', 4) - 4));
+      documented[section].insert(line.substr(4, line.find(' ', 4) - 4));
   }
   for (const char* table : {"machine", "low_band", "profile", "effect", "runout", "trace", "truth"})
-    told[""].insert(table);
+    documented[""].insert(table);
   for (const auto& [heading, problem] : kTooMany) {
     write_file(path("problem.toml"), problem);
     const std::string why = run({"fit", "problem.toml"}).err;
     const std::size_t accepted = why.find("accepted: ");
     ASSERT_NE(accepted, std::string::npos) << heading << ": " << why;
     std::istringstream words(why.substr(accepted + 10));
-    EXPECT_EQ(told[heading], (std::set<std::string>{std::istream_iterator<std::string>(words), {}}))
+    EXPECT_EQ(documented[heading],
+              (std::set<std::string>{std::istream_iterator<std::string>(words), {}}))
         << heading;
   }
-  EXPECT_EQ(told.size(), kTooMany.size());
+  EXPECT_EQ(documented.size(), kTooMany.size());
 }
 
 TEST_F(Help, MakesManualPagesOfTheSameWords) {

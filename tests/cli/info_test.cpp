@@ -80,9 +80,9 @@ TEST_F(Info, SaysWhereNothingIsKnown) {
   EXPECT_TRUE(info["position_unit"].is_null());
   EXPECT_TRUE(info["step_min"].is_null());
   EXPECT_THAT(run({"info", "bare.txt"}).out, HasSubstr("unit not stated"));
-  const json told = json::parse(
+  const json document = json::parse(
       run({"info", "bare.txt", "--position-unit", "mm", "--value-unit", "um", "--json", "-"}).out);
-  EXPECT_EQ(told["value_unit"], "um");
+  EXPECT_EQ(document["value_unit"], "um");
 }
 
 // U+2800 and above are three bytes each, so a line of 66 of them with its label has 80 characters
@@ -138,7 +138,7 @@ TEST_F(Info, RefusesInOneLine) {
 }
 
 // 3 by 3 lines of 13 stations, 10 mm apart, on a plane; one is off by 5 um where it crosses the
-// middle one. By hand: an error of one reading at the centre is seen there as it is.
+// middle one. By hand: an error of one reading at the centre appears there unchanged.
 TEST_F(Info, ClosesTheLinesOfAProblemWithoutAnEffect) {
   std::string problem;
   for (const std::string axis : {"x", "y"})

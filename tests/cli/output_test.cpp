@@ -114,6 +114,16 @@ const BadUsage kBadOutputs[] = {
 INSTANTIATE_TEST_SUITE_P(Bad, BadOutputs, testing::ValuesIn(kBadOutputs),
                          [](const auto& output) { return output.param.name; });
 
+TEST_F(Output, HoldsNoLogLinesOfLibraries) {
+  folder_.file("problem.toml", ProblemText{}.text());
+  folder_.file("face.csv", face_csv(64));
+  const ProgramRun done =
+      run_program({"identify", "problem.toml"},
+                  {folder_.path(), {}, {{"GLOG_v", "9"}, {"GLOG_logtostderr", "1"}}});
+  EXPECT_EQ(done.exit_code, 0);
+  EXPECT_EQ(done.err, "");
+}
+
 TEST_F(Output, NeverReplacesTheInput) {
   const std::string problem = ProblemText{}.text(), csv = face_csv(64);
   folder_.file("problem.toml", problem);

@@ -30,7 +30,7 @@ struct ProgramSetup {
 /// Runs the program as a shell would and waits for its end.
 ProgramRun run_program(const std::vector<std::string>& arguments, const ProgramSetup& setup);
 
-/// What a refusal must look like: this exit code, nothing on stdout, one line on stderr.
+/// The form of a refusal: this exit code, nothing on stdout, one line on stderr.
 testing::AssertionResult is_refused(const ProgramRun& run, int exit_code);
 
 std::string contents(const std::filesystem::path& file);

@@ -64,8 +64,8 @@ class Terminal {
 
 class OnTerminal : public ProgramTest {
  protected:
-  [[nodiscard]] std::string seen(const std::vector<std::string>& arguments,
-                                 const std::map<std::string, std::string>& environment) const {
+  [[nodiscard]] std::string shown(const std::vector<std::string>& arguments,
+                                  const std::map<std::string, std::string>& environment) const {
     Terminal terminal;
     run_program(
         arguments,
@@ -89,13 +89,13 @@ TEST_F(OnTerminal, HeadingsAndVerdictsAreColouredAndTheTextIsTheSame) {
   const std::vector<std::string> arguments{"identify",
                                            shipped("problems/milling-machine-way/problem.toml")};
   const std::string plain = run(arguments).out;
-  const std::string coloured = seen(arguments, {{"TERM", "xterm"}, {"NO_COLOR", ""}});
+  const std::string coloured = shown(arguments, {{"TERM", "xterm"}, {"NO_COLOR", ""}});
   EXPECT_THAT(plain, Not(HasSubstr("\033")));
   EXPECT_THAT(coloured, HasSubstr("\033[1mInputs\033[22m\n"));
   EXPECT_THAT(coloured, ContainsRegex("Closed loop: \033\\[3[123]m"));
   EXPECT_EQ(without_colours(coloured), plain);
-  EXPECT_EQ(seen(arguments, {{"TERM", "xterm"}, {"NO_COLOR", "1"}}), plain);
-  EXPECT_EQ(seen(arguments, {{"TERM", "dumb"}, {"NO_COLOR", ""}}), plain);
+  EXPECT_EQ(shown(arguments, {{"TERM", "xterm"}, {"NO_COLOR", "1"}}), plain);
+  EXPECT_EQ(shown(arguments, {{"TERM", "dumb"}, {"NO_COLOR", ""}}), plain);
 }
 
 TEST_F(OnTerminal, IdentifySaysWhatItIsAtAndSinceWhen) {

@@ -125,7 +125,7 @@ TEST(Dialect, RefusesWhatCanBeReadInTwoWaysUntilAsked) {
 
   const std::string doubled = "x,z\n0,25,1,5\n0,5,2,5\n";
   EXPECT_EQ(complaint(doubled),
-            "line 2: 4 fields under 2 names; decimal commas between commas cannot be told apart "
+            "line 2: 4 fields under 2 names; decimal commas between commas are ambiguous "
             "(if they are none, say decimal = \".\")");
   EXPECT_THAT(parse(doubled, {.decimal = "."}).columns[1], ElementsAre(25.0, 5.0));
 }

@@ -55,6 +55,17 @@ TEST_F(ReadTable, TakesEveryDelimiter) {
   }
 }
 
+// Rows after a lone carriage return would be lost without a word.
+TEST_F(ReadTable, RefusesACarriageReturnInsideALine) {
+  const std::string what =
+      ": a carriage return inside the line; accepted: lines that end in CR LF or LF";
+  EXPECT_EQ(complaint("1,2\r\n3,4\r5,6\r\n7,8\r\n"), "line 2" + what);
+  EXPECT_EQ(complaint("1,2,9\r3,4,9\r5,6,9\r"), "line 1" + what);
+  EXPECT_EQ(complaint("x,z\r1,2\r\n3,4\r\n"), "line 1" + what);
+  EXPECT_EQ(complaint("1,2\n3,4\n5,6,7\r8,9,1\n"), "line 3" + what);
+  EXPECT_THAT(read("1,2\r\r\n3,4\r\r\n").columns[0], ElementsAre(1.0, 3.0));
+}
+
 TEST_F(ReadTable, TakesBomCrlfCommentsEmptyLinesAndNoLastNewline) {
   const std::string text =
       "\xef\xbb\xbf# made by hand\r\n\r\n \"x_mm\" , z_um\r\n1,2\r\n  # pause, 7\r\n \t\r\n3,4";
@@ -99,6 +110,9 @@ TEST_F(ReadTable, SaysWhichFieldIsNoNumber) {
   EXPECT_EQ(complaint("0,0\n1e,1\n"), "line 2, column 1: '1e' is no number");
   EXPECT_EQ(complaint("0,0\n1.2.3,1\n"), "line 2, column 1: '1.2.3' is no number");
   EXPECT_EQ(complaint("0,0\n1e999,1\n"), "line 2, column 1: '1e999' is no number");
+  EXPECT_EQ(complaint("0,0\n1e-999,1\n"), "line 2, column 1: '1e-999' is no number");
+  EXPECT_EQ(complaint("0,0\n+-1,1\n"), "line 2, column 1: '+-1' is no number");
+  EXPECT_EQ(complaint("0;0\n-1e-999;0,5\n"), "line 2, column 1: '-1e-999' is no number");
   EXPECT_EQ(complaint("0,0\n1 5,1\n"), "line 2, column 1: '1 5' is no number");
 }
 

@@ -1,10 +1,17 @@
-# Runs the layer check over made-up trees of one file and looks at what it says.
+# Runs the layer check over made-up trees of one source file and looks at what it says.
 cmake_minimum_required(VERSION 3.25)
+get_filename_component(docs ${CHECK}/../../docs ABSOLUTE)
+set(drawing "")
 
 # expect(path contents message): the check fails with that message; an empty one: it passes.
 function(expect path contents message)
   file(REMOVE_RECURSE ${TREE})
   file(WRITE ${TREE}/${path} "${contents}")
+  if(drawing STREQUAL "")
+    file(COPY ${docs}/architecture.md DESTINATION ${TREE}/docs)
+  else()
+    file(WRITE ${TREE}/docs/architecture.md "${drawing}")
+  endif()
   execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${TREE} -P ${CHECK}
                   RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(message STREQUAL "" AND NOT status EQUAL 0)
@@ -37,4 +44,6 @@ expect(include/slideway/report/a.hpp "${once}#include <nlohmann/json.hpp>\n"
 string(REPEAT "\n" 400 long)
 expect(src/base/a.cpp "${long}" "")
 expect(src/base/a.cpp "${long}\n" "401 lines")
+set(drawing "`base` ← `machine` ← `format`\n")
+expect(src/base/a.cpp "\n" "architecture.md: has no line `base` ← `format` ←")
 file(REMOVE_RECURSE ${TREE})

@@ -199,7 +199,7 @@ TEST(EffectiveObservations, IsBartlettsFormulaAtShortAndLongMemory) {
     }
 }
 
-// Beyond lag 36 eight lags have the product in their middle, half a lag off and smoothed over
+// Beyond lag 36 eight lags share the product at their centre, half a lag off and smoothed over
 // fifteen: of a memory of 100 values that is below 1 % of the sum.
 TEST(EffectiveObservations, OfALongSeriesIsBartlettsFormulaForMeansAtLongLags) {
   constexpr std::size_t kSamples = 20'000;

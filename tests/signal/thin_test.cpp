@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slideway/base/units.hpp"
-
 namespace slideway {
 namespace {
 
@@ -39,21 +37,6 @@ TEST(Envelope, HoldsTheSeries) {
   const Envelope found = envelope(series, 2);
   EXPECT_EQ(found.low, (std::vector<double>{1, -3}));
   EXPECT_EQ(found.high, (std::vector<double>{5, 4}));
-}
-
-TEST(AmplitudeSpectrum, FindsASineOfItsAmplitudeAtItsFrequency) {
-  constexpr double kFrequency = 64.0 / 1024.0, kAmplitude = 0.7;
-  std::vector<double> series(1024);
-  for (std::size_t i = 0; i < series.size(); ++i)
-    series[i] = 5.0 + kAmplitude * std::sin(2.0 * kPi * kFrequency * static_cast<double>(i));
-  const Spectrum found = amplitude_spectrum(series, 100);
-  const auto most = std::max_element(found.amplitude.begin(), found.amplitude.end());
-  EXPECT_NEAR(*most, kAmplitude, 1e-9);  // a whole number of periods: no leakage
-  EXPECT_NEAR(found.cycles_per_sample[most - found.amplitude.begin()], kFrequency, 1e-12);
-}
-
-TEST(AmplitudeSpectrum, OfNothingIsEmpty) {
-  EXPECT_TRUE(amplitude_spectrum(std::vector<double>{1, 2}, 10).amplitude.empty());
 }
 
 }  // namespace

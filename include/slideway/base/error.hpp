@@ -2,17 +2,16 @@
 
 #include <stdexcept>
 
-/// What the library throws. Expected outcomes (not converged, rank deficient, inconsistent) are
-/// values, never exceptions. Every message is one line and says where, what is wrong, and what is
-/// accepted.
+/// Exceptions of the library. Expected outcomes (not converged, rank deficient, inconsistent) are
+/// values, never exceptions. Every message is one line: the place, what is wrong, what is accepted.
 namespace slideway {
 
-/// The caller's or the problem file's fault; the program ends with exit code 2.
+/// A fault of the caller or of the problem file; exit code 2 of the program.
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A data file that cannot be read or holds what it must not; exit code 3.
+/// A data file that cannot be read or is invalid; exit code 3.
 struct DataError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -8,11 +8,13 @@
 
 namespace slideway {
 
-/// The bytes of a file, mapped read-only; empty files and pipes are read instead.
-/// @throws DataError if it is missing, a directory, or cannot be read: "path: what is wrong".
+/// The bytes of a file. A regular file is mapped read-only; an empty file or a pipe is read.
+/// @throws DataError  "path: what is wrong" if it is missing, is a directory or cannot be read
 class FileBytes {
  public:
   explicit FileBytes(const std::filesystem::path& path);
+  /// @throws DataError  also for a pipe, a socket or a device, which may never end
+  static FileBytes of_regular_file(const std::filesystem::path& path);
   ~FileBytes();
   FileBytes(FileBytes&& other) noexcept;
   FileBytes& operator=(FileBytes&& other) noexcept;
@@ -21,8 +23,8 @@ class FileBytes {
 
   [[nodiscard]] std::string_view text() const { return {data_, size_}; }
 
-  /// Gives back the memory of the bytes from `first` up to `last` where they are mapped; they are
-  /// read again if they are looked at. For large files that are passed through once.
+  /// Releases the mapped pages between `first` and `last`; a later access reads them again. For
+  /// large files that are read once.
   void forget(std::size_t first, std::size_t last) const;
 
  private:
@@ -35,18 +37,18 @@ class FileBytes {
 /// SHA-256 of the bytes, 64 lower-case hexadecimal digits (FIPS 180-4).
 std::string sha256(std::string_view bytes);
 
-/// The same of a file, whose bytes it forgets behind itself.
+/// SHA-256 of a file, whose pages are released after use.
 std::string sha256(const FileBytes& file);
 
-/// Makes a directory and those above it unless it is there.
+/// Makes a directory and its parents if they do not exist.
 /// @throws std::runtime_error naming the path and the cause
 void make_directory(const std::filesystem::path& path);
 
-/// A file that is written whole or not at all, whatever signal ends the process meanwhile: a file
-/// without a name, which gets it when it is whole. Over an older file a temporary name beside it
-/// stands in for a moment, where the file system knows no such files from the start; signals wait
-/// as long. Devices and pipes are written directly.
-/// @throws std::runtime_error naming the path and the cause; the old file is then untouched.
+/// A file that is written completely or not at all, also if a signal ends the process. The bytes go
+/// to an unnamed file (O_TMPFILE), which is linked when it is complete. To replace an existing
+/// file, or on a file system without unnamed files, a temporary name is used and renamed while
+/// signals are blocked. Devices and pipes are written directly.
+/// @throws std::runtime_error  "path: cannot be written: cause"; an older file is then unchanged
 class WholeFile {
  public:
   explicit WholeFile(std::filesystem::path path);
@@ -55,20 +57,20 @@ class WholeFile {
   WholeFile& operator=(const WholeFile&) = delete;
 
   void append(std::string_view bytes);
-  /// The file is there from now on.
+  /// Makes the file visible under its name.
   void finish();
 
  private:
   class Target;
   std::filesystem::path path_;
-  std::string pending_;  // many small pieces are one write
+  std::string pending_;  // buffer for small pieces
   std::unique_ptr<Target> target_;
 };
 
-/// The same in one go.
+/// Writes a whole file.
 void write_file(const std::filesystem::path& path, std::string_view contents);
 
-/// Writes all bytes into an open file; 0, or the number of the error.
+/// Writes all bytes to a file descriptor. @return 0 or errno
 int write_all(int file, std::string_view bytes);
 
 /// @throws std::runtime_error "path: cannot be written: cause"

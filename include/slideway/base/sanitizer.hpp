@@ -2,8 +2,7 @@
 
 namespace slideway {
 
-/// Whether a sanitizer keeps a shadow of all memory: limits of memory are then beyond keeping, and
-/// what saves fresh pages costs them.
+/// Whether a sanitizer keeps shadow memory: memory limits and huge pages are then not used.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kHasShadow = true;
 #elif defined(__has_feature)

@@ -10,9 +10,9 @@
 /// Text and numbers, the same in every locale.
 namespace slideway {
 
-/// The number a whole field spells, correctly rounded; blanks around it and a leading '+' are
-/// allowed. Nothing if the field is empty, spells anything else, or lies outside the range of
-/// double. "nan" and "inf" are numbers here.
+/// The value of a whole field, correctly rounded; blanks around it and a leading '+' are allowed.
+/// Nothing if the field is empty, is not a number, or lies outside the range of double. "nan" and
+/// "inf" are numbers here.
 std::optional<double> parse_double(std::string_view field);
 
 /// Shortest text that reads back as the same double, with '.' as decimal point.
@@ -30,11 +30,11 @@ std::string joined(std::span<const std::string> words, std::string_view separato
 /// "1 row", "2 rows".
 std::string counted(std::size_t count, const std::string& singular);
 
-/// Two lower-case digits a byte: "0fbf".
+/// Two lower-case digits per byte: "0fbf".
 std::string hexadecimal(std::span<const unsigned char> bytes);
 
-/// Foreign text fit for a one-line message: its first `limit` characters, "..." if that cut it,
-/// and '?' for control characters and for bytes that are no UTF-8.
+/// Text from outside, safe for a one-line message: its first `limit` characters, "..." if it is
+/// longer, and '?' for control characters (C0, C1, writing direction) and for invalid UTF-8.
 std::string printable(std::string_view text, std::size_t limit = 24);
 
 /// " (did you mean 'squareness'?)" for the accepted word nearest to a mistyped one, or "" if none

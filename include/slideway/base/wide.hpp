@@ -8,9 +8,9 @@ template <typename Loop>
   loop();
 }
 
-/// Runs a loop over numbers four at a time where the processor can (AVX2), two at a time elsewhere,
-/// with the same result to the last bit: nothing is fused, and no sum gets another order. For small
-/// loops that a compiler vectorises; all they call becomes part of them.
+/// Runs a loop compiled for AVX2 (four doubles) if the processor has it, else for SSE2 (two
+/// doubles). The result is the same to the last bit: no operation is fused, no sum reordered. For
+/// small loops that a compiler vectorises; the functions they call are inlined.
 template <typename Loop>
 void wide(const Loop& loop) {
   static const bool kHasAvx2 = __builtin_cpu_supports("avx2") != 0;

@@ -7,7 +7,7 @@
 
 namespace slideway {
 
-/// Delimited text whose fields are texts: one header line, then rows.
+/// Delimited text with text fields: one header line, then rows.
 struct TextRows {
   struct Row {
     std::size_t line = 0;             // in the file, from 1
@@ -18,12 +18,13 @@ struct TextRows {
   std::vector<Row> rows;
 };
 
-/// Reads such a text, written as parse_table() accepts it: columns between commas, semicolons or
-/// tabs, whichever the header has; UTF-8, UTF-16 or Latin-1; '#' and empty lines passed over. A
-/// field in double quotes may hold the delimiter, and quotes doubled. A row may leave out fields at
-/// its end; they are empty.
-/// @throws DataError  "line 3: what is wrong": no header, a name that is empty or there twice, more
-///                    fields than names, quotes that do not end
+/// Parses such a text: columns separated by commas, semicolons or tabs, as in the header; UTF-8,
+/// UTF-16 or Latin-1; lines that start with '#' and empty lines are skipped. A field in double
+/// quotes may contain the delimiter and doubled quotes. Missing fields at the end of a row are
+/// empty.
+/// @throws DataError  "line 3: what is wrong": no header, an empty or repeated name, more fields
+/// than
+///                    names, unclosed quotes
 TextRows parse_rows(std::string_view bytes);
 
 }  // namespace slideway

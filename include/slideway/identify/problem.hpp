@@ -79,8 +79,8 @@ struct Problem {
   [[nodiscard]] Machine machine() const { return {bodies, lever}; }
 };
 
-/// Reads a problem file (TOML). `data_dir` replaces ${SLIDEWAY_DATA} in paths; without it the
-/// environment variable of that name does.
+/// Reads a problem file (TOML). `data_dir` replaces ${SLIDEWAY_DATA} in paths; without it such a
+/// path is refused.
 /// @throws UsageError  "file:line: key: what is wrong; accepted: ..." for an unknown key, a missing
 ///                     unit, a wrong type, a value out of range; a file that is not there or is no
 ///                     TOML

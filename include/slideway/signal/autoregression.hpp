@@ -27,14 +27,16 @@ class Autoregression {
   /// Autocorrelation ρ_0 ... ρ_max_lag.
   [[nodiscard]] std::vector<double> autocorrelation(int max_lag) const;
 
-  /// Σ over all lags of ρ: a mean of n samples has variance Var(e) / n times this.
+  /// Long-run variance over Var(e): Σ of ρ over all lags. The mean of n samples has the variance
+  /// Var(e) / n times this ratio.
   [[nodiscard]] double long_run_ratio() const;
 
-  /// Rows made independent with the variance of u: row t minus its prediction from the rows before,
-  /// divided by sqrt(relative_variance). In place; exact for the first rows too.
+  /// Whitens rows in place: row t minus its prediction from earlier rows, divided by
+  /// sqrt(relative_variance). The result is independent with the variance of u, also in the first
+  /// rows.
   void whiten(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
-  /// The inverse of whiten(): independent rows become this noise. In place.
+  /// The inverse of whiten(), in place: independent rows become this noise.
   void colour(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
   /// X' R X, where R is the covariance of the noise with unit innovations.

@@ -7,7 +7,7 @@
 
 namespace slideway {
 
-/// Pearson's coefficient, Eq. (6). Nothing correlates with a constant: then 0.
+/// Pearson's coefficient, Eq. (6); 0 if x or y is constant.
 /// REQUIRES x.size() == y.size().
 double pearson(std::span<const double> x, std::span<const double> y);
 
@@ -20,7 +20,7 @@ struct RunningCoefficient {
 RunningCoefficient running_pearson(std::span<const double> x, std::span<const double> y,
                                    std::size_t points);
 
-/// The same with y made by `fill` a part at a time, from sample `first` on, in order.
+/// running_pearson() with y computed by `fill` in parts, in order, from sample `first` on.
 using FillSeries = std::function<void(std::size_t first, std::span<double> part)>;
 RunningCoefficient running_pearson(std::span<const double> x, const FillSeries& fill,
                                    std::size_t points);
@@ -36,10 +36,10 @@ Lag best_lag(std::span<const double> x, std::span<const double> y, int max_lag);
 /// Autocorrelation r_0 = 1, r_1 ... r_max_lag of a series (biased estimator, mean removed).
 std::vector<double> autocorrelation(std::span<const double> x, int max_lag);
 
-/// Number of independent observations the correlation of x and y rests on,
+/// Effective number of observations for the correlation of x and y,
 ///   N / (1 + 2 Σ_k (1 - k/N) r_x(k) r_y(k))   (Bartlett),
-/// the sum cut at the first lag where the product is no longer positive; between 3 and N. Of more
-/// than 16,384 values lags beyond 36 are those of means of 8.
+/// with the sum truncated at the first lag whose product is not positive; between 3 and N. For more
+/// than 16,384 values, lags beyond 36 use means of 8.
 double effective_observations(std::span<const double> x, std::span<const double> y);
 
 /// Two-sided p-value of a correlation coefficient r on n (effective) observations, Student's t with

@@ -11,8 +11,7 @@
 
 namespace slideway {
 
-/// Memory that a resize leaves as it is: setting it to zero would take as long as what is then
-/// written into it.
+/// An allocator whose resize does not zero the memory, which would take as long as the transform.
 template <typename Value>
 struct Unset : std::allocator<Value> {
   template <typename Other, typename... Arguments>
@@ -24,7 +23,7 @@ struct Unset : std::allocator<Value> {
 /// Samples or coefficients of a band.
 using Band = std::vector<double, Unset<double>>;
 
-/// How a signal goes on beyond its ends; the names of PyWavelets.
+/// Extension of a signal beyond its ends, with the names of PyWavelets.
 enum class Boundary {
   zero,
   constant,
@@ -44,7 +43,7 @@ inline constexpr std::string_view kBoundaries =
 Boundary boundary(std::string_view name);
 std::string_view name(Boundary boundary);
 
-/// Number of coefficients one level makes of n samples: (n + taps - 1) / 2, rounded down;
+/// Number of coefficients of one level from n samples: (n + taps - 1) / 2, rounded down;
 /// ceil(n / 2) under periodization.
 std::size_t dwt_length(std::size_t n, int taps, Boundary boundary);
 

@@ -7,15 +7,15 @@
 
 namespace slideway {
 
-/// Σ_t x_t y_(t+k) for k = first ... first + count - 1, over all t for which both are there.
+/// Σ_t x_t y_(t+k) for k = first ... first + count - 1, over all t for which both exist.
 /// REQUIRES x and y of one length.
 std::vector<double> lagged_products(std::span<const double> x, std::span<const double> y,
                                     std::ptrdiff_t first, std::size_t count);
 
-/// A matrix as matrices of as many rows, side by side.
+/// A matrix as blocks of columns, each with all rows.
 using ColumnParts = std::vector<Eigen::Ref<const Eigen::MatrixXd>>;
 
-/// So many rows of them, as one matrix.
+/// `count` rows from `first` on, as one matrix.
 Eigen::MatrixXd rows_of(const ColumnParts& parts, Eigen::Index first, Eigen::Index count);
 
 /// Σ_t x_t' x_(t-k) of a matrix with rows x_t, over t from most_lag on, for k = 0 ... most_lag.

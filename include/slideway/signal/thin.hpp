@@ -3,28 +3,19 @@
 #include <span>
 #include <vector>
 
-/// Series made short enough for a picture.
+/// Series reduced for plotting.
 namespace slideway {
 
-/// Indices, rising, of at most `limit` samples of series that share their positions: from each of
-/// equal stretches where every series is lowest and highest, and both ends. All indices where there
-/// are no more. REQUIRES at least one series, all of one length, 2 * #series + 2 <= limit.
+/// Indices, increasing, of at most `limit` samples of series with common positions: both ends, and
+/// in each of equal intervals the minimum and maximum of every series. All indices if there are no
+/// more than `limit`. REQUIRES at least one series, all of one length, 2 * #series + 2 <= limit.
 std::vector<std::size_t> thinned(const std::vector<std::span<const double>>& series,
                                  std::size_t limit);
 
-/// Lowest and highest value of each of `stretches` equal stretches (of each sample where there are
-/// fewer).
+/// Minimum and maximum in each of `stretches` equal intervals (of each sample if there are fewer).
 struct Envelope {
   std::vector<double> low, high;
 };
 Envelope envelope(std::span<const double> series, std::size_t stretches);
-
-/// Amplitude of each frequency of a uniform series, its mean removed (discrete Fourier transform of
-/// the series padded with zeros): a sine of amplitude A at a frequency of its own has A there. Of
-/// neighbouring frequencies only the largest is kept, so many to a decade.
-struct Spectrum {
-  std::vector<double> cycles_per_sample, amplitude;
-};
-Spectrum amplitude_spectrum(std::span<const double> series, int per_decade);
 
 }  // namespace slideway

@@ -6,7 +6,7 @@
 
 namespace slideway {
 
-/// The numbers of a vector, where they lie. REQUIRES it to live as long.
+/// A span over the elements of a vector, which must outlive it.
 inline std::span<const double> view(const Eigen::VectorXd& values) {
   return {values.data(), static_cast<std::size_t>(values.size())};
 }

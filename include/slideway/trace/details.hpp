@@ -8,6 +8,7 @@
 #include "slideway/identify/budget.hpp"
 #include "slideway/identify/fit.hpp"
 #include "slideway/identify/straightness.hpp"
+#include "slideway/signal/spectrum.hpp"
 #include "slideway/signal/thin.hpp"
 
 /// What a report shows beside the verdict: curves, budget, predictions, the conditions of the

@@ -88,6 +88,10 @@ class SimulatedProfile:
 Profiles = Mapping[str, tuple[ArrayLike, ArrayLike]]
 
 
+def _data_folder(data: str | os.PathLike[str] | None) -> str | os.PathLike[str] | None:
+    return data or os.environ.get("SLIDEWAY_DATA") or None
+
+
 def _analysed(
     problem: Problem,
     profiles: Profiles | None,
@@ -99,7 +103,9 @@ def _analysed(
         name: (np.asarray(position, float), np.asarray(value, float))
         for name, (position, value) in (profiles or {}).items()
     }
-    document, text = _slideway.analyse(source(problem), columns, data, ranks_only, closes_loop)
+    document, text = _slideway.analyse(
+        source(problem), columns, _data_folder(data), ranks_only, closes_loop
+    )
     report: Report = made(Report, json.loads(document) | {"text": text})
     return report
 
@@ -189,7 +195,7 @@ def simulate(
             kind, quantity, "urad" if quantity == "slope" else "um", position, value
         )
         for name, kind, quantity, position, value in _slideway.simulate(
-            source(problem), seed, data
+            source(problem), seed, _data_folder(data)
         )
     }
 

@@ -1,27 +1,20 @@
-#include "slideway/batch/pool.hpp"
+#include "slideway/identify/pooling.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "slideway/base/error.hpp"
 #include "slideway/identify/identify.hpp"
 #include "trace/faces.hpp"
 
 namespace slideway {
 namespace {
 
-using testing::HasSubstr;
-
-const std::string kSquareness = "squareness.dbeta_xz";
+const std::string kSquarenessName = "squareness.dbeta_xz";
 
 /// An item that knows one parameter: value and standard uncertainty.
 PoolItem reading(const std::string& id, double value, double u) {
-  return {id, "", {{kSquareness}, {"rad"}, {{1.0 / u}}, {value / u}}};
-}
-
-std::vector<std::optional<double>> no_times(std::size_t count) {
-  return std::vector<std::optional<double>>(count);
+  return {id, {}, {{kSquarenessName}, {"rad"}, {{1.0 / u}}, {value / u}}};
 }
 
 const FittedParameter& parameter(const PooledMachine& machine, const std::string& name) {
@@ -32,18 +25,18 @@ const FittedParameter& parameter(const PooledMachine& machine, const std::string
 
 // Closed form: weights 1/u².
 TEST(Pool, OfReadingsIsTheirWeightedMean) {
-  const PooledMachine pooled = pool(
-      "M", {reading("a", 10.0, 1.0), reading("b", 11.0, 2.0), reading("c", 9.0, 2.0)}, no_times(3));
-  EXPECT_NEAR(parameter(pooled, kSquareness).value.value(), (10.0 + 11.0 / 4 + 9.0 / 4) / 1.5,
+  const PooledMachine pooled =
+      pool("M", {reading("a", 10.0, 1.0), reading("b", 11.0, 2.0), reading("c", 9.0, 2.0)});
+  EXPECT_NEAR(parameter(pooled, kSquarenessName).value.value(), (10.0 + 11.0 / 4 + 9.0 / 4) / 1.5,
               1e-12);
-  EXPECT_NEAR(parameter(pooled, kSquareness).standard_uncertainty.value(), std::sqrt(1.0 / 1.5),
+  EXPECT_NEAR(parameter(pooled, kSquarenessName).standard_uncertainty.value(), std::sqrt(1.0 / 1.5),
               1e-12);
 }
 
 // ISO 13528: E_n = |x - rest| / sqrt(U² + U_rest²), U = 2 u.
 TEST(Pool, EnIsThatOfTheDifferenceFromTheRest) {
-  const PooledMachine pooled = pool(
-      "M", {reading("a", 10.0, 1.0), reading("b", 11.0, 2.0), reading("c", 9.0, 2.0)}, no_times(3));
+  const PooledMachine pooled =
+      pool("M", {reading("a", 10.0, 1.0), reading("b", 11.0, 2.0), reading("c", 9.0, 2.0)});
   EXPECT_NEAR(*pooled.items[0].En, 0.0, 1e-12);
   const double rest = (10.0 + 9.0 / 4) / 1.25, u = std::sqrt(4.0 + 1.0 / 1.25);
   EXPECT_NEAR(*pooled.items[1].En, std::abs(11.0 - rest) / (2.0 * u), 1e-12);
@@ -52,36 +45,34 @@ TEST(Pool, EnIsThatOfTheDifferenceFromTheRest) {
 }
 
 TEST(Pool, DeterminesTogetherWhatNoItemDoesAlone) {
-  const std::vector<std::string> names{kSquareness, "vertical_straightness.c2", "thermal.a"},
+  const std::vector<std::string> names{kSquarenessName, "vertical_straightness.c2", "thermal.a"},
       units{"rad", "mm^-1", "um"};
   // Sum and difference of the two; what is the item's own is free in each.
-  const PoolItem sum{"sum", "", {names, units, {{1.0, 1.0, 0.5}, {0.0, 0.0, 2.0}}, {8.0, 2.0}}};
+  const PoolItem sum{"sum", {}, {names, units, {{1.0, 1.0, 0.5}, {0.0, 0.0, 2.0}}, {8.0, 2.0}}};
   const PoolItem difference{
-      "difference", "", {names, units, {{1.0, -1.0, 3.0}, {0.0, 0.0, 1.0}}, {5.0, 1.0}}};
-  EXPECT_FALSE(parameter(pool("M", {sum}, no_times(1)), kSquareness).identifiable);
-  const PooledMachine pooled = pool("M", {sum, difference}, no_times(2));
+      "difference", {}, {names, units, {{1.0, -1.0, 3.0}, {0.0, 0.0, 1.0}}, {5.0, 1.0}}};
+  EXPECT_FALSE(parameter(pool("M", {sum}), kSquarenessName).identifiable);
+  const PooledMachine pooled = pool("M", {sum, difference});
   // 1.0 is the item's own of both: a + b = 7.5, a - b = 2.
-  EXPECT_NEAR(parameter(pooled, kSquareness).value.value(), 4.75, 1e-12);
+  EXPECT_NEAR(parameter(pooled, kSquarenessName).value.value(), 4.75, 1e-12);
   EXPECT_NEAR(parameter(pooled, names[1]).value.value(), 2.75, 1e-12);
   EXPECT_EQ(pooled.parameters.size(), 2U);
   EXPECT_FALSE(pooled.items[0].En) << "the other says nothing of what this one says";
 }
 
 TEST(Pool, TwoThatDifferAreBothKept) {
-  const PooledMachine pooled =
-      pool("M", {reading("a", 10.0, 1.0), reading("b", 30.0, 1.0)}, no_times(2));
+  const PooledMachine pooled = pool("M", {reading("a", 10.0, 1.0), reading("b", 30.0, 1.0)});
   EXPECT_TRUE(pooled.items[0].fits && pooled.items[1].fits);
   EXPECT_NEAR(*pooled.items[0].En, 20.0 / (2.0 * std::sqrt(2.0)), 1e-12);
 }
 
 TEST(Pool, OneAmongThreeIsFlaggedAndLeftOut) {
   const PooledMachine pooled =
-      pool("M", {reading("a", 10.0, 1.0), reading("b", 30.0, 1.0), reading("c", 10.5, 1.0)},
-           no_times(3));
+      pool("M", {reading("a", 10.0, 1.0), reading("b", 30.0, 1.0), reading("c", 10.5, 1.0)});
   EXPECT_TRUE(pooled.items[0].fits);
   EXPECT_FALSE(pooled.items[1].fits);
   EXPECT_TRUE(pooled.items[2].fits);
-  EXPECT_NEAR(parameter(pooled, kSquareness).value.value(), 10.25, 1e-12);
+  EXPECT_NEAR(parameter(pooled, kSquarenessName).value.value(), 10.25, 1e-12);
   EXPECT_LT(*pooled.items[0].En, 1.0) << "held against what is left";
 }
 
@@ -90,18 +81,18 @@ TEST(Pool, MoreScatterThanUncertaintyWidensEveryUncertainty) {
   std::vector<PoolItem> items;
   for (int i = 0; i < 60; ++i)
     items.push_back(reading(std::to_string(i), 5.0 * random.normal(), 1.0));
-  const PooledMachine pooled = pool("M", items, no_times(items.size()));
+  const PooledMachine pooled = pool("M", items);
   // The standard error of a scatter from the median of 60 is 15 %: three of them.
   EXPECT_NEAR(pooled.scatter, 5.0, 2.3);
   for (const PooledItem& item : pooled.items) EXPECT_TRUE(item.fits) << item.id;
-  EXPECT_NEAR(parameter(pooled, kSquareness).standard_uncertainty.value(),
+  EXPECT_NEAR(parameter(pooled, kSquarenessName).standard_uncertainty.value(),
               pooled.scatter / std::sqrt(60.0), 1e-9);
 }
 
 TEST(Pool, ItemsOfAnotherModelAreLeftOut) {
   PoolItem other = reading("b", 10.0, 1.0);
   other.evidence.parameters = {"straightness.b2"};
-  const PooledMachine pooled = pool("M", {reading("a", 10.0, 1.0), other}, no_times(2));
+  const PooledMachine pooled = pool("M", {reading("a", 10.0, 1.0), other});
   EXPECT_THAT(pooled.left_out, testing::ElementsAre("b"));
 }
 
@@ -111,8 +102,8 @@ PoolItem face_item(std::uint64_t seed, double more_squareness, bool with_prior =
                                [=](const turning::ToolPoint& p) { return -more_squareness * p.r; }};
   const std::vector<Profile> profiles = faces::quarter_faces(hidden, 2, faces::kBlunt, seed);
   Problem problem = faces::problem_of();
-  if (with_prior) problem.effects[0].priors = {{kSquareness.substr(11), 1e-3, 1e-7}};
-  PoolItem item{std::to_string(seed), "", {}};
+  if (with_prior) problem.effects[0].priors = {{kSquarenessName.substr(11), 1e-3, 1e-7}};
+  PoolItem item{std::to_string(seed), {}, {}};
   const FittedModel declared = fit_declared(problem, profiles);
   item.evidence = evidence(declared.model, declared.fit);
   return item;
@@ -121,14 +112,14 @@ PoolItem face_item(std::uint64_t seed, double more_squareness, bool with_prior =
 TEST(PooledFaces, GiveTheMachineItsTruth) {
   std::vector<PoolItem> items;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) items.push_back(face_item(seed, 0.0));
-  const PooledMachine pooled = pool("M", items, no_times(items.size()));
-  const PooledMachine alone = pool("M", {items[0]}, no_times(1));
-  const FittedParameter& squareness = parameter(pooled, kSquareness);
+  const PooledMachine pooled = pool("M", items);
+  const PooledMachine alone = pool("M", {items[0]});
+  const FittedParameter& squareness = parameter(pooled, kSquarenessName);
   const double u = squareness.standard_uncertainty.value();
   // Of the truth three standard uncertainties; of eight like readings 1/sqrt(8), by half again.
   EXPECT_NEAR(squareness.value.value(), turning::kFaceSquareness, 3.0 * u);
-  EXPECT_NEAR(u / parameter(alone, kSquareness).standard_uncertainty.value(), std::sqrt(1.0 / 8.0),
-              0.18);
+  EXPECT_NEAR(u / parameter(alone, kSquarenessName).standard_uncertainty.value(),
+              std::sqrt(1.0 / 8.0), 0.18);
   for (const PooledItem& item : pooled.items) EXPECT_TRUE(item.fits) << item.id;
 }
 
@@ -142,7 +133,7 @@ TEST(PooledFaces, AreAJointFitOfAllProfiles) {
       all.push_back(std::move(profile));
     }
   }
-  const PooledMachine pooled = pool("M", items, no_times(items.size()));
+  const PooledMachine pooled = pool("M", items);
   const Result joint = identify(faces::problem_of(), all, Scope::fit);
   for (const FittedParameter& p : pooled.parameters) {
     const FittedParameter* const q = joint.fit->find(p.name);
@@ -158,7 +149,7 @@ TEST(PooledFaces, ANewToolPostIsFlaggedAmongTheOthers) {
   std::vector<PoolItem> items;
   for (std::uint64_t seed = 1; seed <= 7; ++seed)
     items.push_back(face_item(seed, seed == 4 ? 3e-6 : 0.0));
-  const PooledMachine pooled = pool("M", items, no_times(items.size()));
+  const PooledMachine pooled = pool("M", items);
   for (const PooledItem& item : pooled.items) {
     EXPECT_EQ(item.fits, item.id != "4") << item.id;
     if (item.id == "4") {
@@ -170,15 +161,15 @@ TEST(PooledFaces, ANewToolPostIsFlaggedAmongTheOthers) {
 TEST(PooledFaces, ShowTheTrend) {
   constexpr double kRate = 3e-7;  // rad a day; over all eight ten times what one face knows
   std::vector<PoolItem> items;
-  std::vector<std::optional<double>> days;
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    days.emplace_back(20000.0 + 10.0 * static_cast<double>(seed));
-    items.push_back(face_item(seed, kRate * 10.0 * static_cast<double>(seed)));
+    const double day = 10.0 * static_cast<double>(seed);
+    items.push_back(face_item(seed, kRate * day));
+    items.back().time = 20000.0 + day;
   }
-  const PooledMachine pooled = pool("M", items, days);
+  const PooledMachine pooled = pool("M", items);
   for (const PooledItem& item : pooled.items) EXPECT_TRUE(item.fits) << item.id;
   for (const Trend& trend : pooled.trends)
-    if (trend.parameter == kSquareness) {
+    if (trend.parameter == kSquarenessName) {
       EXPECT_NEAR(trend.rate, kRate, 1.5 * trend.expanded_uncertainty);
       EXPECT_LT(trend.p_value, 0.01);
       return;
@@ -189,22 +180,22 @@ TEST(PooledFaces, ShowTheTrend) {
 // A prior is one piece of knowledge, however many items hold it.
 TEST(PooledFaces, TakeNoPriorIn) {
   const PoolItem without = face_item(1, 0.0), with = face_item(1, 0.0, true);
-  const PooledMachine a = pool("M", {without}, no_times(1)), b = pool("M", {with}, no_times(1));
+  const PooledMachine a = pool("M", {without}), b = pool("M", {with});
   // The prior is wrong by 500 times the face's own uncertainty, and is in the residual that the
   // noise is estimated from; the value is not moved.
-  const double u = parameter(b, kSquareness).standard_uncertainty.value();
-  EXPECT_NEAR(parameter(a, kSquareness).value.value(), parameter(b, kSquareness).value.value(), u);
+  const double u = parameter(b, kSquarenessName).standard_uncertainty.value();
+  EXPECT_NEAR(parameter(a, kSquarenessName).value.value(),
+              parameter(b, kSquarenessName).value.value(), u);
 }
 
 // Ordinary least squares in closed form: equal uncertainties, residuals beyond them.
 TEST(Trend, IsTheRegressionLine) {
   const std::vector<double> x{0.0, 1.0, 2.0, 4.0}, y{1.0, 3.5, 4.5, 9.0};
   std::vector<PoolItem> items;
-  std::vector<std::optional<double>> times;
   double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     items.push_back(reading(std::to_string(i), y[i], 0.1));
-    times.emplace_back(x[i]);
+    items.back().time = x[i];
     sx += x[i], sy += y[i], sxx += x[i] * x[i], sxy += x[i] * y[i];
   }
   const double n = 4.0, rate = (n * sxy - sx * sy) / (n * sxx - sx * sx);
@@ -212,33 +203,11 @@ TEST(Trend, IsTheRegressionLine) {
   for (std::size_t i = 0; i < x.size(); ++i)
     rest += std::pow(y[i] - sy / n - rate * (x[i] - sx / n), 2);
   // All that differ are kept: of four, none but a minority may be left out, and these disagree.
-  const PooledMachine pooled = pool("M", items, times);
+  const PooledMachine pooled = pool("M", items);
   if (std::ranges::all_of(pooled.items, &PooledItem::fits)) {
     EXPECT_NEAR(pooled.trends.at(0).rate, rate, 1e-9);
     EXPECT_NEAR(pooled.trends.at(0).standard_uncertainty,
                 std::sqrt(rest / (n - 2.0) / (sxx - sx * sx / n)), 1e-9);
-  }
-}
-
-TEST(Times, AreNumbersOrDates) {
-  const auto times = [](const std::string& a, const std::string& b) {
-    return read_times(
-        parse_manifest("id,problem,time\n1,p," + a + "\n2,p," + b + "\n3,p,\n", "m.csv"));
-  };
-  // 2000-01-01 is day 10957 since 1970: 30 years with 7 leap days.
-  const Times dates = times("2000-01-01", "2000-01-02T06:00");
-  EXPECT_TRUE(dates.are_dates);
-  EXPECT_EQ(dates.values[0], 10957.0);
-  EXPECT_EQ(dates.values[1], 10958.25);
-  EXPECT_FALSE(dates.values[2]);
-  EXPECT_EQ(times("1.5", "2e3").values[1], 2000.0);
-  for (const char* bad : {"2026-13-01", "yesterday", "nan", "2026-02-30", "2026-01-01x"}) {
-    try {
-      times("2000-01-01", bad);
-      ADD_FAILURE() << bad;
-    } catch (const DataError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("m.csv: line 3: column 'time'"));
-    }
   }
 }
 

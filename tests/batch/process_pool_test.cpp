@@ -1,4 +1,4 @@
-#include "slideway/batch/workers.hpp"
+#include "slideway/batch/process_pool.hpp"
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>
@@ -19,14 +19,15 @@ namespace {
 using std::chrono::milliseconds;
 using testing::HasSubstr;
 
-/// Everything the hands answer to these tasks.
-std::map<std::string, Answer> answers(Hands& hands, const std::vector<std::string>& tasks) {
-  std::map<std::string, Answer> out;
-  for (auto next = tasks.begin(); next != tasks.end() || hands.busy() > 0;) {
-    while (next != tasks.end() && hands.has_idle()) hands.give(*next++);
-    for (Answer& answer : hands.wait(milliseconds(1000))) {
-      std::string task = answer.task;
-      out.emplace(std::move(task), std::move(answer));
+/// The results of these tasks, by task.
+std::map<std::string, TaskResult> results_of(TaskPool& pool,
+                                             const std::vector<std::string>& tasks) {
+  std::map<std::string, TaskResult> out;
+  for (auto next = tasks.begin(); next != tasks.end() || pool.pending() > 0;) {
+    while (next != tasks.end() && pool.has_idle()) pool.submit(*next++);
+    for (TaskResult& result : pool.collect(milliseconds(1000))) {
+      std::string task = result.task;
+      out.emplace(std::move(task), std::move(result));
     }
   }
   return out;
@@ -41,25 +42,25 @@ std::string work(const std::string& task) {
   return "did " + task;
 }
 
-TEST(Workers, EveryTaskIsAnsweredOnce) {
+TEST(ProcessPool, EveryTaskHasOneResult) {
   for (const std::size_t count : {1U, 2U, 5U}) {
-    Workers workers(count, work, {});
+    ProcessPool workers(count, work, {});
     std::vector<std::string> tasks;
     for (int i = 0; i < 300; ++i) tasks.push_back(std::to_string(i));
-    const auto done = answers(workers, tasks);
+    const auto done = results_of(workers, tasks);
     ASSERT_EQ(done.size(), tasks.size());
-    for (const auto& [task, answer] : done) EXPECT_EQ(answer.reply, "did " + task);
+    for (const auto& [task, result] : done) EXPECT_EQ(result.reply, "did " + task);
   }
 }
 
-TEST(Workers, RepliesMayBeLong) {
-  Workers workers(2, work, {});
-  EXPECT_EQ(answers(workers, {"long", "a"}).at("long").reply, std::string(10'000'000, 'x'));
+TEST(ProcessPool, RepliesMayBeLong) {
+  ProcessPool workers(2, work, {});
+  EXPECT_EQ(results_of(workers, {"long", "a"}).at("long").reply, std::string(10'000'000, 'x'));
 }
 
-TEST(Workers, ACrashIsAnAnswerAndChangesNoOther) {
-  Workers workers(2, work, {});
-  const auto done = answers(workers, {"a", "crash", "b", "leave", "c", "d"});
+TEST(ProcessPool, ACrashIsAResultAndChangesNoOther) {
+  ProcessPool workers(2, work, {});
+  const auto done = results_of(workers, {"a", "crash", "b", "leave", "c", "d"});
   EXPECT_FALSE(done.at("crash").reply);
   EXPECT_EQ(done.at("crash").cause, status::kCrashed);
   EXPECT_EQ(done.at("leave").reason, "ended with exit code 7");
@@ -67,23 +68,23 @@ TEST(Workers, ACrashIsAnAnswerAndChangesNoOther) {
     EXPECT_EQ(done.at(task).reply, std::string("did ") + task);
 }
 
-TEST(Workers, WhatTakesTooLongIsEnded) {
-  Workers workers(2, work, {.time = milliseconds(200)});
-  const auto done = answers(workers, {"a", "sleep", "b", "c"});
+TEST(ProcessPool, WhatTakesTooLongIsEnded) {
+  ProcessPool workers(2, work, {.time = milliseconds(200)});
+  const auto done = results_of(workers, {"a", "sleep", "b", "c"});
   EXPECT_EQ(done.at("sleep").cause, status::kTimeout);
   EXPECT_EQ(done.at("sleep").reason, "took longer than 0.2 s");
   EXPECT_EQ(done.at("c").reply, "did c");
 }
 
-TEST(Workers, OneThatWasEndedWhileIdleIsReplaced) {
-  Workers workers(1, work, {});
-  const pid_t process = std::stoi(*answers(workers, {"process"}).at("process").reply);
+TEST(ProcessPool, OneThatWasEndedWhileIdleIsReplaced) {
+  ProcessPool workers(1, work, {});
+  const pid_t process = std::stoi(*results_of(workers, {"process"}).at("process").reply);
   ::kill(process, SIGKILL);
   std::this_thread::sleep_for(milliseconds(100));
-  EXPECT_EQ(answers(workers, {"a"}).at("a").reply, "did a");
+  EXPECT_EQ(results_of(workers, {"a"}).at("a").reply, "did a");
 }
 
-TEST(Workers, MemoryIsLimited) {
+TEST(ProcessPool, MemoryIsLimited) {
   if (kHasShadow) GTEST_SKIP() << "the shadow of a sanitizer is beyond any limit";
   const auto greedy = [](const std::string& task) {
     try {
@@ -92,22 +93,22 @@ TEST(Workers, MemoryIsLimited) {
       return std::string("no");
     }
   };
-  Workers workers(1, greedy, {.memory_bytes = 300'000'000});
-  const auto done = answers(workers, {"1000000000", "1000"});
+  ProcessPool workers(1, greedy, {.memory_bytes = 300'000'000});
+  const auto done = results_of(workers, {"1000000000", "1000"});
   EXPECT_EQ(done.at("1000000000").reply, "no");
   EXPECT_EQ(done.at("1000").reply, "1000");
 }
 
-TEST(Workers, EndWithTheirParent) {
+TEST(ProcessPool, EndWithTheirParent) {
   int ends[2];
   ASSERT_EQ(::pipe(ends), 0);
   const pid_t parent = ::fork();
   if (parent == 0) {
-    Workers workers(1, work, {});
-    workers.give("process");
-    const std::vector<Answer> done = workers.wait(milliseconds(1000));
+    ProcessPool workers(1, work, {});
+    workers.submit("process");
+    const std::vector<TaskResult> done = workers.collect(milliseconds(1000));
     const pid_t worker = std::stoi(*done.at(0).reply);
-    workers.give("sleep");
+    workers.submit("sleep");
     static_cast<void>(!::write(ends[1], &worker, sizeof worker));
     ::kill(::getpid(), SIGKILL);
   }

@@ -1,6 +1,7 @@
-#include "slideway/batch/workers.hpp"
+#include "slideway/batch/process_pool.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -31,7 +32,7 @@ using Size = std::uint64_t;
   throw std::runtime_error(std::string(what) + ": " + std::generic_category().message(errno));
 }
 
-/// A text with its size in front. False if nobody is there to read it.
+/// Sends the size and the text. False if the other end is closed.
 bool send_text(int socket, const std::string& text) {
   const Size size = text.size();
   std::string bytes(sizeof size, '\0');
@@ -66,6 +67,7 @@ std::optional<std::string> receive_text(int socket) {
 void limit_memory(std::uint64_t bytes) {
   struct rlimit limit {};
   if (kHasShadow || bytes == 0 || ::getrlimit(RLIMIT_DATA, &limit) != 0) return;
+  ::malloc_trim(0);  // the limit counts what the heap has kept
   limit.rlim_cur = std::min<rlim_t>(bytes, limit.rlim_max);
   ::setrlimit(RLIMIT_DATA, &limit);
 }
@@ -78,16 +80,16 @@ std::string described(int status) {
 
 }  // namespace
 
-Workers::Workers(std::size_t count, Work work, const WorkerLimits& limits)
+ProcessPool::ProcessPool(std::size_t count, Work work, const WorkerLimits& limits)
     : work_(std::move(work)), limits_(limits), workers_(count) {
   for (Worker& worker : workers_) start(worker);
 }
 
-Workers::~Workers() {
+ProcessPool::~ProcessPool() {
   for (Worker& worker : workers_) end(worker);
 }
 
-void Workers::start(Worker& worker) {
+void ProcessPool::start(Worker& worker) {
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail("socketpair");
   const pid_t parent = ::getpid();
@@ -95,18 +97,18 @@ void Workers::start(Worker& worker) {
   if (child < 0) fail("fork");
   if (child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (::getppid() != parent) ::_exit(1);  // it was gone before
-    // Of the other workers' sockets and the results nothing is left open here.
+    if (::getppid() != parent) ::_exit(1);  // the parent ended before prctl()
+    // The worker inherits no socket of another worker and no results file.
     constexpr int kSocket = 3;
     ::dup2(ends[1], kSocket);
     ::close_range(kSocket + 1, ~0U, 0);
-    work_at(kSocket);
+    serve(kSocket);
   }
   ::close(ends[1]);
   worker = {.process = child, .socket = ends[0]};
 }
 
-void Workers::work_at(int socket) const {
+void ProcessPool::serve(int socket) const {
   limit_memory(limits_.memory_bytes);
   limit_threads(1);
   while (const std::optional<std::string> task = receive_text(socket))
@@ -114,28 +116,28 @@ void Workers::work_at(int socket) const {
   ::_exit(0);
 }
 
-std::string Workers::end(Worker& worker) {
+std::string ProcessPool::end(Worker& worker) {
   ::close(std::exchange(worker.socket, -1));
-  ::kill(worker.process, SIGKILL);  // nothing to one that has ended
+  ::kill(worker.process, SIGKILL);  // no effect on one that has ended
   int status = 0;
   while (::waitpid(worker.process, &status, 0) < 0 && errno == EINTR) {
   }
   return described(status);
 }
 
-bool Workers::has_idle() const {
+bool ProcessPool::has_idle() const {
   return std::any_of(workers_.begin(), workers_.end(), [](const Worker& w) { return !w.is_busy; });
 }
 
-std::size_t Workers::busy() const {
+std::size_t ProcessPool::pending() const {
   return static_cast<std::size_t>(
       std::count_if(workers_.begin(), workers_.end(), [](const Worker& w) { return w.is_busy; }));
 }
 
-void Workers::give(std::string task) {
+void ProcessPool::submit(std::string task) {
   Worker& worker =
       *std::find_if(workers_.begin(), workers_.end(), [](const Worker& w) { return !w.is_busy; });
-  if (!send_text(worker.socket, task)) {  // somebody has ended it meanwhile
+  if (!send_text(worker.socket, task)) {  // ended from outside while idle
     end(worker);
     start(worker);
     send_text(worker.socket, task);
@@ -145,51 +147,51 @@ void Workers::give(std::string task) {
   if (limits_.time) worker.deadline = Clock::now() + *limits_.time;
 }
 
-int Workers::patience(std::chrono::milliseconds longest) const {
-  Clock::time_point until = Clock::now() + longest;
+int ProcessPool::poll_timeout(std::chrono::milliseconds timeout) const {
+  Clock::time_point until = Clock::now() + timeout;
   for (const Worker& worker : workers_)
     if (worker.is_busy) until = std::min(until, worker.deadline);
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
   return static_cast<int>(std::max<std::int64_t>(left.count(), 0));
 }
 
-bool Workers::receive(Worker& worker) {
+bool ProcessPool::receive(Worker& worker) {
   std::array<char, 65536> chunk;
   const ssize_t count = ::recv(worker.socket, chunk.data(), chunk.size(), MSG_DONTWAIT);
   if (count > 0) worker.received.append(chunk.data(), static_cast<std::size_t>(count));
   return count > 0 || (count < 0 && (errno == EINTR || errno == EAGAIN));
 }
 
-std::vector<Answer> Workers::wait(std::chrono::milliseconds longest) {
+std::vector<TaskResult> ProcessPool::collect(std::chrono::milliseconds timeout) {
   std::vector<pollfd> sockets;
   for (const Worker& worker : workers_)
     sockets.push_back({worker.socket, static_cast<short>(worker.is_busy ? POLLIN : 0), 0});
-  ::poll(sockets.data(), sockets.size(), patience(longest));
+  ::poll(sockets.data(), sockets.size(), poll_timeout(timeout));
 
-  std::vector<Answer> answers;
+  std::vector<TaskResult> results;
   for (std::size_t i = 0; i < workers_.size(); ++i) {
     Worker& worker = workers_[i];
     if (!worker.is_busy) continue;
-    const bool is_there = sockets[i].revents == 0 || receive(worker);
+    const bool is_running = sockets[i].revents == 0 || receive(worker);
     Size size = 0;
     if (worker.received.size() >= sizeof size)
       std::memcpy(&size, worker.received.data(), sizeof size);
     if (size > 0 && worker.received.size() == sizeof size + size) {
-      answers.push_back({std::move(worker.task), worker.received.substr(sizeof size), "", ""});
+      results.push_back({std::move(worker.task), worker.received.substr(sizeof size), "", ""});
       worker = {.process = worker.process, .socket = worker.socket};
-    } else if (!is_there) {
+    } else if (!is_running) {
       const std::string how = end(worker);
-      answers.push_back({std::move(worker.task), std::nullopt, status::kCrashed, how});
+      results.push_back({std::move(worker.task), std::nullopt, status::kCrashed, how});
       start(worker);
     } else if (Clock::now() >= worker.deadline) {
       end(worker);
       const double seconds = std::chrono::duration<double>(*limits_.time).count();
-      answers.push_back({std::move(worker.task), std::nullopt, status::kTimeout,
+      results.push_back({std::move(worker.task), std::nullopt, status::kTimeout,
                          "took longer than " + shortest(seconds) + " s"});
       start(worker);
     }
   }
-  return answers;
+  return results;
 }
 
 }  // namespace slideway

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "slideway/batch/pool.hpp"
+#include "slideway/identify/pooling.hpp"
 
 namespace slideway {
 

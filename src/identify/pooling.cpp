@@ -1,13 +1,13 @@
-#include "slideway/batch/pool.hpp"
+#include "slideway/identify/pooling.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
-#include "pool_trend.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/uncertainty.hpp"
+#include "trend.hpp"
 
 namespace slideway {
 namespace {
@@ -42,13 +42,13 @@ MatrixXd carriage_rows(const PoolItem& item) {
   return turned.bottomRows(rows - qr.rank());
 }
 
-/// The least-squares solution of stacked rows.
-struct Solution {
+/// The least-squares solution of stacked rows of unit variance.
+struct LeastSquares {
   Rank rank;
   VectorXd values;      // with the parameters nobody determines along null_space at the least
   MatrixXd covariance;  // of what is determined
 
-  explicit Solution(const MatrixXd& rows) {
+  explicit LeastSquares(const MatrixXd& rows) {
     const Index p = rows.cols() - 1;
     const MatrixXd a = rows.leftCols(p);
     const Eigen::HouseholderQR<MatrixXd> qr(rows);
@@ -110,10 +110,10 @@ struct Misfit {
 /// v = y - A θ_rest, along what the rest determines.
 Misfit misfit(const MatrixXd& item, const MatrixXd& rest) {
   if (rest.rows() == 0) return {};
-  const Solution solution(rest);
+  const LeastSquares solution(rest);
   const MatrixXd a = item.leftCols(item.cols() - 1);
   const VectorXd v = item.rightCols(1) - a * solution.values;
-  MatrixXd seen = MatrixXd::Identity(item.rows(), item.rows());
+  MatrixXd determined = MatrixXd::Identity(item.rows(), item.rows());
   if (solution.rank.null_space.cols() > 0) {
     MatrixXd open = a * solution.rank.null_space;
     const double size = (a * scale_of(item).cwiseInverse().asDiagonal()).norm();
@@ -121,13 +121,13 @@ Misfit misfit(const MatrixXd& item, const MatrixXd& rest) {
     const double longest = qr.maxPivot();
     qr.setThreshold(longest > 0.0 ? std::min(1.0, 1e-6 * size / longest) : 1.0);
     const MatrixXd q = qr.householderQ();
-    seen = q.rightCols(item.rows() - qr.rank());
+    determined = q.rightCols(item.rows() - qr.rank());
   }
-  const VectorXd left = seen.transpose() * v;
+  const VectorXd left = determined.transpose() * v;
   const MatrixXd spread =
-      seen.transpose() *
+      determined.transpose() *
       (MatrixXd::Identity(item.rows(), item.rows()) + a * solution.covariance * a.transpose()) *
-      seen;
+      determined;
   return {left.dot(spread.llt().solve(left)), left.size()};
 }
 
@@ -156,9 +156,9 @@ class Comparison {
     }
     scatter_ = 1.0;
     if (ratios.size() < kKnowsScatter) return;
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), middle, ratios.end());
-    scatter_ = std::sqrt(std::max(1.0, *middle));
+    const auto median = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::nth_element(ratios.begin(), median, ratios.end());
+    scatter_ = std::sqrt(std::max(1.0, *median));
   }
 
   [[nodiscard]] std::optional<std::size_t> worst_misfit() const {
@@ -200,9 +200,9 @@ CarriageParameters carriage_parameters(const PoolItem& item) {
   return out;
 }
 
-std::vector<FittedParameter> fitted(const CarriageParameters& parameters, const MatrixXd& rows,
-                                    double scatter) {
-  const Solution solution(rows);
+std::vector<FittedParameter> estimates(const CarriageParameters& parameters, const MatrixXd& rows,
+                                       double scatter) {
+  const LeastSquares solution(rows);
   const std::vector<bool> determined = solution.determined(scale_of(rows));
   std::vector<FittedParameter> out;
   for (std::size_t p = 0; p < parameters.names.size(); ++p) {
@@ -246,8 +246,7 @@ bool is_carriage_parameter(const std::string& name) {
          name.starts_with("squareness.");
 }
 
-PooledMachine pool(const std::string& machine, const std::vector<PoolItem>& items,
-                   const std::vector<std::optional<double>>& times) {
+PooledMachine pool(const std::string& machine, const std::vector<PoolItem>& items) {
   PooledMachine out;
   out.machine = machine;
   std::vector<MatrixXd> parts;
@@ -261,7 +260,7 @@ PooledMachine pool(const std::string& machine, const std::vector<PoolItem>& item
     }
     out.items.push_back({items[i].id});
     parts.push_back(carriage_rows(items[i]));
-    part_times.push_back(times[i]);
+    part_times.push_back(items[i].time);
   }
   if (parts.empty()) return out;
 
@@ -276,13 +275,13 @@ PooledMachine pool(const std::string& machine, const std::vector<PoolItem>& item
     out.items[i].En = std::sqrt(misfit.chi_square / misfit.quantile(kRegion)) / out.scatter;
   }
   const MatrixXd rows = stacked(parts, comparison.fits(), parts.size());
-  out.parameters = fitted(parameters, rows, out.scatter);
+  out.parameters = estimates(parameters, rows, out.scatter);
 
   std::vector<std::vector<FittedParameter>> single;  // of the items with a time that fit
   std::vector<double> at;
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (comparison.fits()[i] && part_times[i]) {
-      single.push_back(fitted(parameters, parts[i], 1.0));
+      single.push_back(estimates(parameters, parts[i], 1.0));
       at.push_back(*part_times[i]);
     }
   out.trends = trends(single, at);

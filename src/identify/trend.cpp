@@ -1,4 +1,4 @@
-#include "pool_trend.hpp"
+#include "trend.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

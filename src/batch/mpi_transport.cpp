@@ -1,23 +1,23 @@
 #include <mpi.h>
 
-#include "slideway/batch/messenger.hpp"
+#include "slideway/batch/transport.hpp"
 
-// A library of its own: see find_messenger(). Open MPI ends the job when a call fails.
+// The library that load_mpi_transport() loads. Open MPI ends the job when a call fails.
 namespace slideway {
 namespace {
 
 constexpr int kTag = 0;
 
-class MpiMessenger final : public Messenger {
+class MpiTransport final : public Transport {
  public:
-  MpiMessenger() {
+  MpiTransport() {
     MPI_Init(nullptr, nullptr);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
   }
-  ~MpiMessenger() override { MPI_Finalize(); }
-  MpiMessenger(const MpiMessenger&) = delete;
-  MpiMessenger& operator=(const MpiMessenger&) = delete;
+  ~MpiTransport() override { MPI_Finalize(); }
+  MpiTransport(const MpiTransport&) = delete;
+  MpiTransport& operator=(const MpiTransport&) = delete;
 
   [[nodiscard]] int rank() const override { return rank_; }
   [[nodiscard]] int size() const override { return size_; }
@@ -46,4 +46,4 @@ class MpiMessenger final : public Messenger {
 }  // namespace
 }  // namespace slideway
 
-extern "C" slideway::Messenger* slideway_make_messenger() { return new slideway::MpiMessenger; }
+extern "C" slideway::Transport* slideway_make_transport() { return new slideway::MpiTransport; }
