@@ -82,7 +82,8 @@ Eigen::MatrixXd nuisance_columns(const Profile& profile, const LowBand& low_band
   return apply_in_parts(low_band, n, std::ssize(names), fill);
 }
 
-Observation observe(const Profile& profile, const LowBandOptions& options) {
+Observation observe(const Profile& profile, LowBandOptions options, std::size_t most_values) {
+  while ((profile.positions.size() >> options.level) > most_values) ++options.level;
   LowBand low_band(options, profile.positions);
   const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
     rows = Eigen::Map<const Eigen::VectorXd>(profile.values.data() + first, rows.rows());
@@ -159,12 +160,13 @@ void remake_term(Model& model, const std::string& name, const EffectOptions& opt
   }
 }
 
-Model build_model(const Problem& problem, const std::vector<Profile>& profiles) {
+Model build_model(const Problem& problem, const std::vector<Profile>& profiles,
+                  std::size_t most_values) {
   Model model{problem.machine(), travel_range(profiles, problem.machine()), {}, {}};
   model.range.beam_span_mm = problem.beam_span_mm;
   for (const Profile& profile : profiles) {
     try {
-      model.observations.push_back(observe(profile, problem.low_band));
+      model.observations.push_back(observe(profile, problem.low_band_of(profile), most_values));
     } catch (const DataError& error) {
       throw DataError("profile '" + profile.name + "': " + error.what());
     }

@@ -9,11 +9,9 @@ namespace {
 
 constexpr std::size_t kMostValues = 2048;  // of a profile, in a search
 
-Problem for_search(Problem problem, const std::vector<Profile>& profiles) {
-  std::size_t most = 0;
-  for (const Profile& profile : profiles) most = std::max(most, profile.positions.size());
-  while ((most >> problem.low_band.level) > kMostValues) ++problem.low_band.level;
-  return problem;
+bool is_long(const Observation& observation) {
+  return (observation.profile->positions.size() >> observation.low_band.options().level) >
+         kMostValues;
 }
 
 Model with(Model model, const std::vector<Added>& added) {
@@ -35,8 +33,8 @@ std::vector<Added> all_but(std::vector<Added> added, std::size_t i) {
 Extender::Extender(const Problem& problem, const std::vector<Profile>& profiles,
                    const FittedModel& declared)
     : declared_(declared) {
-  const Problem search = for_search(problem, profiles);
-  if (search.low_band.level != problem.low_band.level) coarser_ = fit_declared(search, profiles);
+  if (std::ranges::any_of(declared.model.observations, is_long))
+    coarser_ = fitted(build_model(problem, profiles, kMostValues));
 }
 
 Extended Extender::extend(std::vector<Added> added) const {
