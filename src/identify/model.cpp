@@ -1,5 +1,6 @@
 #include "slideway/identify/model.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -94,6 +95,25 @@ Observation observe(const Profile& profile, LowBandOptions options, std::size_t 
   leave_out(out, out.low_band.hollow());
   return out;
 }
+
+}  // namespace
+
+Eigen::MatrixXd levelled(const Observation& observation, Eigen::MatrixXd columns) {
+  const Eigen::Index named = std::ssize(observation.nuisance_names);
+  Eigen::MatrixXd free(columns.rows(), named + 1);
+  free.leftCols(named) = observation.nuisances.leftCols(named);
+  free.col(named).setOnes();
+  for (Eigen::Index j = named; j < observation.nuisances.cols(); ++j)
+    for (Eigen::Index i = 0; i < columns.rows(); ++i)
+      if (observation.nuisances(i, j) != 0.0) free.row(i).setZero(), columns.row(i).setZero();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(free);
+  const Eigen::MatrixXd basis =
+      qr.householderQ() * Eigen::MatrixXd::Identity(free.rows(), qr.rank());
+  columns -= basis * (basis.transpose() * columns);
+  return columns;
+}
+
+namespace {
 
 Stations part_of(const Profile& profile, const Machine& machine, Eigen::Index first,
                  Eigen::Index count) {

@@ -43,8 +43,7 @@ class Assumed {
   Assumed(const Section& section, const std::string& name) : section_(section), name_(name) {}
 
   void add(const char* key, std::string value, const char* why = kDefault) {
-    if (!section_.has(key))
-      list.push_back({"profile." + name_ + "." + key, std::move(value), why});
+    if (!section_.has(key)) list.push_back({"profile." + name_ + "." + key, std::move(value), why});
   }
 
   std::vector<Assumption> list;
@@ -65,9 +64,8 @@ std::vector<Assumption> of_profile(const Section& section, const Problem& proble
     if (problem.lever == Lever::split && !machine_has_overhang) out.add("overhang_mm", "0");
     if (depends_on_z(problem, setup)) out.add("z_mm", "0");
   }
-  const auto timed = std::ranges::count_if(problem.profiles, [](const ProfileEntry& each) {
-    return has_time(each.profile.setup);
-  });
+  const auto timed = std::ranges::count_if(
+      problem.profiles, [](const ProfileEntry& each) { return has_time(each.profile.setup); });
   if (has_time(setup) && timed > 1) out.add("start_s", "0");
   return out.list;
 }

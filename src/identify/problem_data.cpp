@@ -57,8 +57,8 @@ class FilesRead {
 std::string placed(const Problem& problem, const ProfileEntry& entry, const KeyError& error) {
   const auto at = entry.lines.find(entry.lines.contains(error.key) ? error.key : "");
   const bool has_line = at != entry.lines.end() && at->second > 0;
-  return problem.path.string() + (has_line ? ":" + std::to_string(at->second) : "") +
-         ": profile." + error.key + ": '" + entry.profile.name + "': " + error.what();
+  return problem.path.string() + (has_line ? ":" + std::to_string(at->second) : "") + ": profile." +
+         error.key + ": '" + entry.profile.name + "': " + error.what();
 }
 
 }  // namespace

@@ -149,9 +149,8 @@ void read_treatment(const Section& section, ProfileEntry& entry) {
         (slope ? slope_unit(unit) : length_unit(unit)).value()(*uncertainty);
   }
   const auto loss = section.one_of("loss", "none huber cauchy");
-  if (loss) profile.loss = *loss == "huber"    ? Loss::huber
-                           : *loss == "cauchy" ? Loss::cauchy
-                                               : Loss::none;
+  if (loss)
+    profile.loss = *loss == "huber" ? Loss::huber : *loss == "cauchy" ? Loss::cauchy : Loss::none;
   if (section.one_of("role", "fit holdout") == "holdout") profile.role = Role::holdout;
 }
 

@@ -132,7 +132,8 @@ std::vector<Profile> simulate(const Problem& problem) {
                      ": no [truth]; simulate needs the parameters to simulate");
   std::vector<Profile> profiles = empty_profiles(problem);
   std::vector<Profile> frame = profiles;
-  for (Profile& profile : frame) profile.low_band = LowBandOptions{.level = 0};  // effects are wanted here
+  for (Profile& profile : frame)
+    profile.low_band = LowBandOptions{.level = 0};  // effects are wanted here
   Model model = build_model(problem, frame);
   for (const ModelTerm& term : model.terms)
     add_effect(model, term, parameters_of(*problem.truth, term.name), profiles);

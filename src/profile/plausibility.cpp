@@ -9,10 +9,10 @@
 namespace slideway {
 namespace {
 
-constexpr double kLargestRange = 1.0;     // mm: a face or a slide is turned or scraped flatter
-constexpr double kLongestCut = 24.0;      // h: no edge lasts longer
-constexpr double kFastestSurface = 1e4;   // m/min: beyond it nothing is turned
-constexpr double kLargestRadius = 2e4;    // mm: vertical lathes turn up to 40 m across
+constexpr double kLargestRange = 1.0;    // mm: a face or a slide is turned or scraped flatter
+constexpr double kLongestCut = 24.0;     // h: no edge lasts longer
+constexpr double kFastestSurface = 1e4;  // m/min: beyond it nothing is turned
+constexpr double kLargestRadius = 2e4;   // mm: vertical lathes turn up to 40 m across
 constexpr double kMinutesPerHour = 60.0;
 
 // What lathes and instruments have.
@@ -34,20 +34,19 @@ void note(Profile& profile, const Usual& usual, const std::optional<double>& val
   if (!value || *value == 0.0) return;
   const double size = std::abs(*value);
   if (size >= usual.least && size <= usual.most) return;
-  profile.notes.push_back(std::string(usual.key) + " = " + shortest(*value) + ", but " +
-                          usual.why + ": is it right?");
+  profile.notes.push_back(std::string(usual.key) + " = " + shortest(*value) + ", but " + usual.why +
+                          ": is it right?");
 }
 
 void note_cut(Profile& profile) {
   const Setup& setup = profile.setup;
-  const double travel = setup.kind == Kind::face ? setup.cut_radius_mm.value_or(0.0)
-                                                 : setup.last_mm - setup.first_mm;
+  const double travel =
+      setup.kind == Kind::face ? setup.cut_radius_mm.value_or(0.0) : setup.last_mm - setup.first_mm;
   if (setup.feed_mm_per_min) {
     const double hours = travel / *setup.feed_mm_per_min / kMinutesPerHour;
     if (hours > kLongestCut)
       profile.notes.push_back("feed_mm_per_min = " + shortest(*setup.feed_mm_per_min) +
-                              " makes a cut of " + significant(hours, 2) +
-                              " h: is it in mm/min?");
+                              " makes a cut of " + significant(hours, 2) + " h: is it in mm/min?");
   }
   if (setup.kind != Kind::face || !setup.cut_radius_mm) return;
   const double radius = *setup.cut_radius_mm;

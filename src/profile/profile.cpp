@@ -44,8 +44,8 @@ void complete_cut_radius(Setup& setup) {
   if (!setup.cut_radius_mm) setup.cut_radius_mm = reach;
   if (*setup.cut_radius_mm >= reach * (1.0 - 1e-9)) return;
   throw KeyError("cut_radius_mm",
-                 shortest(*setup.cut_radius_mm) + ", but the trace reaches r = " +
-                     significant(reach, 9) +
+                 shortest(*setup.cut_radius_mm) +
+                     ", but the trace reaches r = " + significant(reach, 9) +
                      "; give the outer radius of the cut, the right center_mm, or a window");
 }
 

@@ -92,9 +92,9 @@ TEST_F(ProblemFile, RefusesNumbersThatLeaveNoDigits) {
                           "nose_radius_mm", "standard_uncertainty"})
     for (const char* value : {" = 1e18", " = 1e-300"})
       EXPECT_THAT(profile_refusal(std::string(key) + value), HasSubstr("from 1e-9 to 1e9")) << key;
-  EXPECT_THAT(refusal("[machine]\nlever = \"paper\"\nspindle_position_mm = 1e18\n" + profile() +
-                      kEffect),
-              HasSubstr(":3: machine.spindle_position_mm: 1e+18 is out of range"));
+  EXPECT_THAT(
+      refusal("[machine]\nlever = \"paper\"\nspindle_position_mm = 1e18\n" + profile() + kEffect),
+      HasSubstr(":3: machine.spindle_position_mm: 1e+18 is out of range"));
 }
 
 TEST_F(ProblemFile, NamesTheLineOfAKeyThatDoesNotFitTheData) {
@@ -146,13 +146,13 @@ TEST_F(ProblemFile, AssumesAPlaceAlongZWhereAnEffectDependsOnIt) {
 
 TEST_F(ProblemFile, AssumesAnOverhangOfTheSplitLeverAndTheStartOfCutsThatFollowOneAnother) {
   const std::string cut = "feed_mm_per_min = 2\ncut_direction = \"inward\"\n";
-  const Problem two = read("[machine]\nlever = \"split\"\n" + profile(cut) + profile(cut, "b") +
-                           kEffect);
+  const Problem two =
+      read("[machine]\nlever = \"split\"\n" + profile(cut) + profile(cut, "b") + kEffect);
   EXPECT_THAT(keys_of(two.assumed),
               IsSupersetOf({"profile.feed2.overhang_mm", "profile.b.overhang_mm",
                             "profile.feed2.start_s", "profile.b.start_s"}));
-  const Problem given = read("[machine]\nlever = \"split\"\noverhang_mm = 5\n" + profile(cut) +
-                             kEffect);
+  const Problem given =
+      read("[machine]\nlever = \"split\"\noverhang_mm = 5\n" + profile(cut) + kEffect);
   EXPECT_THAT(keys_of(given.assumed), Not(Contains("profile.feed2.overhang_mm")));
   EXPECT_THAT(keys_of(given.assumed), Not(Contains("profile.feed2.start_s")));
 }

@@ -48,6 +48,11 @@ struct SlideRange {
 };
 SlideRange slide_range(const Profile& profile, const Machine& machine);
 
+/// What is left of columns in an observation's low band when what is free in the trace (offset,
+/// tilt) is taken out by least squares; their means are taken out too, values that are left out of
+/// the fit become 0.
+Eigen::MatrixXd levelled(const Observation& observation, Eigen::MatrixXd columns);
+
 /// Leaves low-band values of an observation out of every fit.
 void leave_out(Observation& observation, const std::vector<Eigen::Index>& values);
 

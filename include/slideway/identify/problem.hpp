@@ -59,7 +59,7 @@ struct Truth {
 /// One [[profile]] of the problem file: where the data are, and everything but the data.
 struct ProfileEntry {
   ProfileSource source;
-  Profile profile;  // name, file, setup, role, ...; positions and values empty
+  Profile profile;                   // name, file, setup, role, ...; positions and values empty
   std::map<std::string, int> lines;  // of its keys in the problem file, and of "", the table
 };
 
@@ -70,7 +70,7 @@ struct Problem {
   std::vector<Body> bodies;  // the paper's lathe unless the file lists its own
   Lever lever = Lever::paper;
   double beam_span_mm = 0.0;  // between the supports of the cross-beam (gantry_sag); 0: unknown
-  LowBandOptions low_band;  // of profiles without one of their own
+  LowBandOptions low_band;    // of profiles without one of their own
   std::vector<ProfileEntry> profiles;
   std::vector<DeclaredEffect> effects;
   std::optional<Runout> runout;
