@@ -102,7 +102,9 @@ bool fixed_by_convention(const std::string& parameter) {
 }
 
 Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale) {
-  Rank rank;
+  const Eigen::Index n = triangle.cols();
+  Rank rank{Eigen::MatrixXd(n, 0), Eigen::MatrixXd::Identity(n, n)};
+  if (triangle.size() == 0) return rank;
   const Eigen::VectorXd unit = scale.unaryExpr([](double s) { return s > 0.0 ? s : 1.0; });
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle * unit.cwiseInverse().asDiagonal(),
                                               Eigen::ComputeFullV);

@@ -100,8 +100,16 @@ void Residual::set_up_fixed(const Linearisation& linear) {
   for (Eigen::Index p = 0; p < priors; ++p)  // priors of moving terms have rows of their own
     if (columns.row(rows_ - priors + p).squaredNorm() > 0.0)
       values[rows_ - priors + p] = linear.prior_residuals[p];
+  if (k == 0) {
+    rest_ = values;
+    span_.resize(values.size(), 0);
+    target_.resize(0);
+    fixed_basis_.resize(0, 0);
+    return;
+  }
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
-  const Eigen::MatrixXd upper = qr.matrixQR().topRows(k).triangularView<Eigen::Upper>();
+  const Eigen::MatrixXd upper =
+      qr.matrixQR().topRows(std::min(k, columns.rows())).triangularView<Eigen::Upper>();
   fixed_basis_ = analyse_rank(upper, scale).basis;
   span_ = columns * fixed_basis_;
   target_ = span_.transpose() * values;

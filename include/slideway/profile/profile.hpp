@@ -81,7 +81,7 @@ struct ProfileSource {
 
 /// A key of a [[profile]] that does not fit the data.
 struct KeyError : UsageError {
-  KeyError(std::string key, const std::string& what) : UsageError(what), key(std::move(key)) {}
+  KeyError(std::string name, const std::string& what) : UsageError(what), key(std::move(name)) {}
   std::string key;  // "center_mm"
 };
 
