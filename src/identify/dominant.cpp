@@ -20,8 +20,15 @@ struct Shares {
   Eigen::MatrixXd gradient;  // #terms by (A + S)
 };
 
-/// Of one profile; nothing where the model puts nothing into it.
+bool sees_two(const Model& model, const Profile& profile) {
+  return std::ranges::count_if(model.terms, [&](const ModelTerm& term) {
+           return term.effect->applies_to(profile.setup);
+         }) > 1;
+}
+
+/// Of one profile; nothing where the model puts nothing into it, or one effect only.
 Shares shares_in(const Model& model, const Solution& fit, std::size_t which) {
+  if (!sees_two(model, *fit.linear.observations[which]->profile)) return {};
   const Eigen::MatrixXd& columns = fit.linear.columns[which];
   const Eigen::MatrixXd level = levelled(*fit.linear.observations[which], columns);
   const Eigen::Index terms = std::ssize(model.terms), amplitudes = model.amplitudes();
@@ -54,9 +61,12 @@ struct LeadByCorrelation {
 };
 
 std::optional<LeadByCorrelation> lead_by_correlation(const RankingResult& ranking) {
+  std::map<std::string, int> seen;
+  for (const Ranking& entry : ranking.entries) ++seen[entry.profile];
   std::map<std::string, double> sums;
   std::set<std::string> profiles, significant_effects;
   for (const Ranking& entry : ranking.entries) {
+    if (seen[entry.profile] < 2) continue;
     sums[entry.effect] += std::abs(entry.low_band);
     profiles.insert(entry.profile);
     if (entry.p_value < kSignificant) significant_effects.insert(entry.effect);

@@ -18,6 +18,7 @@ namespace slideway {
 namespace {
 
 constexpr int kHighestDegree = 99;
+constexpr double kFarthest = 1e6;  // mm: no slide is longer than a kilometre
 constexpr int kHighestInteger = std::numeric_limits<int>::max();
 
 constexpr std::string_view kLevers =
@@ -51,7 +52,8 @@ ProfileDefaults read_machine(const Section& root, Problem& problem) {
   problem.beam_span_mm = section->magnitude("span_mm").value_or(0.0);
   defaults.overhang_mm = section->coordinate("overhang_mm").value_or(0.0);
   check_overhang(*section, defaults.overhang_mm, problem.lever);
-  defaults.spindle_position_mm = section->coordinate("spindle_position_mm").value_or(0.0);
+  defaults.spindle_position_mm =
+      section->coordinate("spindle_position_mm", kFarthest).value_or(0.0);
   problem.bodies = read_bodies(*section);
   try {
     static_cast<void>(problem.machine());

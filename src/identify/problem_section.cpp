@@ -80,10 +80,11 @@ std::optional<double> Section::positive(std::string_view key) const {
   return value;
 }
 
-std::optional<double> Section::coordinate(std::string_view key) const {
+std::optional<double> Section::coordinate(std::string_view key, double most) const {
   const std::optional<double> value = number(key);
-  if (value && std::abs(*value) > kLargest)
-    fail(key, shortest(*value) + " is out of range; accepted: from -1e9 to 1e9");
+  if (value && std::abs(*value) > most)
+    fail(key, shortest(*value) + " is out of range; accepted: from -" + significant(most, 1) +
+                  " to " + significant(most, 1));
   return value;
 }
 

@@ -36,8 +36,8 @@ class Section {
   /// Values by key; nothing if the key is not there.
   [[nodiscard]] std::optional<double> number(std::string_view key) const;  // finite
   [[nodiscard]] std::optional<double> positive(std::string_view key) const;
-  /// Far beyond any workshop, and near enough for the arithmetic: from -1e9 to 1e9; 1e-9 to 1e9.
-  [[nodiscard]] std::optional<double> coordinate(std::string_view key) const;
+  /// Far beyond any workshop, and near enough for the arithmetic: from -most to most; 1e-9 to 1e9.
+  [[nodiscard]] std::optional<double> coordinate(std::string_view key, double most = 1e9) const;
   [[nodiscard]] std::optional<double> magnitude(std::string_view key) const;
   [[nodiscard]] std::optional<double> not_negative(std::string_view key) const;
   [[nodiscard]] std::optional<int> integer(std::string_view key, int lowest, int highest) const;

@@ -25,9 +25,19 @@ void require_two_samples(const ProfileSource& source, std::size_t count) {
   throw DataError(source.path.string() + ": " + where + ", at least 2 are needed");
 }
 
-// Of the radius: what of it changes along the trace must be more than rounding.
+// What changes along the trace of the radius, or of the position, must be more than rounding.
+constexpr double kMostLengths = 1e6;
+
+void require_usable_positions(const ProfileSource& source, const Setup& setup) {
+  const double reach = std::max(std::abs(setup.first_mm), std::abs(setup.last_mm));
+  const double length = setup.last_mm - setup.first_mm;
+  if (setup.kind == Kind::slide && reach > kMostLengths * length)
+    throw DataError(source.path.string() + ": positions lie " + significant(reach, 3) +
+                    " mm away from 0 over a length of " + significant(length, 3) +
+                    " mm; accepted: up to a million times their length");
+}
+
 void require_usable_radius(const Setup& setup, double reach) {
-  constexpr double kMostLengths = 1e6;
   const double length = setup.last_mm - setup.first_mm;
   if (reach <= kMostLengths * length) return;
   throw KeyError("center_mm", "the spindle axis lies " + significant(reach, 3) +
@@ -128,6 +138,7 @@ void complete(const ProfileSource& source, TraceFile file, Intake& intake, Profi
   Setup& setup = profile.setup;
   setup.first_mm = profile.positions.front();
   setup.last_mm = profile.positions.back();
+  require_usable_positions(source, setup);
   complete_cut_radius(setup);
   note_implausible(profile);
 }

@@ -225,6 +225,15 @@ TEST(Dominant, AddsTheSizesOfCoefficientsOfAllProfiles) {
   EXPECT_EQ(dominant_effects(ranking, {}, {}).by_correlation, "cup");  // 0.745 against 0.6
 }
 
+// A reading of the slide sees no squareness, so it cannot say which of the two leads.
+TEST(Dominant, AsksNoProfileThatSeesOneEffectOnly) {
+  RankingResult ranking = ranked({0.2, 0.6});
+  ranking.entries.push_back({"cup", "slide"});
+  ranking.entries.back().low_band = 1.0;
+  ranking.entries.back().p_value = 0.0;
+  EXPECT_EQ(dominant_effects(ranking, {}, {}).by_correlation, "squareness");
+}
+
 TEST(Dominant, IsNamedByFitWhereItLeadsByMoreThanItsUncertainty) {
   // Alike to three digits, and one share is larger by 0.10 ± 0.09.
   const Dominant named = dominant_effects(ranked({0.968, 0.967}), cup_leads(0.55, 0.09), {});

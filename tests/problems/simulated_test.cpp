@@ -152,7 +152,7 @@ TEST(ThreeLevels, TellTheZCarriagesBendButOnlyTheSumOfItsLeanAndTheSquareness) {
   const DeterminedCombination& sum = result.fit->identifiability.determined.front();
   EXPECT_NEAR(sum.standard_uncertainty, 0.11e-6, 0.02e-6);
   EXPECT_EQ(result.squareness->verdict, "not_available");
-  EXPECT_EQ(result.dominant.agree, false);
+  EXPECT_FALSE(result.dominant.by_fit);
   EXPECT_THAT(result.dominant.doubt,
               HasSubstr("do not tell squareness from vertical_straightness"));
   EXPECT_EQ(ranked(result, "vertical_straightness", "z0").low_band, 0.0);  // no lever at z = 0

@@ -257,6 +257,15 @@ TEST_F(ReadProfile, SaysThatTheSpindleAxisIsFarAway) {
   EXPECT_EQ(profile_.notes.size(), 1U);
 }
 
+TEST_F(ReadProfile, RefusesPositionsThatDifferInTheirLastDigitsOnly) {
+  profile_.setup.kind = Kind::slide;
+  EXPECT_THAT(
+      [&] { read("100000000,0\n100000001,1\n"); },
+      ThrowsMessage<DataError>(file() + ": positions lie 1e+08 mm away from 0 over a length "
+                                        "of 1 mm; accepted: up to a million times their "
+                                        "length"));
+}
+
 // At 1e18 mm both ends of the trace have one radius; at a million lengths ten digits are left.
 TEST_F(ReadProfile, RefusesACentreThatLeavesNoRadius) {
   profile_.setup.center_mm = 1e18;

@@ -23,7 +23,7 @@ namespace slideway {
 RankingResult rank_effects(const Model& model, const Solution& fit);
 
 /// The two effects with the largest shares of what the fit puts into the low band, levelled: the
-/// mean square of one over the sum of all, averaged over the fitted profiles.
+/// mean square of one over the sum of all, averaged over the fitted profiles that see two or more.
 struct LeadByFit {
   std::string first, second;
   double share = 0.0, next = 0.0;
@@ -34,10 +34,10 @@ struct LeadByFit {
 /// None where the model has fewer than two effects that the fitted profiles can see.
 std::optional<LeadByFit> lead_by_fit(const Model& model, const Solution& fit);
 
-/// By correlation: the effect whose |low-band coefficient|, averaged over the profiles, is
-/// significant and clearly the largest. By fit: the one with the larger share, if it is larger by
-/// more than its expanded uncertainty and not by a convention; else the doubt says why there is
-/// none.
+/// By correlation: the effect whose |low-band coefficient|, averaged over the profiles that see two
+/// effects or more, is significant and clearly the largest. By fit: the one with the larger share,
+/// if it is larger by more than its expanded uncertainty and not by a convention; else the doubt
+/// says why there is none.
 Dominant dominant_effects(const RankingResult& ranking, const std::optional<LeadByFit>& fit,
                           const Identifiability& identifiability);
 

@@ -94,7 +94,8 @@ using ReadProgress = std::function<void(double done)>;
 /// converted from those.
 /// @param progress  is told which part of the file has been read
 /// @throws DataError   what read_trace() refuses; a unit in the header that is not the source's;
-///                     naming file and row: unsorted or repeated positions, too few rows
+///                     naming file and row: unsorted or repeated positions, positions of a slide
+///                     that differ in their last digits only, too few rows
 /// @throws UsageError  no unit, no feed where the positions are times, a row to leave out that is
 ///                     not there
 /// @throws KeyError    a cut smaller than the trace; a centre so far away that the radius is one
