@@ -115,6 +115,21 @@ void paper_600mm(const std::filesystem::path& directory) {
   }
 }
 
+/// The slide of these faces before an autocollimator: a mirror every 10 mm, read to 0.01 arcsec.
+void paper_autocollimator(const std::filesystem::path& directory) {
+  constexpr double kArcsec = 4.84813681109536e-6;  // rad
+  const std::vector<double> positions = grid(61, 10, 1);
+  Pass pass;
+  pass.noise = {.white = 0.01 * kArcsec, .quantum = 0.01 * kArcsec};
+  RandomStream random(61, "autocollimator");
+  const Error slide = [](const ToolPoint& tool) { return polynomial(kStraightness, tool.x); };
+  std::vector<double> slopes = slide_slopes(slide, positions, 10.0, pass, random);
+  for (double& slope : slopes) slope /= kArcsec;
+  write_csv(directory / "paper-autocollimator.csv",
+            "slopes of the X slide on a base of 10 mm, 61 readings over 600 mm",
+            {{"x_mm", positions, 0}, {"slope_arcsec", slopes, 2}});
+}
+
 /// The workpiece that was cut: 20 mm across, 2 µm of form at its rim, which takes a cone of 2e-4
 /// rad.
 void paper_face_10mm(const std::filesystem::path& directory) {
@@ -212,6 +227,7 @@ int main(int argc, char** argv) {
     const std::filesystem::path directory = argv[1];
     std::filesystem::create_directories(directory);
     paper_600mm(directory);
+    paper_autocollimator(directory);
     paper_face_10mm(directory);
     three_levels(directory);
     axis_ranking(directory);

@@ -108,7 +108,8 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
     result.low_band_values += static_cast<std::size_t>(observation->values.size());
   if (scope != Scope::fit) {
     result.ranking = rank_effects(model, fit);
-    result.dominant = dominant_effects(*result.ranking, summary);
+    result.dominant =
+        dominant_effects(*result.ranking, lead_by_fit(model, fit), summary.identifiability);
   }
   if (scope == Scope::identify)
     result.squareness = check_squareness(model, problem.runout, summary);

@@ -38,7 +38,7 @@ struct Radii {
 /// the centre alone.
 double lost_radius(const Radii& radii, const Observation& observation, const Gates& gates,
                    const Eigen::VectorXd& curve, double noise) {
-  const double nose = gates.nose_radius_mm;
+  const double nose = observation.profile->setup.nose_radius_mm.value_or(gates.nose_radius_mm);
   const double height = std::sqrt(static_cast<double>(radii.radius.size()) /
                                   static_cast<double>(observation.low_band.samples()));
   double lost = 0.0;

@@ -1,5 +1,6 @@
 #include "slideway/identify/model.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -97,7 +98,8 @@ Eigen::MatrixXd nuisance_columns(const Profile& profile, const LowBand& low_band
   return apply_in_parts(low_band, n, std::ssize(names), fill);
 }
 
-Observation observe(const Profile& profile, const LowBandOptions& options) {
+Observation observe(const Profile& profile, LowBandOptions options, std::size_t most_values) {
+  while ((profile.positions.size() >> options.level) > most_values) ++options.level;
   LowBand low_band(options, profile.positions);
   const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
     rows = Eigen::Map<const Eigen::VectorXd>(profile.values.data() + first, rows.rows());
@@ -108,6 +110,25 @@ Observation observe(const Profile& profile, const LowBandOptions& options) {
   leave_out(out, out.low_band.hollow());
   return out;
 }
+
+}  // namespace
+
+Eigen::MatrixXd levelled(const Observation& observation, Eigen::MatrixXd columns) {
+  const Eigen::Index named = std::ssize(observation.nuisance_names);
+  Eigen::MatrixXd free(columns.rows(), named + 1);
+  free.leftCols(named) = observation.nuisances.leftCols(named);
+  free.col(named).setOnes();
+  for (Eigen::Index j = named; j < observation.nuisances.cols(); ++j)
+    for (Eigen::Index i = 0; i < columns.rows(); ++i)
+      if (observation.nuisances(i, j) != 0.0) free.row(i).setZero(), columns.row(i).setZero();
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(free);
+  const Eigen::MatrixXd basis =
+      qr.householderQ() * Eigen::MatrixXd::Identity(free.rows(), qr.rank());
+  columns -= basis * (basis.transpose() * columns);
+  return columns;
+}
+
+namespace {
 
 Stations part_of(const Profile& profile, const Machine& machine, Eigen::Index first,
                  Eigen::Index count) {
@@ -174,13 +195,14 @@ void remake_term(Model& model, const std::string& name, const EffectOptions& opt
   }
 }
 
-Model build_model(const Problem& problem, const std::vector<Profile>& profiles) {
+Model build_model(const Problem& problem, const std::vector<Profile>& profiles,
+                  std::size_t most_values) {
   Model model{problem.machine(), travel_range(profiles, problem.machine()), {}, {},
               problem.trace.gates};
   model.range.beam_span_mm = problem.beam_span_mm;
   for (const Profile& profile : profiles) {
     try {
-      model.observations.push_back(observe(profile, problem.low_band));
+      model.observations.push_back(observe(profile, problem.low_band_of(profile), most_values));
     } catch (const DataError& error) {
       throw DataError("profile '" + profile.name + "': " + error.what());
     }

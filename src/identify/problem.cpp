@@ -4,6 +4,7 @@
 #include <limits>
 #include <set>
 
+#include "problem_assumed.hpp"
 #include "problem_override.hpp"
 #include "problem_profile.hpp"
 #include "problem_section.hpp"
@@ -12,13 +13,12 @@
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/problem_tree.hpp"
-#include "slideway/profile/given.hpp"
 
 namespace slideway {
 namespace {
 
-constexpr int kHighestLevel = 30;
 constexpr int kHighestDegree = 99;
+constexpr double kFarthest = 1e6;  // mm: no slide is longer than a kilometre
 constexpr int kHighestInteger = std::numeric_limits<int>::max();
 
 constexpr std::string_view kLevers =
@@ -41,18 +41,19 @@ std::vector<Body> read_bodies(const Section& machine) {
   return bodies;
 }
 
-MachineDefaults read_machine(const Section& root, Problem& problem) {
-  MachineDefaults defaults;
+ProfileDefaults read_machine(const Section& root, Problem& problem) {
+  ProfileDefaults defaults;
   problem.bodies = Machine::paper_lathe();
   const std::optional<Section> section = root.table("machine");
   if (!section) return defaults;
   section->accept("lever overhang_mm spindle_position_mm span_mm body");
   if (section->one_of("lever", "paper split") == "split") problem.lever = Lever::split;
   defaults.lever = problem.lever;
-  problem.beam_span_mm = section->positive("span_mm").value_or(0.0);
-  defaults.overhang_mm = section->number("overhang_mm").value_or(0.0);
+  problem.beam_span_mm = section->magnitude("span_mm").value_or(0.0);
+  defaults.overhang_mm = section->coordinate("overhang_mm").value_or(0.0);
   check_overhang(*section, defaults.overhang_mm, problem.lever);
-  defaults.spindle_position_mm = section->number("spindle_position_mm").value_or(0.0);
+  defaults.spindle_position_mm =
+      section->coordinate("spindle_position_mm", kFarthest).value_or(0.0);
   problem.bodies = read_bodies(*section);
   try {
     static_cast<void>(problem.machine());
@@ -74,24 +75,17 @@ void check_lever_is_given(const Section& root, const Problem& problem) {
 }
 
 LowBandOptions read_low_band(const Section& root) {
-  LowBandOptions options;
   const std::optional<Section> section = root.table("low_band");
-  if (!section) return options;
-  section->accept("wavelet level boundary");
-  std::vector<std::string> wavelets;
-  for (int n = 1; n <= 19; ++n) wavelets.push_back("db" + std::to_string(n));
-  options.wavelet = section->one_of("wavelet", wavelets).value_or(options.wavelet);
-  options.level = section->integer("level", 0, kHighestLevel).value_or(options.level);
-  if (const auto name = section->one_of("boundary", kBoundaries))
-    options.boundary = boundary(*name);
-  return options;
+  if (!section) return {};
+  section->accept(kLowBandKeys);
+  return read_low_band(*section, {});
 }
 
-void read_profile_entries(const Section& root, const MachineDefaults& machine,
+void read_profile_entries(const Section& root, const ProfileDefaults& defaults,
                           const ProblemRules& rules, Problem& problem) {
   std::set<std::string> names;
   for (const Section& section : root.tables("profile")) {
-    problem.profiles.push_back(read_profile_entry(section, machine, rules));
+    problem.profiles.push_back(read_profile_entry(section, defaults, rules));
     const std::string& name = problem.profiles.back().profile.name;
     if (!names.insert(name).second)
       section.fail("name", "'" + name + "' is used twice; accepted: a name of its own");
@@ -101,7 +95,7 @@ void read_profile_entries(const Section& root, const MachineDefaults& machine,
 
 EffectOptions read_effect_options(const Section& section) {
   return {section.text("body"), section.integer("degree", 0, kHighestDegree),
-          section.positive("span_mm")};
+          section.magnitude("span_mm")};
 }
 
 std::unique_ptr<Effect> made(const Section& section, const std::string& name,
@@ -165,12 +159,12 @@ std::optional<Runout> read_runout(const Section& root) {
   if (!section) return std::nullopt;
   section->accept("r_um p_um diameter_mm standard_uncertainty_um");
   Runout runout;
-  runout.r_um = section->required("r_um", section->number("r_um"), "a number");
-  runout.p_um = section->required("p_um", section->number("p_um"), "a number");
+  runout.r_um = section->required("r_um", section->coordinate("r_um"), "a number");
+  runout.p_um = section->required("p_um", section->coordinate("p_um"), "a number");
   runout.diameter_mm =
-      section->required("diameter_mm", section->positive("diameter_mm"), "a number above 0");
+      section->required("diameter_mm", section->magnitude("diameter_mm"), "a number above 0");
   runout.standard_uncertainty_um = section->required(
-      "standard_uncertainty_um", section->positive("standard_uncertainty_um"), "a number above 0");
+      "standard_uncertainty_um", section->magnitude("standard_uncertainty_um"), "a number above 0");
   return runout;
 }
 
@@ -271,9 +265,9 @@ Problem problem_of(const TomlValue& tree, const std::filesystem::path& path,
   Problem problem;
   problem.path = path;
   problem.title = root.text("title").value_or("");
-  const MachineDefaults machine = read_machine(root, problem);
-  problem.low_band = read_low_band(root);
-  read_profile_entries(root, machine, rules, problem);
+  ProfileDefaults defaults = read_machine(root, problem);
+  defaults.low_band = problem.low_band = read_low_band(root);
+  read_profile_entries(root, defaults, rules, problem);
   check_lever_is_given(root, problem);
   read_effects(root, problem);
   if (problem.effects.empty() && rules.effect_is_needed)
@@ -281,53 +275,9 @@ Problem problem_of(const TomlValue& tree, const std::filesystem::path& path,
   problem.runout = read_runout(root);
   problem.trace = read_trace(root);
   problem.truth = read_truth(root, problem);
+  problem.assumed = assumed_by(root, problem);
   return problem;
 }
-
-void check_names(const Problem& problem, const GivenTraces& given) {
-  std::vector<std::string> names;
-  for (const ProfileEntry& entry : problem.profiles) names.push_back(entry.profile.name);
-  for (const auto& [name, trace] : given)
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      throw UsageError(problem.path.string() + ": numbers for '" + printable(name) +
-                       "', which is no [[profile]]" + did_you_mean(name, names) +
-                       "; accepted: " + joined(names, " "));
-}
-
-void take_or_read(const ProfileEntry& entry, const GivenTraces& given, const ReadProgress& progress,
-                  Profile& profile) {
-  if (const auto at = given.find(entry.profile.name); at != given.end())
-    return take_profile(entry.source, at->second, profile);
-  if (entry.source.path.empty())
-    throw UsageError("profile '" + entry.profile.name + "': no numbers; accepted: arrays, or file");
-  read_profile(entry.source, profile, progress);
-}
-
-/// Which part of all files has been read, told by each.
-class FilesRead {
- public:
-  FilesRead(const Problem& problem, const ReadProgress& progress) : progress_(progress) {
-    for (const ProfileEntry& entry : problem.profiles) all_ += size_of(entry);
-  }
-
-  [[nodiscard]] ReadProgress within(const ProfileEntry& entry) const {
-    if (!progress_ || all_ == 0.0) return {};
-    return
-        [this, size = size_of(entry)](double share) { progress_((before_ + share * size) / all_); };
-  }
-  void finish(const ProfileEntry& entry) { before_ += size_of(entry); }
-
- private:
-  /// 0 of what is no regular file.
-  static double size_of(const ProfileEntry& entry) {
-    std::error_code error;
-    const auto size = std::filesystem::file_size(entry.source.path, error);
-    return error ? 0.0 : static_cast<double>(size);
-  }
-
-  const ReadProgress& progress_;
-  double all_ = 0.0, before_ = 0.0;  // bytes
-};
 
 }  // namespace
 
@@ -351,29 +301,6 @@ Problem read_profiles_of_problem(const std::filesystem::path& path,
 
 Problem read_problem(const TomlValue& tree, const std::optional<std::filesystem::path>& data_dir) {
   return problem_of(tree, "problem", {{}, data_dir, false});
-}
-
-std::vector<Profile> read_profiles(const Problem& problem, const ReadProgress& progress) {
-  return read_profiles(problem, GivenTraces{}, progress);
-}
-
-std::vector<Profile> read_profiles(const Problem& problem, const GivenTraces& given,
-                                   const ReadProgress& progress) {
-  check_names(problem, given);
-  FilesRead files(problem, progress);
-  std::vector<Profile> profiles;
-  for (const ProfileEntry& entry : problem.profiles) {
-    profiles.push_back(entry.profile);
-    try {
-      take_or_read(entry, given, files.within(entry), profiles.back());
-      files.finish(entry);
-    } catch (const DataError& error) {
-      throw DataError("profile '" + entry.profile.name + "': " + error.what());
-    } catch (const UsageError& error) {
-      throw UsageError(problem.path.string() + ": " + error.what());
-    }
-  }
-  return profiles;
 }
 
 }  // namespace slideway

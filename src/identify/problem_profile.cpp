@@ -14,7 +14,7 @@ constexpr std::string_view kKeys =
     "name file kind quantity position_column value_column position_unit value_unit delimiter "
     "decimal encoding header_lines line base_mm window leave_out from_mm to_mm "
     "center_mm z_mm overhang_mm feed_mm_per_min spindle_rpm cut_direction cut_radius_mm start_s "
-    "traverse_mm_per_s free standard_uncertainty role";
+    "traverse_mm_per_s nose_radius_mm level wavelet boundary free loss standard_uncertainty role";
 
 std::filesystem::path data_directory(const Section& section, const ProblemRules& rules) {
   if (!rules.data_dir)
@@ -95,31 +95,34 @@ void read_source(const Section& section, const ProblemRules& rules, ProfileEntry
   read_units(section, entry);
 }
 
-void read_geometry(const Section& section, const MachineDefaults& machine, Setup& setup) {
+void read_geometry(const Section& section, const ProfileDefaults& machine, Setup& setup) {
   if (section.one_of("kind", "face slide") == "slide") setup.kind = Kind::slide;
   if (section.one_of("quantity", "height slope") == "slope") setup.quantity = Quantity::slope;
-  setup.base_mm = section.positive("base_mm");
+  setup.base_mm = section.magnitude("base_mm");
   if (setup.base_mm && setup.quantity != Quantity::slope)
     section.fail("base_mm", "belongs to quantity = \"slope\" only");
-  setup.center_mm = section.number("center_mm").value_or(0.0);
+  setup.center_mm = section.coordinate("center_mm").value_or(0.0);
   setup.spindle_position_mm = machine.spindle_position_mm;
-  setup.z_mm = section.number("z_mm").value_or(0.0);
-  setup.overhang_mm = section.number("overhang_mm").value_or(machine.overhang_mm);
+  setup.z_mm = section.coordinate("z_mm").value_or(0.0);
+  setup.overhang_mm = section.coordinate("overhang_mm").value_or(machine.overhang_mm);
   check_overhang(section, setup.overhang_mm, machine.lever);
 }
 
 void read_cut(const Section& section, bool position_is_time, Setup& setup) {
-  setup.feed_mm_per_min = section.positive("feed_mm_per_min");
+  setup.feed_mm_per_min = section.magnitude("feed_mm_per_min");
   if (position_is_time && !setup.feed_mm_per_min)
     section.missing(
         "feed_mm_per_min",
         "a feed greater than 0, which position_unit = \"s\" needs to become a position");
-  setup.spindle_rpm = section.positive("spindle_rpm");
+  setup.spindle_rpm = section.magnitude("spindle_rpm");
   if (const auto direction = section.one_of("cut_direction", "inward outward"))
     setup.cut_direction = *direction == "inward" ? CutDirection::inward : CutDirection::outward;
-  setup.cut_radius_mm = section.positive("cut_radius_mm");
-  setup.start_s = section.number("start_s").value_or(0.0);
-  setup.traverse_mm_per_s = section.positive("traverse_mm_per_s");
+  setup.cut_radius_mm = section.magnitude("cut_radius_mm");
+  setup.start_s = section.coordinate("start_s").value_or(0.0);
+  setup.traverse_mm_per_s = section.magnitude("traverse_mm_per_s");
+  setup.nose_radius_mm = section.magnitude("nose_radius_mm");
+  if (setup.nose_radius_mm && setup.kind != Kind::face)
+    section.fail("nose_radius_mm", "belongs to kind = \"face\" only");
 }
 
 std::optional<Line> read_line(const Section& section) {
@@ -137,12 +140,15 @@ void read_treatment(const Section& section, ProfileEntry& entry) {
     profile.free_offset = std::find(free->begin(), free->end(), "offset") != free->end();
     profile.free_tilt = std::find(free->begin(), free->end(), "tilt") != free->end();
   }
-  if (const auto uncertainty = section.positive("standard_uncertainty")) {
+  if (const auto uncertainty = section.magnitude("standard_uncertainty")) {
     const std::string& unit = entry.source.value_unit;
     const bool slope = profile.setup.quantity == Quantity::slope;
     profile.standard_uncertainty =
         (slope ? slope_unit(unit) : length_unit(unit)).value()(*uncertainty);
   }
+  const auto loss = section.one_of("loss", "none huber cauchy");
+  if (loss)
+    profile.loss = *loss == "huber" ? Loss::huber : *loss == "cauchy" ? Loss::cauchy : Loss::none;
   if (section.one_of("role", "fit holdout") == "holdout") profile.role = Role::holdout;
 }
 
@@ -153,15 +159,29 @@ void check_overhang(const Section& section, double overhang_mm, Lever lever) {
     section.fail("overhang_mm", "has no meaning here; accepted: only with lever = \"split\"");
 }
 
-ProfileEntry read_profile_entry(const Section& section, const MachineDefaults& machine,
+LowBandOptions read_low_band(const Section& section, LowBandOptions defaults) {
+  constexpr int kHighestLevel = 30;
+  std::vector<std::string> wavelets;
+  for (int n = 1; n <= 19; ++n) wavelets.push_back("db" + std::to_string(n));
+  defaults.wavelet = section.one_of("wavelet", wavelets).value_or(defaults.wavelet);
+  defaults.level = section.integer("level", 0, kHighestLevel).value_or(defaults.level);
+  if (const auto name = section.one_of("boundary", kBoundaries))
+    defaults.boundary = boundary(*name);
+  return defaults;
+}
+
+ProfileEntry read_profile_entry(const Section& section, const ProfileDefaults& defaults,
                                 const ProblemRules& rules) {
   section.accept(kKeys);
   ProfileEntry entry;
   entry.profile.name = checked_name(section);
-  read_geometry(section, machine, entry.profile.setup);
+  entry.lines = section.lines();
+  read_geometry(section, defaults, entry.profile.setup);
   read_source(section, rules, entry);
   read_cut(section, entry.source.position_unit == "s", entry.profile.setup);
   entry.profile.line = read_line(section);
+  if (std::ranges::any_of(words(kLowBandKeys), [&](const auto& key) { return section.has(key); }))
+    entry.profile.low_band = read_low_band(section, defaults.low_band);
   read_treatment(section, entry);
   return entry;
 }

@@ -8,11 +8,12 @@
 
 namespace slideway {
 
-/// What [machine] says that every profile takes over.
-struct MachineDefaults {
+/// What [machine] and [low_band] say that every profile takes over.
+struct ProfileDefaults {
   Lever lever = Lever::paper;
   double overhang_mm = 0.0;
   double spindle_position_mm = 0.0;
+  LowBandOptions low_band;
 };
 
 /// Paths of the problem file: relative to `base`, ${SLIDEWAY_DATA} replaced by `data_dir`; and
@@ -25,8 +26,13 @@ struct ProblemRules {
 };
 
 /// One [[profile]]. @throws UsageError
-ProfileEntry read_profile_entry(const Section& section, const MachineDefaults& machine,
+ProfileEntry read_profile_entry(const Section& section, const ProfileDefaults& defaults,
                                 const ProblemRules& rules);
+
+inline constexpr std::string_view kLowBandKeys = "wavelet level boundary";
+
+/// The low band a section asks for; keys it does not have as in `defaults`.
+LowBandOptions read_low_band(const Section& section, LowBandOptions defaults);
 
 /// Refuses an overhang that the lever gives nothing to do.
 void check_overhang(const Section& section, double overhang_mm, Lever lever);

@@ -12,6 +12,7 @@ namespace slideway {
 namespace {
 
 const TomlValue::Table kNoEntries;
+constexpr double kLargest = 1e9, kSmallest = 1e-9;
 
 std::optional<double> as_number(const TomlValue& value) {
   if (const auto* number = std::get_if<double>(&value.data)) return *number;
@@ -53,6 +54,12 @@ std::vector<std::string> Section::keys() const {
   return result;
 }
 
+std::map<std::string, int> Section::lines() const {
+  std::map<std::string, int> result{{"", line_}};
+  for (const TomlEntry& entry : *table_) result[entry.key] = entry.line;
+  return result;
+}
+
 const TomlEntry* Section::find(std::string_view key) const {
   const auto at = std::find_if(table_->begin(), table_->end(),
                                [&](const TomlEntry& entry) { return entry.key == key; });
@@ -70,6 +77,21 @@ std::optional<double> Section::number(std::string_view key) const {
 std::optional<double> Section::positive(std::string_view key) const {
   const std::optional<double> value = number(key);
   if (value && !(*value > 0.0)) fail(key, "must be greater than 0, not " + shortest(*value));
+  return value;
+}
+
+std::optional<double> Section::coordinate(std::string_view key, double most) const {
+  const std::optional<double> value = number(key);
+  if (value && std::abs(*value) > most)
+    fail(key, shortest(*value) + " is out of range; accepted: from -" + significant(most, 1) +
+                  " to " + significant(most, 1));
+  return value;
+}
+
+std::optional<double> Section::magnitude(std::string_view key) const {
+  const std::optional<double> value = positive(key);
+  if (value && !(*value >= kSmallest && *value <= kLargest))
+    fail(key, shortest(*value) + " is out of range; accepted: from 1e-9 to 1e9");
   return value;
 }
 
@@ -125,7 +147,6 @@ std::optional<std::pair<double, double>> Section::range(std::string_view key) co
 std::optional<std::array<double, 2>> Section::point(std::string_view key) const {
   if (!has(key)) return std::nullopt;
   const auto pair = pair_of_numbers(key);
-  constexpr double kLargest = 1e9;
   if (!pair || std::abs((*pair)[0]) > kLargest || std::abs((*pair)[1]) > kLargest)
     fail(key, "must be a place [x, y]: two numbers, 1e9 mm at most");
   return pair;

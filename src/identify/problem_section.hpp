@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,10 +31,14 @@ class Section {
   [[nodiscard]] bool has(std::string_view key) const { return find(key) != nullptr; }
   [[nodiscard]] bool is_text(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;
+  [[nodiscard]] std::map<std::string, int> lines() const;  // of the keys, and of "", the table
 
   /// Values by key; nothing if the key is not there.
   [[nodiscard]] std::optional<double> number(std::string_view key) const;  // finite
   [[nodiscard]] std::optional<double> positive(std::string_view key) const;
+  /// Far beyond any workshop, and near enough for the arithmetic: from -most to most; 1e-9 to 1e9.
+  [[nodiscard]] std::optional<double> coordinate(std::string_view key, double most = 1e9) const;
+  [[nodiscard]] std::optional<double> magnitude(std::string_view key) const;
   [[nodiscard]] std::optional<double> not_negative(std::string_view key) const;
   [[nodiscard]] std::optional<int> integer(std::string_view key, int lowest, int highest) const;
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const;  // one line, not empty

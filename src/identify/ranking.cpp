@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <numeric>
-#include <set>
 
 #include "residual.hpp"
 #include "slideway/base/error.hpp"
@@ -22,19 +20,23 @@ constexpr std::size_t kRunningPoints = 200;
 constexpr std::size_t kMostLags = 200;  // of the low band, on either side
 constexpr double kAlike = 0.95;
 constexpr double kNoSignal = 1e-9;  // a signal this small beside the profile is rounding
-constexpr double kSignificant = 0.05;
-// Smaller leads come and go with the next profile.
-constexpr double kClearRest = 0.8;  // of the variance the next effect leaves unexplained
-constexpr double kClearShare = 0.2;
 
 int most_lags(std::size_t n) { return static_cast<int>(std::min(kMostLags, n / 4)); }
 
-/// An effect's signal on one profile: in the low band, and how it correlates at full length.
+/// An effect's signal on one profile: levelled in the low band, and how it correlates at full
+/// length.
 struct Signal {
   const ModelTerm* term = nullptr;
   RunningCoefficient raw;
   Eigen::VectorXd low_band;
 };
+
+/// Nothing where levelling leaves rounding only.
+Eigen::VectorXd levelled_series(const Observation& observation, const Eigen::VectorXd& values) {
+  Eigen::VectorXd out = levelled(observation, values);
+  if (out.norm() <= kNoSignal * values.norm()) out.setZero();
+  return out;
+}
 
 Eigen::VectorXd low_band_signal(const Model& model, const Solution& fit, const ModelTerm& term,
                                 const Observation& observation, const Eigen::VectorXd& amplitudes) {
@@ -54,15 +56,15 @@ Signal signal_of(const Model& model, const Solution& fit, const ModelTerm& term,
       fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
   const Profile& profile = *observation.profile;
   double squares = 0.0;
+  const auto fill = [&](std::size_t first, std::span<double> part) {
+    Eigen::Map<Eigen::VectorXd> signal(part.data(), std::ssize(part));
+    effect_signal(model, term, profile, amplitudes, shape, first, signal);
+    squares += signal.squaredNorm();
+  };
+  const bool is_tilted = std::ranges::count(observation.nuisance_names, "tilt") > 0;
   const auto run = [&] {
-    return running_pearson(
-        profile.values,
-        [&](std::size_t first, std::span<double> part) {
-          Eigen::Map<Eigen::VectorXd> signal(part.data(), std::ssize(part));
-          effect_signal(model, term, profile, amplitudes, shape, first, signal);
-          squares += signal.squaredNorm();
-        },
-        kRunningPoints);
+    return is_tilted ? running_pearson(profile.values, fill, kRunningPoints, profile.positions)
+                     : running_pearson(profile.values, fill, kRunningPoints);
   };
   Signal out{&term, run(), {}};
   const Eigen::Map<const Eigen::VectorXd> values(profile.values.data(), std::ssize(profile.values));
@@ -70,13 +72,22 @@ Signal signal_of(const Model& model, const Solution& fit, const ModelTerm& term,
     amplitudes.setConstant(amplitudes.size() == 1 ? 1.0 : 0.0);
     out.raw = run();
   }
-  out.low_band = low_band_signal(model, fit, term, observation, amplitudes);
+  out.low_band =
+      levelled_series(observation, low_band_signal(model, fit, term, observation, amplitudes));
   return out;
 }
 
-Ranking rank_one(Signal& signal, const Observation& observation) {
+/// Positions at which a growing part of a series ends.
+std::vector<double> ends(const std::vector<double>& positions,
+                         const std::vector<std::size_t>& samples) {
+  std::vector<double> out;
+  for (const std::size_t count : samples) out.push_back(positions[count - 1]);
+  return out;
+}
+
+Ranking rank_one(Signal& signal, const Observation& observation, const Eigen::VectorXd& values) {
   const Profile& profile = *observation.profile;
-  const auto measured = view(observation.values), modelled = view(signal.low_band);
+  const auto measured = view(values), modelled = view(signal.low_band);
   Ranking out{signal.term->name, profile.name};
   out.low_band = pearson(measured, modelled);
   const Lag lag = best_lag(measured, modelled, most_lags(measured.size()));
@@ -88,9 +99,13 @@ Ranking rank_one(Signal& signal, const Observation& observation) {
   out.p_value = correlation_p_value(out.low_band, out.effective_observations);
   RunningCoefficient raw = std::move(signal.raw);
   out.raw = raw.coefficient.back();
-  // The low band has fewer values: its coefficient stands at the same share of the trace.
   const RunningCoefficient low = running_pearson(measured, modelled, kRunningPoints);
-  out.running = {std::move(raw.samples), std::move(raw.coefficient), low.coefficient};
+  out.running.position_mm = ends(profile.positions, raw.samples);
+  out.running.low_band_position_mm =
+      ends(observation.low_band.positions(profile.positions), low.samples);
+  out.running.samples = std::move(raw.samples);
+  out.running.raw = std::move(raw.coefficient);
+  out.running.low_band = low.coefficient;
   return out;
 }
 
@@ -103,58 +118,6 @@ void compare_candidates(const std::vector<Signal>& signals, const std::string& p
            pearson(view(signals[i].low_band), view(signals[j].low_band))});
 }
 
-/// Effects with the largest and the next largest mean score.
-struct Lead {
-  std::string first, second;
-  double score = 0.0, next = 0.0;
-};
-
-std::optional<Lead> lead(const std::map<std::string, double>& sums, std::size_t profiles) {
-  Lead out;
-  for (const auto& [effect, sum] : sums) {
-    const double score = sum / static_cast<double>(profiles);
-    if (score > out.score) {
-      out = {effect, out.first, score, out.score};
-    } else if (score >= out.next) {
-      out.second = effect;
-      out.next = score;
-    }
-  }
-  if (out.first.empty()) return std::nullopt;
-  return out;
-}
-
-/// Another effect whose share in the fit is a convention together with this one's.
-std::optional<std::string> untold_from(const std::string& effect, const Identifiability& what) {
-  for (const UndeterminedDirection& direction : what.unidentifiable) {
-    std::set<std::string> effects;
-    for (const auto& [parameter, factor] : direction.combination)
-      effects.insert(parameter.substr(0, parameter.rfind('.')));
-    if (effects.erase(effect) == 0 || effects.empty()) continue;
-    return *effects.begin();
-  }
-  return std::nullopt;
-}
-
-std::string doubt(const Lead& correlation, const Lead& share, const Identifiability& what) {
-  if (const std::optional<std::string> other = untold_from(share.first, what))
-    return "these data do not tell " + share.first + " from " + *other +
-           ", how the low band is shared out between them is a convention";
-  const auto rest = [](double coefficient) { return 1.0 - coefficient * coefficient; };
-  const bool correlates = rest(correlation.score) <= kClearRest * rest(correlation.next);
-  const bool outweighs = share.score - share.next >= kClearShare;
-  if (correlates && outweighs) return "";
-  const auto against = [](const Lead& lead, double scale, const std::string& unit, int digits) {
-    return joined(
-        std::vector<std::string>{"", significant(scale * lead.score, digits) + unit, "against",
-                                 lead.second, significant(scale * lead.next, digits) + unit},
-        " ");
-  };
-  return "no clear lead, by correlation " + correlation.first +
-         (correlates ? "" : against(correlation, 1.0, "", 3)) + ", by fit " + share.first +
-         (outweighs ? "" : against(share, 100.0, " %", 2));
-}
-
 }  // namespace
 
 RankingResult rank_effects(const Model& model, const Solution& fit) {
@@ -165,9 +128,10 @@ RankingResult rank_effects(const Model& model, const Solution& fit) {
       if (term.effect->applies_to(observation.profile->setup)) terms.push_back(&term);
     std::vector<Signal> signals(terms.size());
     std::vector<Ranking> entries(terms.size());
+    const Eigen::VectorXd values = levelled_series(observation, observation.values);
     parallel_for(terms.size(), [&](std::size_t i) {
       signals[i] = signal_of(model, fit, *terms[i], observation);
-      entries[i] = rank_one(signals[i], observation);
+      entries[i] = rank_one(signals[i], observation, values);
     });
     std::ranges::move(entries, std::back_inserter(out.entries));
     compare_candidates(signals, observation.profile->name, out);
@@ -181,32 +145,6 @@ RankingResult rank_effects(const Model& model, const Solution& fit) {
     if (std::abs(pair.coefficient) > kAlike)
       out.notes.push_back("profile '" + pair.profile + "': " + pair.a + " and " + pair.b +
                           " are nearly one shape; their ranking says nothing");
-  return out;
-}
-
-Dominant dominant_effects(const RankingResult& ranking, const FitResult& fit) {
-  std::map<std::string, double> coefficients, shares;
-  std::set<std::string> profiles, fitted, significant_effects;
-  for (const Ranking& entry : ranking.entries) {
-    coefficients[entry.effect] += std::abs(entry.low_band);
-    profiles.insert(entry.profile);
-    if (entry.p_value < kSignificant) significant_effects.insert(entry.effect);
-  }
-  for (const Contribution& contribution : fit.contributions) {
-    shares[contribution.effect] += contribution.share;
-    fitted.insert(contribution.profile);
-  }
-  Dominant out;
-  const std::optional<Lead> by_correlation = lead(coefficients, profiles.size());
-  const std::optional<Lead> by_fit = lead(shares, fitted.size());
-  if (coefficients.size() < 2 || !by_correlation ||
-      !significant_effects.contains(by_correlation->first))
-    return out;
-  out.by_correlation = by_correlation->first;
-  if (!by_fit) return out;
-  out.by_fit = by_fit->first;
-  out.doubt = doubt(*by_correlation, *by_fit, fit.identifiability);
-  out.agree = out.doubt.empty() && by_correlation->first == by_fit->first;
   return out;
 }
 

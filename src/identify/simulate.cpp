@@ -131,10 +131,10 @@ std::vector<Profile> simulate(const Problem& problem) {
     throw UsageError(problem.path.string() +
                      ": no [truth]; simulate needs the parameters to simulate");
   std::vector<Profile> profiles = empty_profiles(problem);
-  Problem raw = problem;  // effects and clocks are wanted here, not a low band
-  raw.low_band.level = 0;
-  const std::vector<Profile> frame = profiles;
-  Model model = build_model(raw, frame);
+  std::vector<Profile> frame = profiles;
+  for (Profile& profile : frame)
+    profile.low_band = LowBandOptions{.level = 0};  // effects are wanted here
+  Model model = build_model(problem, frame);
   for (const ModelTerm& term : model.terms)
     add_effect(model, term, parameters_of(*problem.truth, term.name), profiles);
   for (const Truth::HiddenEffect& hidden : problem.truth->effects) {

@@ -33,6 +33,10 @@ ResidualSummary residual_summary(const Observation& observation, const Eigen::Ve
           is_slope(observation) ? "urad" : "um"};
 }
 
+std::optional<double> if_finite(double number) {
+  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+}
+
 void add_parameters(const Model& model, const Solution& fit, FitResult& out) {
   for (const ModelTerm& term : model.terms) {
     const std::vector<Parameter>& parameters = term.effect->parameters();
@@ -43,11 +47,12 @@ void add_parameters(const Model& model, const Solution& fit, FitResult& out) {
       parameter.identifiable = fit.null.identifiable[index];
       if (parameter.identifiable) {
         const Spread spread = fit.uncertainty.of(fit.parameters.jacobian.row(index));
-        parameter.value = fit.parameters.values[index];
-        parameter.standard_uncertainty = spread.standard_uncertainty;
+        const double factor = coverage_factor(spread.degrees_of_freedom);
+        parameter.value = if_finite(fit.parameters.values[index]);
+        parameter.standard_uncertainty = if_finite(spread.standard_uncertainty);
         parameter.degrees_of_freedom = spread.degrees_of_freedom;
-        parameter.coverage_factor = coverage_factor(spread.degrees_of_freedom);
-        parameter.expanded_uncertainty = parameter.coverage_factor * spread.standard_uncertainty;
+        parameter.coverage_factor = factor;
+        parameter.expanded_uncertainty = if_finite(factor * spread.standard_uncertainty);
       }
       for (std::size_t s = 0; s < term.effect->shapes().size(); ++s)
         if (term.effect->shapes()[s].parameter == static_cast<int>(p))

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "intake.hpp"
+#include "plausibility.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 #include "slideway/base/statistics.hpp"
@@ -24,33 +25,38 @@ void require_two_samples(const ProfileSource& source, std::size_t count) {
   throw DataError(source.path.string() + ": " + where + ", at least 2 are needed");
 }
 
+// What changes along the trace of the radius, or of the position, must be more than rounding.
+constexpr double kMostLengths = 1e6;
+
+void require_usable_positions(const ProfileSource& source, const Setup& setup) {
+  const double reach = std::max(std::abs(setup.first_mm), std::abs(setup.last_mm));
+  const double length = setup.last_mm - setup.first_mm;
+  if (setup.kind == Kind::slide && reach > kMostLengths * length)
+    throw DataError(source.path.string() + ": positions lie " + significant(reach, 3) +
+                    " mm away from 0 over a length of " + significant(length, 3) +
+                    " mm; accepted: up to a million times their length");
+}
+
+void require_usable_radius(const Setup& setup, double reach) {
+  const double length = setup.last_mm - setup.first_mm;
+  if (reach <= kMostLengths * length) return;
+  throw KeyError("center_mm", "the spindle axis lies " + significant(reach, 3) +
+                                  " mm away from a trace of " + significant(length, 3) +
+                                  " mm; accepted: up to a million times its length");
+}
+
 // The end of the trace that lies furthest from the spindle axis was cut, so the cut reached it.
-void complete_cut_radius(const std::string& name, Setup& setup) {
+void complete_cut_radius(Setup& setup) {
   if (setup.kind != Kind::face) return;
   const double reach = std::max(std::abs(setup.first_mm - setup.center_mm),
                                 std::abs(setup.last_mm - setup.center_mm));
+  require_usable_radius(setup, reach);
   if (!setup.cut_radius_mm) setup.cut_radius_mm = reach;
   if (*setup.cut_radius_mm >= reach * (1.0 - 1e-9)) return;
-  throw UsageError("profile '" + name + "': cut_radius_mm = " + shortest(*setup.cut_radius_mm) +
-                   " but the trace reaches r = " + significant(reach, 9) +
-                   "; give the outer radius of the cut, the right center_mm, or a window");
-}
-
-// Sizes that nobody turns or measures with: a unit or a digit is more likely wrong.
-void note_blunders(Profile& profile) {
-  const Setup& setup = profile.setup;
-  const Statistics values = statistics_of(profile.values);
-  const double range = values.largest - values.least;
-  constexpr double kLargestRange = 1.0, kLargestFeed = 10000.0, kLargestSpeed = 1e5;
-  if (setup.quantity == Quantity::height && range > kLargestRange)
-    profile.notes.push_back("heights range over " + significant(range, 3) +
-                            " mm, more than 1 mm: is value_unit right?");
-  if (setup.feed_mm_per_min.value_or(0.0) > kLargestFeed)
-    profile.notes.push_back("feed_mm_per_min = " + shortest(*setup.feed_mm_per_min) +
-                            " is more than 10 m/min: is it right?");
-  if (setup.spindle_rpm.value_or(0.0) > kLargestSpeed)
-    profile.notes.push_back("spindle_rpm = " + shortest(*setup.spindle_rpm) +
-                            " is more than 100000: is it right?");
+  throw KeyError("cut_radius_mm",
+                 shortest(*setup.cut_radius_mm) +
+                     ", but the trace reaches r = " + significant(reach, 9) +
+                     "; give the outer radius of the cut, the right center_mm, or a window");
 }
 
 // "3, 120 to 122 and 5 more" of ascending rows.
@@ -132,8 +138,9 @@ void complete(const ProfileSource& source, TraceFile file, Intake& intake, Profi
   Setup& setup = profile.setup;
   setup.first_mm = profile.positions.front();
   setup.last_mm = profile.positions.back();
-  complete_cut_radius(profile.name, setup);
-  note_blunders(profile);
+  require_usable_positions(source, setup);
+  complete_cut_radius(setup);
+  note_implausible(profile);
 }
 
 }  // namespace

@@ -63,6 +63,66 @@ class CoMoments {
   double xx_ = 0.0, yy_ = 0.0, xy_ = 0.0;
 };
 
+// The same of three series at once: x, y and s, of which a line is taken out of both in the end.
+class LevelledMoments {
+ public:
+  using Matrix = Eigen::Matrix3d;
+
+  explicit LevelledMoments(const Eigen::RowVector3d& first) : first_(first) {}
+
+  void add(std::span<const double> x, std::span<const double> y, std::span<const double> s) {
+    const auto count = static_cast<double>(x.size());
+    Eigen::Matrix<double, Eigen::Dynamic, 3> d(std::ssize(x), 3);
+    for (Eigen::Index j = 0; const auto& series : {x, y, s})
+      d.col(j++) = Eigen::Map<const Eigen::VectorXd>(series.data(), std::ssize(series));
+    d.rowwise() -= first_;
+    const Eigen::RowVector3d mean = d.colwise().mean();
+    d.rowwise() -= mean;
+    const Eigen::RowVector3d step = mean - mean_;
+    const double share = count / (n_ + count);
+    products_ += d.transpose() * d + n_ * share * step.transpose() * step;
+    mean_ += share * step;
+    n_ += count;
+  }
+
+  [[nodiscard]] const Matrix& products() const { return products_; }
+
+  // Of the products of a part, with the slopes of the whole.
+  static double coefficient(const Matrix& part, const Matrix& whole) {
+    constexpr double kNothing = 64.0 * kEpsilon;  // of the square: cancellation, not variation
+    const double spread = whole(2, 2);
+    Eigen::Matrix<double, 3, 2> take = Eigen::Matrix<double, 3, 2>::Identity();
+    if (spread > 0.0) take.row(2) = -whole.block<1, 2>(2, 0) / spread;
+    const Eigen::Matrix2d left = take.transpose() * part * take;
+    if (left(0, 0) <= kNothing * whole(0, 0) || left(1, 1) <= kNothing * whole(1, 1)) return 0.0;
+    return std::clamp(left(0, 1) / std::sqrt(left(0, 0)) / std::sqrt(left(1, 1)), -1.0, 1.0);
+  }
+
+ private:
+  double n_ = 0.0;
+  Eigen::RowVector3d first_, mean_ = Eigen::RowVector3d::Zero();  // the mean from the first
+  Matrix products_ = Matrix::Zero();
+};
+
+// Makes y a part at a time up to each of `points` places and tells where it stands: of the samples
+// that make a part, add(first, y); of each place, mark(samples).
+template <typename Add, typename Mark>
+void in_parts(std::size_t size, const FillSeries& fill, std::size_t points, Add&& add,
+              Mark&& mark) {
+  constexpr std::size_t kBlock = 4096;  // pairs that stay in the cache
+  points = std::min(points, size);
+  std::vector<double> y;
+  std::size_t done = 0;
+  for (std::size_t k = 1; k <= points; ++k) {
+    for (const std::size_t end = k * size / points; done < end; done += y.size()) {
+      y.resize(std::min(kBlock, end - done));
+      fill(done, y);
+      add(done, y);
+    }
+    mark(done);
+  }
+}
+
 // The series about its mean; all zeros for a constant.
 Eigen::VectorXd centred(std::span<const double> x) {
   if (x.empty()) return {};
@@ -130,22 +190,38 @@ RunningCoefficient running_pearson(std::span<const double> x, std::span<const do
 
 RunningCoefficient running_pearson(std::span<const double> x, const FillSeries& fill,
                                    std::size_t points) {
-  constexpr std::size_t kBlock = 4096;  // pairs that stay in the cache
   RunningCoefficient running;
-  points = std::min(points, x.size());
   std::optional<CoMoments> moments;
-  std::vector<double> y;
-  std::size_t done = 0;
-  for (std::size_t k = 1; k <= points; ++k) {
-    for (const std::size_t end = k * x.size() / points; done < end; done += y.size()) {
-      y.resize(std::min(kBlock, end - done));
-      fill(done, y);
-      if (!moments) moments.emplace(x.front(), y.front());
-      moments->add(x.subspan(done, y.size()), y);
-    }
-    running.samples.push_back(done);
-    running.coefficient.push_back(moments->coefficient());
-  }
+  in_parts(
+      x.size(), fill, points,
+      [&](std::size_t first, std::span<const double> y) {
+        if (!moments) moments.emplace(x.front(), y.front());
+        moments->add(x.subspan(first, y.size()), y);
+      },
+      [&](std::size_t samples) {
+        running.samples.push_back(samples);
+        running.coefficient.push_back(moments->coefficient());
+      });
+  return running;
+}
+
+RunningCoefficient running_pearson(std::span<const double> x, const FillSeries& fill,
+                                   std::size_t points, std::span<const double> along) {
+  RunningCoefficient running;
+  std::optional<LevelledMoments> moments;
+  std::vector<LevelledMoments::Matrix> products;
+  in_parts(
+      x.size(), fill, points,
+      [&](std::size_t first, std::span<const double> y) {
+        if (!moments) moments.emplace(Eigen::RowVector3d(x.front(), y.front(), along.front()));
+        moments->add(x.subspan(first, y.size()), y, along.subspan(first, y.size()));
+      },
+      [&](std::size_t samples) {
+        running.samples.push_back(samples);
+        products.push_back(moments->products());
+      });
+  for (const LevelledMoments::Matrix& part : products)
+    running.coefficient.push_back(LevelledMoments::coefficient(part, products.back()));
   return running;
 }
 

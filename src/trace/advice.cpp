@@ -75,9 +75,10 @@ Planned plan(const Problem& problem, const std::vector<Profile>& profiles, const
              const Solution& fit, const Measurement& measurement) {
   Planned out{profiles, {model.machine, model.range, {}, {}}, {}};
   out.profiles.push_back(measurement.profile);
+  for (std::size_t i = 0; i < profiles.size(); ++i)
+    out.profiles[i].low_band = model.observations[i].low_band.options();
   Problem bare = problem;
   bare.effects.clear();
-  bare.low_band = model.observations.front().low_band.options();
   out.model = build_model(bare, out.profiles);
   out.model.range = model.range;
   out.model.terms = model.terms;
@@ -139,7 +140,9 @@ std::string separating_measurement(const Problem& problem, const std::vector<Pro
                                    const Model& model, const Solution& fit, const Whitened& data,
                                    const Refined& effect, const Refined& rival) {
   // The other profiles differ from the first in the few things that are tried.
-  const Profile& like = *fitted_observations(model).front()->profile;
+  const Observation& first = *fitted_observations(model).front();
+  Profile like = *first.profile;
+  like.low_band = first.low_band.options();
   double best = 0.0;
   std::string name;
   for (const Measurement& measurement : measurements_like(like)) {

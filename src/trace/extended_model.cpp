@@ -7,11 +7,9 @@ namespace {
 
 constexpr std::size_t kMostValues = 2048;  // of a profile, in a search
 
-Problem for_search(Problem problem, const std::vector<Profile>& profiles) {
-  std::size_t most = 0;
-  for (const Profile& profile : profiles) most = std::max(most, profile.positions.size());
-  while ((most >> problem.low_band.level) > kMostValues) ++problem.low_band.level;
-  return problem;
+bool is_long(const Observation& observation) {
+  return (observation.profile->positions.size() >> observation.low_band.options().level) >
+         kMostValues;
 }
 
 Model with(Model model, const std::vector<AcceptedEffect>& effects) {
@@ -33,8 +31,8 @@ std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::si
 ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
                              const FittedModel& declared, const Progress& progress)
     : declared_(declared), progress_(progress) {
-  const Problem search = for_search(problem, profiles);
-  if (search.low_band.level != problem.low_band.level) coarser_ = fit_declared(search, profiles);
+  if (std::ranges::any_of(declared.model.observations, is_long))
+    coarser_ = fit_model(build_model(problem, profiles, kMostValues));
   if (progress_) progress_("making the columns of every candidate", 0.0);
   dictionary_ = make_dictionary(base().model, problem, base().fit.linear.prior_rows.rows());
 }

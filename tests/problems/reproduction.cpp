@@ -157,6 +157,13 @@ void add_full_travel(Numbers& out) {
       fixed((runout.p_um - runout.r_um) * kMicrometre / runout.diameter_mm * 1e6, 1);
 }
 
+void add_experiment(Numbers& out) {
+  const Result joint = identify_shipped("paper-experiment/problem.toml");
+  out["joint_dbeta"] = squareness_of(joint);
+  out["joint_En"] = fixed(*joint.squareness->En, 2);
+  out["joint_verdict"] = joint.squareness->verdict;
+}
+
 void add_face(Numbers& out) {
   const Problem problem = shipped_problem("paper-face-10mm/problem.toml");
   const Result face = identify_shipped("paper-face-10mm/problem.toml");
@@ -192,6 +199,7 @@ std::map<std::string, std::string> reproduced_numbers() {
   add_equation_17(out);
   add_levers(out);
   add_full_travel(out);
+  add_experiment(out);
   add_face(out);
   add_axes(out);
   return out;

@@ -232,8 +232,47 @@ TEST_F(ReadProfile, SaysWhichSizesLookLikeBlunders) {
   read("0,0\n1,1500\n");
   ASSERT_EQ(profile_.notes.size(), 4U);
   EXPECT_EQ(profile_.notes[1], "heights range over 1.5 mm, more than 1 mm: is value_unit right?");
-  EXPECT_EQ(profile_.notes[2], "feed_mm_per_min = 20000 is more than 10 m/min: is it right?");
-  EXPECT_EQ(profile_.notes[3], "spindle_rpm = 110000 is more than 100000: is it right?");
+  EXPECT_EQ(profile_.notes[2],
+            "feed_mm_per_min = 20000, but lathes feed at 0.01 to 10000 mm/min: is it right?");
+  EXPECT_EQ(profile_.notes[3],
+            "spindle_rpm = 110000, but spindles turn at 0.1 to 100000 rev/min: is it right?");
+}
+
+// 100 mm at 0.02 mm/min are 5000 min: a feed in metres a minute.
+TEST_F(ReadProfile, SaysThatACutTakesDays) {
+  profile_.setup.feed_mm_per_min = 0.02;
+  read("0,0\n100,1\n");
+  EXPECT_THAT(profile_.notes,
+              Contains("feed_mm_per_min = 0.02 makes a cut of 83 h: is it in mm/min?"));
+}
+
+TEST_F(ReadProfile, SaysThatTheSpindleAxisIsFarAway) {
+  profile_.setup.center_mm = -30.0;
+  read("0,0\n10,1\n");
+  EXPECT_THAT(profile_.notes, Contains("the spindle axis lies 30 mm outside a trace of 10 mm: a "
+                                       "ring, or is center_mm wrong?"));
+  profile_.setup.center_mm = 0.0;
+  profile_.notes.clear();
+  read("0,0\n10,1\n");
+  EXPECT_EQ(profile_.notes.size(), 1U);
+}
+
+TEST_F(ReadProfile, RefusesPositionsThatDifferInTheirLastDigitsOnly) {
+  profile_.setup.kind = Kind::slide;
+  EXPECT_THAT(
+      [&] { read("100000000,0\n100000001,1\n"); },
+      ThrowsMessage<DataError>(file() + ": positions lie 1e+08 mm away from 0 over a length "
+                                        "of 1 mm; accepted: up to a million times their "
+                                        "length"));
+}
+
+// At 1e18 mm both ends of the trace have one radius; at a million lengths ten digits are left.
+TEST_F(ReadProfile, RefusesACentreThatLeavesNoRadius) {
+  profile_.setup.center_mm = 1e18;
+  EXPECT_THAT([&] { read("0,0\n10,1\n"); },
+              ThrowsMessage<KeyError>(StartsWith("the spindle axis lies 1e+18 mm away")));
+  profile_.setup.center_mm = -9e6;
+  EXPECT_NO_THROW(read("0,0\n10,1\n"));
 }
 
 TEST_F(ReadProfile, RefusesPositionsOutOfOrder) {
@@ -260,8 +299,7 @@ TEST_F(ReadProfile, RefusesFewerThanTwoSamples) {
 TEST_F(ReadProfile, RefusesATraceThatReachesBeyondTheCut) {
   profile_.setup.cut_radius_mm = 9.0;
   EXPECT_THAT([&] { read("0,0\n10,1\n"); },
-              ThrowsMessage<UsageError>(
-                  StartsWith("profile 'face': cut_radius_mm = 9 but the trace reaches r = 10; ")));
+              ThrowsMessage<KeyError>(StartsWith("9, but the trace reaches r = 10; ")));
   profile_.setup.cut_radius_mm = 10.0 * (1.0 - 1e-12);  // rounding of a unit is no contradiction
   EXPECT_NO_THROW(read("0,0\n10,1\n"));
   profile_.setup.kind = Kind::slide;

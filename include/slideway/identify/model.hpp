@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,6 +49,11 @@ struct SlideRange {
 };
 SlideRange slide_range(const Profile& profile, const Machine& machine);
 
+/// What is left of columns in an observation's low band when what is free in the trace (offset,
+/// tilt) is taken out by least squares; their means are taken out too, values that are left out of
+/// the fit become 0.
+Eigen::MatrixXd levelled(const Observation& observation, Eigen::MatrixXd columns);
+
 /// Leaves low-band values of an observation out of every fit. @return true if one was not yet
 bool leave_out(Observation& observation, const std::vector<Eigen::Index>& values);
 
@@ -72,9 +78,11 @@ struct Model {
 
 /// Builds effects (with an inner basis for the travel of the profiles) and the low bands. The
 /// profiles must outlive the model.
+/// @param most_values  of a profile's low band: its level is raised until it has no more
 /// @throws UsageError  an effect lacks the metadata of its clock, named by profile and key
 /// @throws DataError   fewer samples than 2^level
-Model build_model(const Problem& problem, const std::vector<Profile>& profiles);
+Model build_model(const Problem& problem, const std::vector<Profile>& profiles,
+                  std::size_t most_values = std::numeric_limits<std::size_t>::max());
 
 /// Puts one more effect into a model. @throws UsageError as build_model().
 void append_term(Model& model, const DeclaredEffect& declared, const TravelRange& range);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slideway/effects/effect.hpp"
+#include "slideway/identify/assumption.hpp"
 #include "slideway/identify/gates.hpp"
 #include "slideway/profile/profile.hpp"
 #include "slideway/signal/low_band.hpp"
@@ -59,7 +60,8 @@ struct Truth {
 /// One [[profile]] of the problem file: where the data are, and everything but the data.
 struct ProfileEntry {
   ProfileSource source;
-  Profile profile;  // name, file, setup, role, ...; positions and values empty
+  Profile profile;                   // name, file, setup, role, ...; positions and values empty
+  std::map<std::string, int> lines;  // of its keys in the problem file, and of "", the table
 };
 
 /// A problem file, checked.
@@ -69,14 +71,18 @@ struct Problem {
   std::vector<Body> bodies;  // the paper's lathe unless the file lists its own
   Lever lever = Lever::paper;
   double beam_span_mm = 0.0;  // between the supports of the cross-beam (gantry_sag); 0: unknown
-  LowBandOptions low_band;
+  LowBandOptions low_band;    // of profiles without one of their own
   std::vector<ProfileEntry> profiles;
   std::vector<DeclaredEffect> effects;
   std::optional<Runout> runout;
   TraceOptions trace;
   std::optional<Truth> truth;
+  std::vector<Assumption> assumed;  // values that the data give are empty: assumptions()
 
   [[nodiscard]] Machine machine() const { return {bodies, lever}; }
+  [[nodiscard]] const LowBandOptions& low_band_of(const Profile& profile) const {
+    return profile.low_band ? *profile.low_band : low_band;
+  }
 };
 
 /// Reads a problem file (TOML). `data_dir` replaces ${SLIDEWAY_DATA} in paths; without it such a
@@ -95,6 +101,10 @@ Problem read_profiles_of_problem(
 /// Reads all profiles of a problem, in order, and tells which part of their bytes has been read.
 /// @throws DataError, UsageError
 std::vector<Profile> read_profiles(const Problem& problem, const ReadProgress& progress = {});
+
+/// What was assumed because the problem file leaves it out, with what the profiles say.
+/// REQUIRES one profile per entry.
+std::vector<Assumption> assumptions(const Problem& problem, const std::vector<Profile>& profiles);
 
 /// The problem file without its [truth], each profile's `file` replaced by one of `files` with the
 /// columns x_mm and z_um (slopes: slope_urad), no window and no

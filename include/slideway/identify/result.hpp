@@ -61,9 +61,12 @@ struct ClosureSummary {
   std::vector<std::string> notes;     // what that means, in words
 };
 
+/// Pearson's coefficient over the first part of a trace, which grows (Figs. 8 and 9): over its
+/// samples up to position_mm, over its low band up to low_band_position_mm.
 struct RunningSeries {
   std::vector<std::size_t> samples;
   std::vector<double> raw, low_band;
+  std::vector<double> position_mm, low_band_position_mm;
 };
 
 /// Pearson's coefficient of one effect and one profile, Eqs. (6), (19), (20).
@@ -173,11 +176,11 @@ struct FitResult {
   [[nodiscard]] const FittedParameter* find(const std::string& name) const;
 };
 
-/// None where there is one candidate only or none correlates significantly.
+/// None where there is one candidate only, or where none leads.
 struct Dominant {
   std::optional<std::string> by_correlation, by_fit;
-  std::optional<bool> agree;  // true only if both name one effect, without a doubt
-  std::string doubt;          // why none can be named, in words; "" if there is no doubt
+  std::optional<bool> agree;  // none unless both name one
+  std::string doubt;          // why the fit names none, in words; "" if it does
 };
 
 struct SquarenessCheck {

@@ -8,9 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "slideway/base/error.hpp"
 #include "slideway/format/format.hpp"
 #include "slideway/profile/outliers.hpp"
 #include "slideway/profile/setup.hpp"
+#include "slideway/signal/low_band.hpp"
 
 namespace slideway {
 
@@ -19,7 +21,8 @@ enum class Role {
   holdout  // never fitted, only predicted
 };
 
-/// What a value that lies far off counts in the fit: its square, or less (Huber 1964; Cauchy).
+/// What a residual costs: its square; beyond a few standard uncertainties its size (Huber) or the
+/// logarithm of its square (Cauchy), for traces with dirt.
 enum class Loss { none, huber, cauchy };
 
 /// An outlier by its data row, counted from 1 as the file has them; mm or rad.
@@ -54,8 +57,9 @@ struct Profile {
   bool free_offset = true;           // what levelling left undetermined: nuisances of this profile
   bool free_tilt = true;
   std::optional<double> standard_uncertainty;  // of one sample, mm or rad
+  std::optional<LowBandOptions> low_band;      // its own; none: that of the problem
   Loss loss = Loss::none;
-  std::vector<std::string> notes;              // what was done to the data on the way in
+  std::vector<std::string> notes;  // what was done to the data on the way in
 
   [[nodiscard]] Stations stations(const Machine& machine) const {
     return {positions, setup, machine};
@@ -75,6 +79,12 @@ struct ProfileSource {
   std::size_t most_samples = 10'000'000;            // more are kept as means of 2, 4, 8, ...; even
 };
 
+/// A key of a [[profile]] that does not fit the data.
+struct KeyError : UsageError {
+  KeyError(std::string name, const std::string& what) : UsageError(what), key(std::move(name)) {}
+  std::string key;  // "center_mm"
+};
+
 /// Told which part of what is to be read has been, 0 to 1, in the thread that reads.
 using ReadProgress = std::function<void(double done)>;
 
@@ -84,9 +94,12 @@ using ReadProgress = std::function<void(double done)>;
 /// converted from those.
 /// @param progress  is told which part of the file has been read
 /// @throws DataError   what read_trace() refuses; a unit in the header that is not the source's;
-///                     naming file and row: unsorted or repeated positions, too few rows
+///                     naming file and row: unsorted or repeated positions, positions of a slide
+///                     that differ in their last digits only, too few rows
 /// @throws UsageError  no unit, no feed where the positions are times, a row to leave out that is
-///                     not there, a cut smaller than the trace
+///                     not there
+/// @throws KeyError    a cut smaller than the trace; a centre so far away that the radius is one
+///                     number along it
 void read_profile(const ProfileSource& source, Profile& profile, const ReadProgress& progress = {});
 
 }  // namespace slideway

@@ -36,7 +36,8 @@ struct Setup {
       cut_radius_mm;  // of a face; set to the largest r of the trace when left out
   double start_s = 0.0;
   std::optional<double> traverse_mm_per_s;
-  double first_mm = 0.0;  // smallest and largest trace position
+  std::optional<double> nose_radius_mm;  // of the tool that cut a face
+  double first_mm = 0.0;                 // smallest and largest trace position
   double last_mm = 0.0;
 };
 

@@ -25,6 +25,11 @@ using FillSeries = std::function<void(std::size_t first, std::span<double> part)
 RunningCoefficient running_pearson(std::span<const double> x, const FillSeries& fill,
                                    std::size_t points);
 
+/// The same of what a straight line in `along` leaves of both: its slope by least squares over all
+/// samples. REQUIRES along.size() == x.size().
+RunningCoefficient running_pearson(std::span<const double> x, const FillSeries& fill,
+                                   std::size_t points, std::span<const double> along);
+
 /// Lag (in samples, positive if y comes later than x) within ±max_lag at which |Pearson| over the
 /// overlap is largest, and that coefficient. The smaller |lag| wins a tie.
 struct Lag {

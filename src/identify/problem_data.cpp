@@ -1,0 +1,91 @@
+#include <algorithm>
+
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/identify/problem_tree.hpp"
+#include "slideway/profile/given.hpp"
+
+namespace slideway {
+namespace {
+
+void check_names(const Problem& problem, const GivenTraces& given) {
+  std::vector<std::string> names;
+  for (const ProfileEntry& entry : problem.profiles) names.push_back(entry.profile.name);
+  for (const auto& [name, trace] : given)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw UsageError(problem.path.string() + ": numbers for '" + printable(name) +
+                       "', which is no [[profile]]" + did_you_mean(name, names) +
+                       "; accepted: " + joined(names, " "));
+}
+
+void take_or_read(const ProfileEntry& entry, const GivenTraces& given, const ReadProgress& progress,
+                  Profile& profile) {
+  if (const auto at = given.find(entry.profile.name); at != given.end())
+    return take_profile(entry.source, at->second, profile);
+  if (entry.source.path.empty())
+    throw UsageError("profile '" + entry.profile.name + "': no numbers; accepted: arrays, or file");
+  read_profile(entry.source, profile, progress);
+}
+
+/// Which part of all files has been read, told by each.
+class FilesRead {
+ public:
+  FilesRead(const Problem& problem, const ReadProgress& progress) : progress_(progress) {
+    for (const ProfileEntry& entry : problem.profiles) all_ += size_of(entry);
+  }
+
+  [[nodiscard]] ReadProgress within(const ProfileEntry& entry) const {
+    if (!progress_ || all_ == 0.0) return {};
+    return
+        [this, size = size_of(entry)](double share) { progress_((before_ + share * size) / all_); };
+  }
+  void finish(const ProfileEntry& entry) { before_ += size_of(entry); }
+
+ private:
+  /// 0 of what is no regular file.
+  static double size_of(const ProfileEntry& entry) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(entry.source.path, error);
+    return error ? 0.0 : static_cast<double>(size);
+  }
+
+  const ReadProgress& progress_;
+  double all_ = 0.0, before_ = 0.0;  // bytes
+};
+
+/// "problem.toml:12: profile.center_mm: what is wrong"; of a key left out, where its table begins.
+std::string placed(const Problem& problem, const ProfileEntry& entry, const KeyError& error) {
+  const auto at = entry.lines.find(entry.lines.contains(error.key) ? error.key : "");
+  const bool has_line = at != entry.lines.end() && at->second > 0;
+  return problem.path.string() + (has_line ? ":" + std::to_string(at->second) : "") + ": profile." +
+         error.key + ": '" + entry.profile.name + "': " + error.what();
+}
+
+}  // namespace
+
+std::vector<Profile> read_profiles(const Problem& problem, const ReadProgress& progress) {
+  return read_profiles(problem, GivenTraces{}, progress);
+}
+
+std::vector<Profile> read_profiles(const Problem& problem, const GivenTraces& given,
+                                   const ReadProgress& progress) {
+  check_names(problem, given);
+  FilesRead files(problem, progress);
+  std::vector<Profile> profiles;
+  for (const ProfileEntry& entry : problem.profiles) {
+    profiles.push_back(entry.profile);
+    try {
+      take_or_read(entry, given, files.within(entry), profiles.back());
+      files.finish(entry);
+    } catch (const DataError& error) {
+      throw DataError("profile '" + entry.profile.name + "': " + error.what());
+    } catch (const KeyError& error) {
+      throw UsageError(placed(problem, entry, error));
+    } catch (const UsageError& error) {
+      throw UsageError(problem.path.string() + ": " + error.what());
+    }
+  }
+  return profiles;
+}
+
+}  // namespace slideway
