@@ -26,7 +26,7 @@ std::string line_of(const std::string& name) {
   const auto effect = sample_effect(name);
   const Description& about = effect->description();
   return name + "\n" +
-         paragraph("  clock " + std::string(symbol(about.clock)) + "   ", about.formula) +
+         paragraph("  variable " + std::string(symbol(about.variable)) + "   ", about.formula) +
          paragraph("  parameters: ", parameter_list(*effect));
 }
 
@@ -39,7 +39,7 @@ std::string entry_of(const std::string& name) {
       {"source", about.source},
       {"cause", about.cause},
       {"typical", about.typical},
-      {"clock", std::string(symbol(about.clock))},
+      {"variable", std::string(symbol(about.variable))},
       {"parameters", parameter_list(*effect)},
       {"confounded with", about.confounded_with},
       {"separated by", about.separated_by}};
@@ -72,7 +72,7 @@ nlohmann::ordered_json json_of(const std::string& name) {
           {"source", about.source},
           {"cause", about.cause},
           {"typical", about.typical},
-          {"clock", symbol(about.clock)},
+          {"clock", symbol(about.variable)},
           {"parameters", parameters},
           {"confounded_with", about.confounded_with},
           {"separated_by", about.separated_by}};

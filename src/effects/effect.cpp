@@ -17,7 +17,7 @@ double Effect::resolution(int shape, double value, const Stations& stations) con
 }
 
 std::vector<std::string> Effect::lacking(const Setup& setup) const {
-  return missing_for(description().clock, setup);
+  return missing_for(description().variable, setup);
 }
 
 void Effect::columns_of_shapes(const Stations& stations,

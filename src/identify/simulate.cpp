@@ -131,7 +131,7 @@ std::vector<Profile> simulate(const Problem& problem) {
     throw UsageError(problem.path.string() +
                      ": no [truth]; simulate needs the parameters to simulate");
   std::vector<Profile> profiles = empty_profiles(problem);
-  Problem raw = problem;  // effects and clocks are wanted here, not a low band
+  Problem raw = problem;  // effects and variables are wanted here, not a low band
   raw.low_band.level = 0;
   const std::vector<Profile> frame = profiles;
   Model model = build_model(raw, frame);

@@ -251,7 +251,7 @@ Eigen::VectorXd centred_curve(const Model& model, const Solution& fit, std::size
 }  // namespace
 
 bool is_centred(const Effect& effect) {
-  return effect.description().clock == Clock::radius && !effect.shapes().empty() &&
+  return effect.description().variable == IndependentVariable::radius && !effect.shapes().empty() &&
          !effect.shapes()[0].stepwise;
 }
 

@@ -197,9 +197,9 @@ TEST_P(EffectContract, NamesTheMetadataItLacks) {
     bare.cut_direction.reset();
     bare.traverse_mm_per_s.reset();
     const std::vector<std::string> lacking = effect_->lacking(bare);
-    for (const std::string& key : missing_for(effect_->description().clock, bare))
+    for (const std::string& key : missing_for(effect_->description().variable, bare))
       EXPECT_THAT(lacking, ::testing::Contains(key));
-    EXPECT_EQ(lacking.empty(), missing_for(effect_->description().clock, bare).empty());
+    EXPECT_EQ(lacking.empty(), missing_for(effect_->description().variable, bare).empty());
   }
 }
 

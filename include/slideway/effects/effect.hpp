@@ -41,7 +41,7 @@ struct Description {
   std::string source;         // "Eq. (15)", "ISO 230-3"
   std::string cause;          // what makes it
   std::string typical;        // "5 to 50 µm/m on a precision lathe"
-  Clock clock = Clock::radius;
+  IndependentVariable variable = IndependentVariable::radius;
   std::string confounded_with;
   std::string separated_by;
 };
@@ -95,7 +95,7 @@ class Effect {
   /// its columns are then zero.
   [[nodiscard]] virtual bool applies_to(const Setup& setup) const = 0;
 
-  /// Keys of the problem file this profile lacks for the effect's clock; see missing_for().
+  /// Keys of the problem file this profile lacks for the effect's variable; see missing_for().
   [[nodiscard]] virtual std::vector<std::string> lacking(const Setup& setup) const;
 
   /// Fills `out` (#stations by #amplitudes): mm per unit of amplitude for heights, rad for slopes.

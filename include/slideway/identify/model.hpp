@@ -67,7 +67,7 @@ struct Model {
 
 /// Builds effects (with an inner basis for the travel of the profiles) and the low bands. The
 /// profiles must outlive the model.
-/// @throws UsageError  an effect lacks the metadata of its clock, named by profile and key
+/// @throws UsageError  an effect lacks the metadata of its variable, named by profile and key
 /// @throws DataError   fewer samples than 2^level
 Model build_model(const Problem& problem, const std::vector<Profile>& profiles);
 

@@ -23,7 +23,7 @@ Description describe() {
               "Maxwell and Betti for the half slope",
           .cause = "the weight of the carriage bends the cross-beam it travels on",
           .typical = "0.1 to 1 µm at mid-span of a 1 m beam; below 15 nm of slope over 10 mm",
-          .clock = Clock::slide,
+          .variable = IndependentVariable::slide,
           .confounded_with = "straightness of degree 4 and above: same locus, twice the pitch",
           .separated_by =
               "the ratio of pitch to straightness (half that of a rail), a mass added to "

@@ -7,7 +7,7 @@ namespace {
 
 // One groove per turn samples a face: above half a cycle per turn everything is an alias.
 std::pair<double, double> search(const Stations& stations) {
-  const ClockRange range = range_of(stations, revolution_of);
+  const VariableRange range = range_of(stations, revolution_of);
   const double limit = 0.5 / range.step;
   const bool is_face = stations.setup().kind == Kind::face;
   return {0.5 / range.extent(), is_face && limit > 0.5 ? 0.5 : limit};
@@ -25,7 +25,7 @@ std::unique_ptr<Effect> make_revolution_periodic(const Request& request) {
                       .cause = "asynchronous motion of the spindle or vibration of the structure, "
                                "sampled once per turn by the groove",
                       .typical = "5 to 30 nm",
-                      .clock = Clock::revolution,
+                      .variable = IndependentVariable::revolution,
                       .confounded_with =
                           "slide_periodic, time_periodic and traverse_periodic at one "
                           "feed and one traverse speed; on a face ν stands for all its "
@@ -35,7 +35,7 @@ std::unique_ptr<Effect> make_revolution_periodic(const Request& request) {
                           "over ν) and a change of spindle speed by 1 % (the alias jumps)"},
       .rate = {"cycles_per_revolution", "ν", "1", 0.1, 0.0, 1e4},
       .rate_is_period = false,
-      .clock = cutting_revolution_of,
+      .reading = cutting_revolution_of,
       .range = search,
       .applies_to = is_height});
 }

@@ -1,7 +1,7 @@
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../locus.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -17,7 +17,7 @@ Description describe() {
               "the X guideway is not at a right angle to the spindle axis: the face becomes a "
               "cone",
           .typical = "5 to 50 µrad on a precision lathe: 50 to 500 nm over a radius of 10 mm",
-          .clock = Clock::radius,
+          .variable = IndependentVariable::radius,
           .confounded_with =
               "the tilt of the trace on a radius; c_1 of vertical_straightness; "
               "linear_drift at one feed",

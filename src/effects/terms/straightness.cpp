@@ -62,7 +62,7 @@ Description describe() {
       .typical =
           "0.5 to 1 µm over 200 mm on an aerostatic slide: about 10 nm of curvature "
           "within 10 mm of travel, 2 to 10 µm over 600 mm on a conventional bed",
-      .clock = Clock::slide,
+      .variable = IndependentVariable::slide,
       .confounded_with =
           "every smooth effect: b_2 with cup, linear tool wear and slow drift; "
           "with one lever p_x = x the coefficient b_1 vanishes, and b_0 is the "

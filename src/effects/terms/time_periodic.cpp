@@ -17,7 +17,7 @@ std::unique_ptr<Effect> make_time_periodic(const Request& request) {
                           "the compressor",
                       .typical = "20 to 500 nm at periods of 2 to 30 min (air conditioning), 5 to "
                                  "50 nm at 15 to 120 s (air supply)",
-                      .clock = Clock::time,
+                      .variable = IndependentVariable::time,
                       .confounded_with = "the straightness polynomial when a cut lasts less than "
                                          "about one period; slide_periodic and revolution_periodic "
                                          "at one feed",
@@ -26,7 +26,7 @@ std::unique_ptr<Effect> make_time_periodic(const Request& request) {
                           "temperature or pressure log"},
       .rate = {"period_s", "T", "s", 60.0, 1e-2, 1e6},
       .rate_is_period = true,
-      .clock = cutting_time_of,
+      .reading = cutting_time_of,
       .range = [](const Stations& stations) { return period_range(stations, time_of); },
       .applies_to = is_height});
 }

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../locus.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -38,7 +38,7 @@ Description describe() {
               "the form of the guideway the Z carriage follows: its slope at the height of the "
               "face tilts the tool",
           .typical = "1 to 50 µrad over the Z travel",
-          .clock = Clock::radius,
+          .variable = IndependentVariable::radius,
           .confounded_with =
               "squareness: at one z level only Σ k c_k z^(k-1) + Δβxz is seen, and "
               "c_1 and Δβxz are one column at any number of levels (one lever)",
