@@ -1,6 +1,5 @@
 #include "topics.hpp"
 
-#include "effect_sample.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/report/layout.hpp"
 
@@ -156,11 +155,11 @@ std::string effects_text() {
     text += '\n';
     text += paragraph(std::string(symbol(entry.variable)) + "  ", entry.text);
     for (const std::string& name : effect_names()) {
-      const auto effect = sample_effect(name);
-      if (effect->description().variable != entry.variable) continue;
+      const Effect& effect = specimen(name);
+      if (effect.description().variable != entry.variable) continue;
       text +=
           paragraph("   " + name + std::string(23 - std::min<std::size_t>(22, name.size()), ' '),
-                    effect->description().formula);
+                    effect.description().formula);
     }
   }
   return text;

@@ -250,10 +250,7 @@ Eigen::VectorXd centred_curve(const Model& model, const Solution& fit, std::size
 
 }  // namespace
 
-bool is_centred(const Effect& effect) {
-  return effect.description().variable == IndependentVariable::radius && !effect.shapes().empty() &&
-         !effect.shapes()[0].stepwise;
-}
+bool is_centred(const Effect& effect) { return effect.description().steep_at_centre; }
 
 Eigen::Index slow_cosine_count(Eigen::Index n) {
   return std::min(kSlowCosines, n / kValuesPerCosine);

@@ -11,7 +11,7 @@ namespace slideway {
 struct Candidate {
   ModelTerm term;
   EffectOptions options;
-  bool raises_degree = false;  // of the declared straightness; its columns are the terms that lacks
+  bool raises_degree = false;  // of the declared effect; the columns are the terms that one lacks
   std::vector<std::vector<double>> shapes;  // one entry per atom; an empty shape if it has none
   Eigen::MatrixXd columns;                  // stacked rows by (#amplitudes * #atoms), not whitened
 
@@ -37,7 +37,7 @@ struct Dictionary {
   std::vector<Untestable> not_testable;
 };
 
-/// Effects of those names that are not declared, and a declared straightness with more terms.
+/// The hypotheses of every candidate effect about itself (Effect::hypotheses).
 /// @param prior_rows  rows of zeros below the observations', one per prior of the model
 Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows);
 

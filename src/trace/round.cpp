@@ -8,7 +8,6 @@
 #include "gates.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/effects/catalogue.hpp"
 
 namespace slideway {
 namespace {
@@ -147,10 +146,11 @@ std::vector<const Seen*> Look::rivals(const Seen& chosen) const {
   const auto unknowns = [](const Seen& each) {
     return each.refined.candidate->unknowns(each.refined.projection.rank);
   };
+  const bool comes_near_all = chosen.refined.candidate->term.effect->is_carriage();
   for (const Seen& each : seen) {
-    const bool counts = each.refused.empty() ||
-                        (is_possible(each) &&
-                         (unknowns(each) <= unknowns(chosen) || is_carriage_effect(chosen.name())));
+    const bool counts =
+        each.refused.empty() ||
+        (is_possible(each) && (unknowns(each) <= unknowns(chosen) || comes_near_all));
     const bool known = std::any_of(out.begin(), out.end(),
                                    [&](const Seen* other) { return other->name() == each.name(); });
     if (counts && !known && each.name() != chosen.name() &&

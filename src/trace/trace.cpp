@@ -11,7 +11,6 @@
 #include "loop.hpp"
 #include "outcome.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/crosscheck.hpp"
 #include "structure.hpp"
 #include "widening.hpp"
@@ -160,7 +159,7 @@ class Loop {
       notes_.push_back(choice.name() + " was refused: it predicts the held-out profiles worse");
       return false;
     }
-    if (is_carriage_effect(choice.name()) &&
+    if (choice.refined.candidate->term.effect->is_carriage() &&
         !outdoes_process(extended, state, look.data.noise(), state.added.size())) {
       notes_.push_back(choice.name() +
                        " was refused: a smooth process without a name fits as well");
@@ -295,7 +294,7 @@ class Loop {
       out.rounds.push_back(effect.round);
       out.rounds.back().parameters = parameters_of(after, effect.name());
       if (effect.candidate->raises_degree)
-        notes_.push_back("straightness: raised to degree " +
+        notes_.push_back(effect.name() + ": raised to degree " +
                          std::to_string(*effect.candidate->options.degree));
     }
     if (state.lost_centre_mm > 0.0)

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "effects/effect_cases.hpp"
+#include "slideway/base/error.hpp"
 
 namespace slideway {
 namespace {
@@ -216,6 +218,96 @@ TEST_P(EffectContract, SearchesInsideTheBounds) {
       EXPECT_GT(low, 0.0) << profile.name;
     }
   }
+}
+
+TEST_P(EffectContract, NamesRealEffectsItIsConfoundedWith) {
+  const Description& d = effect_->description();
+  for (const std::string& other : d.confounded_effects) {
+    EXPECT_THAT(effect_names(), ::testing::Contains(other));
+    EXPECT_NE(other, GetParam());
+    EXPECT_THAT(d.confounded_with, ::testing::HasSubstr(other));
+  }
+}
+
+TEST_P(EffectContract, LetsConventionsGiveWayBeforeWhatDataDetermine) {
+  int least_conventional = 1000, most_measured = -1;
+  for (const Parameter& p : effect_->parameters())
+    if (p.by_convention)
+      least_conventional = std::min(least_conventional, p.gauge);
+    else
+      most_measured = std::max(most_measured, p.gauge);
+  EXPECT_LT(most_measured, least_conventional);
+}
+
+// To first order what an error of a body does to a face is what the columns say, Eq. (5).
+TEST_P(EffectContract, ErrorsOfTheBodiesMakeTheColumnsOfAFace) {
+  const Case profile = all_cases()[0];
+  if (!effect_->applies_to(profile.setup)) return;
+  const Stations stations(profile.positions, profile.setup, lathe());
+  for (const std::vector<double>& shape : shapes_to_try(stations)) {
+    const Eigen::MatrixXd columns = columns_at(stations, shape);
+    const Eigen::VectorXd amplitudes =
+        Eigen::VectorXd::LinSpaced(effect_->amplitudes(), 1e-4, 2e-4);
+    for (Eigen::Index i = 0; i < stations.size(); ++i) {
+      const Pose pose{stations.radius(i), profile.setup.z_mm, profile.setup.overhang_mm};
+      std::vector<BodyErrors> errors(lathe().bodies().size());
+      effect_->add_body_errors(pose, stations.slide(i), amplitudes, errors);
+      const double height = lathe().volumetric_error_first_order(pose, errors).z();
+      const bool silent = height == 0.0 && !effect_->is_carriage();
+      if (silent) continue;
+      EXPECT_NEAR(height, columns.row(i).dot(amplitudes), 1e-15) << i;
+    }
+  }
+}
+
+TEST_P(EffectContract, CarriagesAdviseOnADirectionOfTheirOwn) {
+  if (!effect_->is_carriage()) return;
+  UndeterminedPart part{.others = {}, .model_has_others = true};
+  for (const Parameter& p : effect_->parameters()) part.own.push_back(p.name);
+  EXPECT_NE(effect_->advice(part), "");
+}
+
+TEST_P(EffectContract, HypothesesOfASearchCanBeMade) {
+  const TravelRange range{.slide_max = 600.0, .beam_span_mm = 700.0};
+  const std::vector<EffectOptions> missing = effect_->hypotheses(nullptr);
+  EXPECT_FALSE(missing.empty());
+  for (const EffectOptions& options : missing)
+    EXPECT_GT(make_effect(GetParam(), options, lathe(), range)->amplitudes(), 0);
+}
+
+// Of a declared effect a search tries parameters that it does not have.
+TEST_P(EffectContract, HypothesesOfADeclaredEffectAddParameters) {
+  EffectOptions declared;
+  if (effect_->amplitudes() > 1 && effect_->is_carriage()) declared.degree = 3;
+  const auto names = [&](const EffectOptions& options) {
+    std::set<std::string> out;
+    const auto effect = make_effect(GetParam(), options, lathe(), kTravel);
+    for (const Parameter& p : effect->parameters()) out.insert(p.name);
+    return out;
+  };
+  for (const EffectOptions& options : effect_->hypotheses(&declared))
+    for (const std::string& name : names(options))
+      EXPECT_FALSE(names(declared).contains(name)) << name;
+}
+
+TEST_P(EffectContract, NeedsOfTheMachineWhatItSays) {
+  EXPECT_THAT(effect_->lacking_of_machine({.beam_span_mm = 700.0}), ::testing::IsEmpty());
+  const EffectOptions options = effect_->hypotheses(nullptr).front();
+  if (effect_->lacking_of_machine({}).empty())
+    EXPECT_NO_THROW((void)make_effect(GetParam(), options, lathe(), {}));
+  else
+    EXPECT_THROW((void)make_effect(GetParam(), options, lathe(), {}), UsageError);
+}
+
+TEST_P(EffectContract, IsSteepestAtTheCentreWhereItSaysSo) {
+  if (!effect_->description().steep_at_centre) return;
+  const Case profile = all_cases()[0];
+  const Stations stations(profile.positions, profile.setup, lathe());
+  const Eigen::MatrixXd z = columns_at(stations, shapes_to_try(stations).front());
+  const Eigen::VectorXd change = (z.bottomRows(z.rows() - 1) - z.topRows(z.rows() - 1)).cwiseAbs();
+  Eigen::Index steepest = -1;
+  change.maxCoeff(&steepest);
+  EXPECT_LE(steepest, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, EffectContract, ::testing::ValuesIn(effect_names()),

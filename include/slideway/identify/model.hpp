@@ -63,6 +63,8 @@ struct Model {
   [[nodiscard]] Eigen::Index parameters() const;
   /// "squareness.dbeta_xz"
   [[nodiscard]] std::vector<std::string> parameter_names() const;
+  /// The first term that is this error of the carriages, or null.
+  [[nodiscard]] const ModelTerm* find_term(MotionError error) const;
 };
 
 /// Builds effects (with an inner basis for the travel of the profiles) and the low bands. The

@@ -30,9 +30,11 @@ std::unique_ptr<Effect> make_centre_height(const Request& request) {
                                  "depth of cut",
                       .variable = IndependentVariable::radius,
                       .confounded_with = "speed_effect; a trace off the diameter by h",
+                      .confounded_effects = {"speed_effect"},
                       .separated_by =
                           "parallel traces at known spacing, a microscope: a nub is there "
-                          "or not"},
+                          "or not",
+                      .steep_at_centre = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
       .reading = radius_of,
       .value = value,

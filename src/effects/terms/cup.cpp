@@ -25,6 +25,7 @@ std::unique_ptr<Effect> make_cup(const Request& request) {
            .variable = IndependentVariable::radius,
            .confounded_with = "b_2 of straightness (exactly), tool_wear at one feed "
                               "(exactly)",
+           .confounded_effects = {"straightness", "tool_wear"},
            .separated_by = "measuring while still clamped, another clamping force; an "
                            "independent reading of the straightness; a second feed against "
                            "tool_wear"},

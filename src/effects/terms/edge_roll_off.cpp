@@ -34,6 +34,7 @@ std::unique_ptr<Effect> make_edge_roll_off(const Request& request) {
                       .confounded_with =
                           "a short thermal_drift or tool_running_in of an inward cut "
                           "at one feed",
+                      .confounded_effects = {"thermal_drift", "tool_running_in"},
                       .separated_by =
                           "it stays at the same radii at every feed and in both cutting "
                           "directions"},

@@ -15,6 +15,7 @@ std::unique_ptr<Effect> make_linear_drift(const Request& request) {
                       .typical = "0.2 to 100 nm/min",
                       .variable = IndependentVariable::time,
                       .confounded_with = "squareness and tilt at one feed (exactly)",
+                      .confounded_effects = {"squareness"},
                       .separated_by =
                           "a second feed: the slope on the face goes with 1/feed; a cut "
                           "in the other direction changes its sign"},

@@ -79,6 +79,8 @@ std::unique_ptr<Effect> make_slide_periodic(const Request& request) {
                           "the straightness polynomial when λ is longer than most of "
                           "the travel; revolution_periodic, time_periodic and "
                           "traverse_periodic at one feed and one traverse speed",
+                      .confounded_effects = {"straightness", "revolution_periodic", "time_periodic",
+                                             "traverse_periodic"},
                       .separated_by = "a second feed or spindle speed: λ stays as it is in mm; a "
                                       "data-sheet pitch"},
       .rate = {"period_mm", "λ", "mm", 1.0, 1e-3, 1e5},

@@ -36,8 +36,10 @@ std::unique_ptr<Effect> make_speed_effect(const Request& request) {
                       .typical = "1 to 40 nm over the face, m of 0.1 to 0.5",
                       .variable = IndependentVariable::radius,
                       .confounded_with = "centre_height and everything singular at the centre",
+                      .confounded_effects = {"centre_height"},
                       .separated_by = "a spring pass (no depth of cut, no force), a second feed "
-                                      "(force grows with about f^0.7)"},
+                                      "(force grows with about f^0.7)",
+                      .steep_at_centre = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.01, 0.0},
       .reading = log_speed_ratio,
       .value = value,

@@ -47,6 +47,7 @@ Description describe() {
       .confounded_with =
           "slide_periodic at one feed; on a face one groove per turn samples it at "
           "a fixed angle, so that its lines become constants and slow drifts",
+      .confounded_effects = {"slide_periodic"},
       .separated_by = "a second feed or spindle speed: the lines stay at whole orders per turn"};
 }
 

@@ -27,6 +27,7 @@ std::unique_ptr<Effect> make_step(const Request& request) {
                       .variable = IndependentVariable::radius,
                       .confounded_with = "a fast transient (thermal_drift, tool_running_in) that "
                                          "starts late, dust in the trace",
+                      .confounded_effects = {"thermal_drift", "tool_running_in"},
                       .separated_by =
                           "both halves of a diameter show it at the same radius; the next "
                           "part does not"},

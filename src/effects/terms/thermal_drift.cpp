@@ -36,6 +36,7 @@ std::unique_ptr<Effect> make_thermal_drift(const Request& request) {
            .confounded_with = "the straightness polynomial on one face, tool_running_in "
                               "and tool_wear at one spindle speed, edge_roll_off if τ is "
                               "short",
+           .confounded_effects = {"straightness", "tool_running_in", "tool_wear", "edge_roll_off"},
            .separated_by = "a second feed (the time scale on the face changes), a cut "
                            "outward (mirrored), a temperature log"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},

@@ -34,6 +34,7 @@ std::unique_ptr<Effect> make_tool_running_in(const Request& request) {
                       .confounded_with =
                           "thermal_drift at one spindle speed, edge_roll_off if s0 is "
                           "short",
+                      .confounded_effects = {"thermal_drift", "edge_roll_off"},
                       .separated_by =
                           "a change of spindle speed at the same feed rate (distance "
                           "changes, time does not), a second feed, an edge already run in"},

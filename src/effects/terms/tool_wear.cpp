@@ -19,6 +19,7 @@ std::unique_ptr<Effect> make_tool_wear(const Request& request) {
            .variable = IndependentVariable::distance,
            .confounded_with = "cup and b_2 of straightness at one feed (exactly r²), "
                               "thermal_drift",
+           .confounded_effects = {"cup", "straightness", "thermal_drift"},
            .separated_by = "a second feed or spindle speed (distance goes with rpm/feed, "
                            "thermal drift does not know the rpm), the other cutting "
                            "direction"},

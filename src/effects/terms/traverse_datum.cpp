@@ -29,6 +29,7 @@ std::unique_ptr<Effect> make_traverse_datum(const Request& request) {
                       .typical = "5 to 50 nm over 20 mm",
                       .variable = IndependentVariable::trace,
                       .confounded_with = "b_3 of straightness on a radius",
+                      .confounded_effects = {"straightness"},
                       .separated_by =
                           "turning the part by 180° on the instrument (the datum stays), "
                           "a trace at another azimuth (the trefoil changes), a trace over "

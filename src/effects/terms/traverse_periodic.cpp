@@ -23,6 +23,8 @@ std::unique_ptr<Effect> make_traverse_periodic(const Request& request) {
                       .variable = IndependentVariable::measuring_time,
                       .confounded_with = "slide_periodic, time_periodic and revolution_periodic in "
                                          "traces measured at one speed",
+                      .confounded_effects = {"slide_periodic", "time_periodic",
+                                             "revolution_periodic"},
                       .separated_by = "a second traverse speed: the wavelength follows the stylus, "
                                       "not the feed"},
       .rate = {"frequency_hz", "f", "Hz", 1.0, 0.0, 500.0},
