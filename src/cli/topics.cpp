@@ -32,7 +32,7 @@ const std::vector<Section>& sections() {
         {"spindle_position_mm",
          "slide coordinate x at which the tool meets the spindle axis: x = spindle_position_mm + "
          "r; default 0"},
-        {"span_mm", "between the supports of the cross-beam, for gantry_sag"},
+        {"span_mm", "between the supports of the cross-beam; needed for its sag"},
         {"body", "[[machine.body]], below; default is the paper's lathe"}}},
       {"[[machine.body]]",
        "The lower-body array of Eq. (1), one table per body from the bed to the tool.",
