@@ -73,6 +73,11 @@ std::string advice(const Model& model, const std::vector<bool>& in_direction) {
 Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale) {
   Rank rank;
   const Eigen::VectorXd unit = scale.unaryExpr([](double s) { return s > 0.0 ? s : 1.0; });
+  if (triangle.size() == 0) {  // nothing is asked, or nothing was measured
+    rank.basis.resize(triangle.cols(), 0);
+    rank.null_space = unit.cwiseInverse().asDiagonal();
+    return rank;
+  }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle * unit.cwiseInverse().asDiagonal(),
                                               Eigen::ComputeFullV);
   const Eigen::VectorXd& singular = svd.singularValues();

@@ -18,35 +18,37 @@ namespace {
 constexpr double kPower = 0.8;
 constexpr double kPowerDeviate = 0.8416;  // normal deviate of 80 %
 constexpr int kSpreadShapes = 5;
-constexpr int kMostRounds = 8;        // of a limit that depends on itself
-constexpr double kMostVisible = 1.0;  // mm or rad in a low band: beyond it nothing is a flatness
-constexpr double kNegligible = 0.02;  // of a column's size: not worth a name
+constexpr int kMostRounds = 8;          // of a limit that depends on itself
+constexpr double kMostOfRange = 100.0;  // of a profile's range: what is larger would be seen
+constexpr double kNegligible = 0.02;    // of a column's size: not worth a name
 
-std::span<const double> middle_shape(const Candidate& candidate) {
-  return candidate.shapes[candidate.shapes.size() / 2];
-}
-
-/// Places from one end of what the search looks at to the other, in the logarithm unless they are
-/// positions, at the nodes of Chebyshev: what lies between them can be interpolated, near the ends
-/// too. One empty shape for a candidate without.
+/// Values of the first shape from one end of what the search looks at to the other, in the
+/// logarithm unless they are positions, at the nodes of Chebyshev: what lies between them can be
+/// interpolated, near the ends too. The other shapes stand in the middle of theirs. One empty shape
+/// for a candidate without.
 std::vector<std::vector<double>> spread_shapes(const Candidate& candidate) {
-  if (candidate.shapes.front().empty()) return {{}};
-  const double first = candidate.shapes.front()[0], last = candidate.shapes.back()[0];
-  const bool is_position = candidate.term.effect->shapes()[0].stepwise;
-  std::vector<std::vector<double>> out;
+  if (candidate.grid.axes().empty()) return {{}};
+  const std::vector<double>& axis = candidate.grid.axes().front();
+  const double first = axis.front(), last = axis.back();
+  const bool linear = candidate.term.effect->shapes()[0].stepwise || !(first > 0.0);
+  std::vector<std::vector<double>> out(kSpreadShapes, candidate.grid.middle());
   for (int i = 0; i < kSpreadShapes; ++i) {
     const double share = 0.5 - 0.5 * std::cos(kPi * (i + 0.5) / kSpreadShapes);
-    out.push_back(
-        {is_position ? first + share * (last - first) : first * std::pow(last / first, share)});
+    out[static_cast<std::size_t>(i)][0] =
+        linear ? first + share * (last - first) : first * std::pow(last / first, share);
   }
   return out;
 }
 
+/// "position_mm = 3, width_mm = 0.5"
 std::string shape_text(const Candidate& candidate, std::span<const double> shape) {
-  if (shape.empty()) return "";
   const Effect& effect = *candidate.term.effect;
-  const auto p = static_cast<std::size_t>(effect.shapes()[0].parameter);
-  return effect.parameters()[p].name + " = " + significant(shape[0], 3);
+  std::vector<std::string> out;
+  for (std::size_t s = 0; s < shape.size(); ++s) {
+    const auto p = static_cast<std::size_t>(effect.shapes()[s].parameter);
+    out.push_back(effect.parameters()[p].name + " = " + significant(shape[s], 3));
+  }
+  return joined(out);
 }
 
 /// Share of a candidate's column each parameter of the model takes, as a column of its own.
@@ -159,14 +161,18 @@ std::optional<double> limit_in(const Whitened& data, const Case& one, double lea
   const double by_gain = std::sqrt(noncentrality / gain);
   if (one.shape.empty()) return by_gain;
   const Eigen::VectorXd inner = one.amplitudes(by_gain);
-  Eigen::MatrixXd joint(data.rows(), a + 1);
-  joint << one.columns,
-      stacked_derivatives(one.model, one.candidate.term, one.shape, data.rows() - data.values()) *
-          inner;
+  Eigen::MatrixXd joint(data.rows(), a + std::ssize(one.shape));
+  joint.leftCols(a) = one.columns;
+  for (Eigen::Index which = 0; which < std::ssize(one.shape); ++which)
+    joint.col(a + which) =
+        stacked_derivatives(one.model, one.candidate.term, one.shape, static_cast<int>(which),
+                            data.rows() - data.values()) *
+        inner;
   const Eigen::MatrixXd covariance = amplitude_covariance(data.outside(std::move(joint)));
   const ParameterValues at = one.candidate.term.effect->parameter_values(inner, one.shape);
   const double uncertainty =
       std::sqrt(at.jacobian.row(0) * covariance * at.jacobian.row(0).transpose());
+  if (!std::isfinite(uncertainty)) return std::nullopt;
   return std::max(by_gain, (kLeastSize + kPowerDeviate) * uncertainty);
 }
 
@@ -190,6 +196,18 @@ std::optional<double> limit_at(const Design& design, const Case& one) {
   return limit;
 }
 
+/// Whether no profile would hold more of this signal than a hundred times its own range.
+bool is_flatness(const Linearisation& linear, const Eigen::VectorXd& signal) {
+  Eigen::Index first = 0;
+  for (const Observation* observation : linear.observations) {
+    const Eigen::VectorXd& values = observation->values;
+    const double most = kMostOfRange * (values.maxCoeff() - values.minCoeff());
+    if (!(signal.segment(first, values.size()).cwiseAbs().maxCoeff() <= most)) return false;
+    first += values.size();
+  }
+  return true;
+}
+
 /// Over all shapes, stated for the one nearest to the middle that has a limit.
 std::optional<DetectionLimit> detection_limit(const Design& design, const Candidate& candidate) {
   if (!candidate.term.effect->has_one_size()) return std::nullopt;
@@ -205,7 +223,8 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
         model, candidate, shape,
         stacked_columns(model, candidate.term, shape, design.data.rows() - design.data.values())};
     const std::optional<double> limit = limit_at(design, one);
-    if (!limit || !((one.columns * one.amplitudes(*limit)).cwiseAbs().maxCoeff() < kMostVisible))
+    if (!limit || !(*limit > 0.0) || !std::isfinite(*limit) ||
+        !is_flatness(design.fitted.fit.linear, one.columns * one.amplitudes(*limit)))
       continue;
     if (!shape.empty()) out.by_shape.emplace_back(shape[0], *limit);
     if (std::abs(s - middle) >= nearest) continue;
@@ -241,7 +260,7 @@ std::vector<std::pair<std::string, std::string>> inseparable(const Model& model,
   std::vector<std::pair<std::string, std::string>> out;
   for (const Candidate* candidate : candidates) {
     const Eigen::MatrixXd columns = stacked_columns(
-        model, candidate->term, middle_shape(*candidate), data.rows() - data.values());
+        model, candidate->term, candidate->grid.middle(), data.rows() - data.values());
     if (project(data, columns).rank > 0 || columns.isZero(0.0)) continue;
     out.emplace_back(candidate->name(), made_by(model, fit, data, columns.col(0)));
   }

@@ -108,22 +108,15 @@ std::string needs(const Model& model, const Effect& effect) {
   return shown ? "" : "a reading that shows it";
 }
 
-/// One entry per point of the grid; an empty one if the effect has no shape.
-std::vector<std::vector<double>> shapes_of(const Model& model, const ModelTerm& term) {
-  if (term.effect->shapes().empty()) return {{}};
-  std::vector<std::vector<double>> out;
-  for (const double value : shape_grid(model, term, 0)) out.push_back({value});
-  return out;
-}
-
-void fill(const Viewer& viewer, Candidate& candidate) {
+void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
+  candidate.grid = ShapeLattice(shape_axes(model, candidate.term));
   const Eigen::Index a = candidate.amplitudes(), atoms = candidate.atoms();
   candidate.columns.resize(viewer.rows(), a * atoms);
   parallel_for((atoms + kAtomsAtATime - 1) / kAtomsAtATime, [&](std::size_t block) {
     const Eigen::Index first = static_cast<Eigen::Index>(block) * kAtomsAtATime;
     const Eigen::Index count = std::min(kAtomsAtATime, atoms - first);
     const auto shapes =
-        std::span(candidate.shapes)
+        std::span(candidate.grid.points())
             .subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
     viewer.columns(candidate.term, shapes, candidate.columns.middleCols(first * a, count * a));
   });
@@ -156,8 +149,7 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
       missing = error.what();
     }
     if (!missing.empty()) continue;
-    candidate.shapes = shapes_of(model, candidate.term);
-    fill(viewer, candidate);
+    lay_out(model, viewer, candidate);
     out.candidates.push_back(std::move(candidate));
     added = true;
   }
@@ -165,6 +157,19 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
 }
 
 }  // namespace
+
+Eigen::MatrixXd Candidate::columns_around(Eigen::Index atom) const {
+  const std::vector<Eigen::Index> atoms = grid.around(atom);
+  Eigen::MatrixXd out(columns.rows(), std::ssize(atoms) * amplitudes());
+  for (std::size_t i = 0; i < atoms.size(); ++i)
+    out.middleCols(static_cast<Eigen::Index>(i) * amplitudes(), amplitudes()) =
+        columns.middleCols(atoms[i] * amplitudes(), amplitudes());
+  return out;
+}
+
+void lay_out(const Model& model, Eigen::Index prior_rows, Candidate& candidate) {
+  lay_out(model, Viewer(model, prior_rows), candidate);
+}
 
 Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows) {
   Dictionary out;
@@ -183,10 +188,11 @@ Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,
 }
 
 Eigen::MatrixXd stacked_derivatives(const Model& model, const ModelTerm& term,
-                                    std::span<const double> shape, Eigen::Index prior_rows) {
+                                    std::span<const double> shape, int which,
+                                    Eigen::Index prior_rows) {
   const auto observations = fitted_observations(model);
   return stack(observations, prior_rows, term.effect->amplitudes(), [&](std::size_t i) {
-    return low_band_derivatives(model, term, *observations[i], shape, 0);
+    return low_band_derivatives(model, term, *observations[i], shape, which);
   });
 }
 

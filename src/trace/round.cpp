@@ -25,10 +25,7 @@ const Finding& best_of(const std::vector<Finding>& findings) {
 /// Columns of a finding and of its neighbours on the grid (its shape lies between them), profile by
 /// profile.
 std::vector<Eigen::MatrixXd> columns_by_profile(const Whitened& data, const Finding& finding) {
-  const Eigen::Index a = finding.candidate->amplitudes();
-  const Eigen::Index first = std::max<Eigen::Index>(finding.atom - 1, 0);
-  const Eigen::Index last = std::min(finding.atom + 1, finding.candidate->atoms() - 1);
-  const auto columns = finding.candidate->columns.middleCols(first * a, (last - first + 1) * a);
+  const Eigen::MatrixXd columns = finding.candidate->columns_around(finding.atom);
   std::vector<Eigen::MatrixXd> out;
   for (std::size_t i = 0; i < data.observations(); ++i)
     out.emplace_back(columns.middleRows(data.first_row(i), data.count(i)));
