@@ -17,15 +17,24 @@ class EffectContract : public ::testing::TestWithParam<std::string> {
  protected:
   std::unique_ptr<Effect> effect_ = make(GetParam());
 
-  // Shape parameters to try: ordinary, and close to each end of what is possible.
+  // Shape parameters to try: ordinary, and each close to an end of what is possible.
   [[nodiscard]] std::vector<std::vector<double>> shapes_to_try(const Stations& stations) const {
-    if (effect_->shapes().empty()) return {{}};
-    const Parameter& p = effect_->parameters()[effect_->shapes()[0].parameter];
-    const auto [low, high] = effect_->search_range(0, stations);
-    std::vector<std::vector<double>> result{{std::sqrt(low * high)}, {low}, {high}};
-    // Ends far outside the search: three decades beyond, or the bound itself.
-    result.push_back({std::max(p.lower, low * 1e-3)});
-    result.push_back({std::min(p.upper, high * 1e3)});
+    std::vector<double> ordinary;
+    for (std::size_t s = 0; s < effect_->shapes().size(); ++s) {
+      const auto [low, high] = effect_->search_range(static_cast<int>(s), stations);
+      ordinary.push_back(std::sqrt(low * high));
+    }
+    std::vector<std::vector<double>> result{ordinary};
+    for (std::size_t s = 0; s < ordinary.size(); ++s) {
+      const Parameter& p = effect_->parameters()[effect_->shapes()[s].parameter];
+      const auto [low, high] = effect_->search_range(static_cast<int>(s), stations);
+      // The last two lie far outside the search: three decades beyond, or the bound itself.
+      for (const double end :
+           {low, high, std::max(p.lower, low * 1e-3), std::min(p.upper, high * 1e3)}) {
+        result.push_back(ordinary);
+        result.back()[s] = end;
+      }
+    }
     return result;
   }
 
