@@ -2,8 +2,10 @@
 #
 # Reads every include line under include/slideway/<room> and src/<room>: a room may include itself
 # and the rooms before it, and a library stays in the rooms that own it. Also: no file above
-# MAX_LINES, no header without #pragma once, and docs/architecture.md draws the rooms in this order.
-# Every breach is printed; one or more is a failure.
+# MAX_LINES, no header without #pragma once, docs/architecture.md draws the rooms in this order, and
+# no effect named in a string outside the effects' own files (src/effects/terms, which name those
+# they are confounded with): what an effect is, is asked of the effect. Every breach is printed; one
+# or more is a failure.
 cmake_minimum_required(VERSION 3.25)
 set(ROOMS base format machine signal profile effects identify trace report batch python cli)
 set(MAX_LINES 400)
@@ -13,11 +15,36 @@ set(LIBRARIES "ceres/" "nlohmann/" "toml\\+\\+/" "pugixml\\.hpp" "zip\\.h" "pybi
 set(OWNERS "identify trace" "report batch cli" "identify" "format" "format" "python" "batch"
     "base signal" "format")
 
+# Strings that are a key of the report or a plain word and not the effect of that name: file:name.
+set(NOT_AN_EFFECT
+    # crosscheck.squareness, straightness and curves.straightness of the report, and their places on
+    # the page
+    src/report/json_report.cpp:squareness src/report/json_report.cpp:straightness
+    src/report/json_details.cpp:straightness src/report/document.cpp:squareness
+    src/report/html_verdict.cpp:squareness src/report/html_verdict.cpp:straightness
+    src/report/html_pictures.cpp:straightness
+    # `export --step`, and the label of a step in position
+    src/cli/command_export.cpp:step src/cli/command_info.cpp:step)
+
+# The registration list of the effects. Names without an underscore are plain words of the field
+# too, and are free in prose: in a string with a blank.
+set(effects "")
+if(EXISTS ${ROOT}/src/effects/CMakeLists.txt)
+  file(READ ${ROOT}/src/effects/CMakeLists.txt registered)
+  string(REGEX MATCH "SLIDEWAY_EFFECTS([^)]*)" registered "${registered}")
+  string(REGEX MATCHALL "[a-z_]+" effects "${CMAKE_MATCH_1}")
+endif()
+set(compounds ${effects})
+list(FILTER compounds INCLUDE REGEX "_")
+list(JOIN effects "|" effects)
+list(JOIN compounds "|" compounds)
+
 set(breaches 0)
-macro(breach text)
+function(breach text)
   message(NOTICE "${text}")
   math(EXPR breaches "${breaches} + 1")
-endmacro()
+  set(breaches ${breaches} PARENT_SCOPE)
+endfunction()
 
 macro(check_room_include file room target)
   list(FIND ROOMS "${target}" target_index)
@@ -46,6 +73,24 @@ file(STRINGS ${ROOT}/docs/architecture.md lines ENCODING UTF-8)
 if(NOT "`${drawing}`" IN_LIST lines)
   breach("docs/architecture.md: has no line `${drawing}`")
 endif()
+# Of `contents`.
+macro(check_effect_names file)
+  string(REGEX REPLACE "//[^\n]*|#[ \t]*include[^\n]*" "" code "${contents}")
+  string(REGEX REPLACE "[][;]" " , " code "${code}")  # what a list of CMake would stumble over
+  string(REGEX MATCHALL "\"([^\"\\\n]|\\\\[^\n])*\"" literals "${code}")
+  foreach(literal IN LISTS literals)
+    set(names "${effects}")
+    if(literal MATCHES " ")
+      set(names "${compounds}")
+    endif()
+    if(literal MATCHES "[^A-Za-z0-9_](${names})[^A-Za-z0-9_]")
+      set(name ${CMAKE_MATCH_1})
+      if(NOT "${file}:${name}" IN_LIST NOT_AN_EFFECT)
+        breach("${file}: ${literal} names the effect ${name}; ask the effect instead")
+      endif()
+    endif()
+  endforeach()
+endmacro()
 
 file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/include/*.hpp ${ROOT}/src/*.hpp ${ROOT}/src/*.cpp)
 if(NOT files)
@@ -69,6 +114,9 @@ foreach(file IN LISTS files)
   file(READ ${ROOT}/${file} contents)
   if(file MATCHES "\\.hpp$" AND NOT contents MATCHES "(^|\n)#pragma once\n")
     breach("${file}: no #pragma once")
+  endif()
+  if(effects AND NOT file MATCHES "^src/effects/terms/")
+    check_effect_names(${file})
   endif()
   string(REGEX MATCHALL "\n" newlines "${contents}")
   list(LENGTH newlines lines)

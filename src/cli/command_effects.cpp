@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "effect_sample.hpp"
 #include "report_command.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
@@ -23,24 +21,24 @@ std::string parameter_list(const Effect& effect) {
 }
 
 std::string line_of(const std::string& name) {
-  const auto effect = sample_effect(name);
-  const Description& about = effect->description();
+  const Effect& effect = specimen(name);
+  const Description& about = effect.description();
   return name + "\n" +
-         paragraph("  clock " + std::string(symbol(about.clock)) + "   ", about.formula) +
-         paragraph("  parameters: ", parameter_list(*effect));
+         paragraph("  variable " + std::string(symbol(about.variable)) + "   ", about.formula) +
+         paragraph("  parameters: ", parameter_list(effect));
 }
 
 std::string entry_of(const std::string& name) {
-  const auto effect = sample_effect(name);
-  const Description& about = effect->description();
+  const Effect& effect = specimen(name);
+  const Description& about = effect.description();
   const std::vector<std::pair<std::string, std::string>> lines{
       {"standard name", about.standard_name},
       {"formula", about.formula},
       {"source", about.source},
       {"cause", about.cause},
       {"typical", about.typical},
-      {"clock", std::string(symbol(about.clock))},
-      {"parameters", parameter_list(*effect)},
+      {"variable", std::string(symbol(about.variable))},
+      {"parameters", parameter_list(effect)},
       {"confounded with", about.confounded_with},
       {"separated by", about.separated_by}};
   std::string text = name + "\n";
@@ -57,10 +55,10 @@ nlohmann::ordered_json bound(double value) {
 }
 
 nlohmann::ordered_json json_of(const std::string& name) {
-  const auto effect = sample_effect(name);
-  const Description& about = effect->description();
+  const Effect& effect = specimen(name);
+  const Description& about = effect.description();
   nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
-  for (const Parameter& parameter : effect->parameters())
+  for (const Parameter& parameter : effect.parameters())
     parameters.push_back({{"name", parameter.name},
                           {"symbol", parameter.symbol},
                           {"unit", parameter.unit},
@@ -72,9 +70,10 @@ nlohmann::ordered_json json_of(const std::string& name) {
           {"source", about.source},
           {"cause", about.cause},
           {"typical", about.typical},
-          {"clock", symbol(about.clock)},
+          {"clock", symbol(about.variable)},
           {"parameters", parameters},
           {"confounded_with", about.confounded_with},
+          {"confounded_effects", about.confounded_effects},
           {"separated_by", about.separated_by}};
 }
 

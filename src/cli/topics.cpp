@@ -1,6 +1,5 @@
 #include "topics.hpp"
 
-#include "effect_sample.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/report/layout.hpp"
 
@@ -33,7 +32,7 @@ const std::vector<Section>& sections() {
         {"spindle_position_mm",
          "slide coordinate x at which the tool meets the spindle axis: x = spindle_position_mm + "
          "r; default 0"},
-        {"span_mm", "between the supports of the cross-beam, for gantry_sag"},
+        {"span_mm", "between the supports of the cross-beam; needed for its sag"},
         {"body", "[[machine.body]], below; default is the paper's lathe"}}},
       {"[[machine.body]]",
        "The lower-body array of Eq. (1), one table per body from the bed to the tool.",
@@ -76,7 +75,7 @@ const std::vector<Section>& sections() {
          "\"inward\": t = (cut_radius_mm - r) / feed; \"outward\": t = r / feed; slide: t grows "
          "with s (\"outward\") or against it"},
         {"cut_radius_mm", "where the cut began; default the largest r of the trace"},
-        {"start_s", "clock time at which this cut began; default 0, one state for every cut"},
+        {"start_s", "time at which this cut began; default 0, one state for every cut"},
         {"traverse_mm_per_s", "speed of the stylus"},
         {"nose_radius_mm", "face: of the tool that cut it"},
         {"level", "this profile's low band: levels; default that of [low_band]"},
@@ -138,36 +137,36 @@ std::string problem_file_text() {
   return text;
 }
 
-struct ClockText {
-  Clock clock;
+struct VariableText {
+  IndependentVariable variable;
   const char* text;
 };
-constexpr ClockText kClocks[] = {
-    {Clock::radius, "radius on the face: |position - center_mm|"},
-    {Clock::slide, "slide coordinate: spindle_position_mm + r"},
-    {Clock::time, "machining time: needs feed_mm_per_min, cut_direction"},
-    {Clock::revolution, "turns of the spindle: needs spindle_rpm besides"},
-    {Clock::distance, "cutting distance along the spiral: needs spindle_rpm besides"},
-    {Clock::trace, "position in the trace from the spindle axis, with its sign"},
-    {Clock::measuring_time, "time on the instrument: needs traverse_mm_per_s"}};
+constexpr VariableText kVariables[] = {
+    {IndependentVariable::radius, "radius on the face: |position - center_mm|"},
+    {IndependentVariable::slide, "slide coordinate: spindle_position_mm + r"},
+    {IndependentVariable::time, "machining time: needs feed_mm_per_min, cut_direction"},
+    {IndependentVariable::revolution, "turns of the spindle: needs spindle_rpm besides"},
+    {IndependentVariable::distance, "cutting distance along the spiral: needs spindle_rpm besides"},
+    {IndependentVariable::trace, "position in the trace from the spindle axis, with its sign"},
+    {IndependentVariable::measuring_time, "time on the instrument: needs traverse_mm_per_s"}};
 
 std::string effects_text() {
   std::string text = paragraph(
       "",
-      "Every error is an effect: a form locked to a clock. What moves with the slide is the "
-      "carriage's; what moves with time, turns or cutting distance only looks like it. Two cuts "
-      "that run a clock differently (another feed, another direction, another Z) tell the two "
-      "apart. An effect whose clock the problem file gives no metadata for is listed as not "
+      "Every error is an effect: a function of one independent variable. What moves with the slide "
+      "is the carriage's; what moves with time, turns or cutting distance only looks like it. Two "
+      "cuts in which a variable runs differently (another feed, direction or Z) tell the two "
+      "apart. An effect whose variable needs metadata the problem file lacks is listed as not "
       "testable, never guessed. slideway effects NAME has one in full.");
-  for (const ClockText& clock : kClocks) {
+  for (const VariableText& entry : kVariables) {
     text += '\n';
-    text += paragraph(std::string(symbol(clock.clock)) + "  ", clock.text);
+    text += paragraph(std::string(symbol(entry.variable)) + "  ", entry.text);
     for (const std::string& name : effect_names()) {
-      const auto effect = sample_effect(name);
-      if (effect->description().clock != clock.clock) continue;
+      const Effect& effect = specimen(name);
+      if (effect.description().variable != entry.variable) continue;
       text +=
           paragraph("   " + name + std::string(23 - std::min<std::size_t>(22, name.size()), ' '),
-                    effect->description().formula);
+                    effect.description().formula);
     }
   }
   return text;

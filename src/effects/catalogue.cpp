@@ -12,7 +12,6 @@ namespace slideway {
 #define SLIDEWAY_EFFECT(name) std::unique_ptr<Effect> make_##name(const Request& request);
 #include "effect_list.inc"
 #undef SLIDEWAY_EFFECT
-std::unique_ptr<Effect> make_straightness_terms(int first, const Request& request);
 
 namespace {
 
@@ -23,6 +22,26 @@ constexpr Factory kFactories[] = {
 #include "effect_list.inc"
 #undef SLIDEWAY_EFFECT
 };
+
+std::vector<std::unique_ptr<Effect>> make_specimens() {
+  const Machine machine(Machine::paper_lathe(), Lever::paper);
+  const TravelRange range{.beam_span_mm = 1000.0};
+  std::vector<std::unique_ptr<Effect>> out;
+  for (const std::string& name : effect_names()) {
+    try {
+      out.push_back(make_effect(name, {}, machine, range));
+    } catch (const UsageError&) {  // an effect with a degree
+      out.push_back(make_effect(name, {.degree = 3}, machine, range));
+    }
+  }
+  return out;
+}
+
+/// The specimen a term or a parameter is of, or null.
+const Effect* effect_of(const std::string& name) {
+  const std::string effect = name.substr(0, name.find_first_of(".["));
+  return std::ranges::count(effect_names(), effect) > 0 ? &specimen(effect) : nullptr;
+}
 
 }  // namespace
 
@@ -35,10 +54,6 @@ const std::vector<std::string>& effect_names() {
   return kNames;
 }
 
-bool is_carriage_effect(const std::string& name) {
-  return name == "straightness" || name == "vertical_straightness" || name == "squareness";
-}
-
 std::unique_ptr<Effect> make_effect(const std::string& name, const EffectOptions& options,
                                     const Machine& machine, const TravelRange& range) {
   const std::vector<std::string>& names = effect_names();
@@ -49,9 +64,34 @@ std::unique_ptr<Effect> make_effect(const std::string& name, const EffectOptions
   return kFactories[found - names.begin()]({name, options, machine, range});
 }
 
-std::unique_ptr<Effect> make_straightness_terms(int first, const EffectOptions& options,
-                                                const Machine& machine, const TravelRange& range) {
-  return make_straightness_terms(first, {"straightness", options, machine, range});
+const Effect& specimen(const std::string& name) {
+  static const std::vector<std::unique_ptr<Effect>> kSpecimens = make_specimens();
+  const std::vector<std::string>& names = effect_names();
+  return *kSpecimens[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
+}
+
+MotionError motion_error_of(const std::string& name) {
+  const Effect* effect = effect_of(name);
+  return effect ? effect->description().motion : MotionError::none;
+}
+
+bool fixed_by_convention(const std::string& parameter) {
+  const Effect* effect = effect_of(parameter);
+  return effect && std::ranges::any_of(effect->parameters(), [&](const Parameter& p) {
+           return p.by_convention && parameter.ends_with("." + p.name);
+         });
+}
+
+std::unique_ptr<Effect> make_effect_with(const std::string& name,
+                                         const std::vector<std::string>& parameters,
+                                         const Machine& machine, const TravelRange& range) {
+  for (int degree = 0;; ++degree) {
+    auto effect = make_effect(name, {.degree = degree}, machine, range);
+    if (std::ranges::all_of(parameters, [&](const std::string& each) {
+          return std::ranges::count(effect->parameters(), each, &Parameter::name) > 0;
+        }))
+      return effect;
+  }
 }
 
 }  // namespace slideway

@@ -17,7 +17,7 @@ double Effect::resolution(int shape, double value, const Stations& stations) con
 }
 
 std::vector<std::string> Effect::lacking(const Setup& setup) const {
-  return missing_for(description().clock, setup);
+  return missing_for(description().variable, setup);
 }
 
 void Effect::columns_of_shapes(const Stations& stations,
@@ -31,6 +31,34 @@ void Effect::columns_of_shapes(const Stations& stations,
 void Effect::derivatives(const Stations& /*stations*/, std::span<const double> /*shape*/,
                          int /*which*/, Eigen::Ref<Eigen::MatrixXd> out) const {
   out.setZero();
+}
+
+void Effect::add_body_errors(const Pose& /*pose*/, double /*slide_mm*/,
+                             const Eigen::VectorXd& /*amplitudes*/,
+                             std::span<BodyErrors> /*errors*/) const {}
+
+std::string Effect::advice(const UndeterminedPart& /*part*/) const { return ""; }
+
+std::vector<EffectOptions> Effect::hypotheses(const EffectOptions* declared) const {
+  if (declared) return {};
+  return {EffectOptions{}};
+}
+
+std::vector<std::string> Effect::lacking_of_machine(const TravelRange& /*range*/) const {
+  return {};
+}
+
+Eigen::MatrixXd along_slide(const Effect& effect, const Machine& machine, const Eigen::VectorXd& x,
+                            Quantity quantity, std::span<const double> shape) {
+  Setup setup;
+  setup.kind = Kind::slide;
+  setup.quantity = quantity;
+  setup.first_mm = x.minCoeff();
+  setup.last_mm = x.maxCoeff();
+  Eigen::MatrixXd columns(x.size(), effect.amplitudes());
+  const std::span<const double> positions(x.data(), static_cast<std::size_t>(x.size()));
+  effect.columns({positions, setup, machine}, shape, columns);
+  return columns;
 }
 
 }  // namespace slideway

@@ -15,7 +15,7 @@ struct Groove {
 bool has_grooves(const Setup& setup);
 
 // The groove under a sample; its centre lies at whole turns after the start of this cut:
-// r = R - i f inward, r = i f outward, whatever the clock showed when it started; half a turn later
+// r = R - i f inward, r = i f outward, whatever the time when it started; half a turn later
 // on the far half of a diameter. REQUIRES has_grooves().
 Groove groove_at(const Stations& stations, Eigen::Index i);
 
@@ -23,7 +23,7 @@ Groove groove_at(const Stations& stations, Eigen::Index i);
 // profile does not tell.
 double tool_radius_of(const Stations& stations, Eigen::Index i);
 
-// Time, s, and revolution of the clock when it was cut; continuous where there are no grooves.
+// Time, s, and revolution when it was cut; continuous where there are no grooves.
 double cutting_time_of(const Stations& stations, Eigen::Index i);
 double cutting_revolution_of(const Stations& stations, Eigen::Index i);
 

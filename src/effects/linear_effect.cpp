@@ -71,14 +71,14 @@ void SingleAmplitude::columns(const Stations& stations, std::span<const double> 
   if (!applies_to(stations.setup())) return void(out.setZero());
   const double p = shape.empty() ? 0.0 : shape[0];
   for (Eigen::Index i = 0; i < stations.size(); ++i)
-    out(i, 0) = spec_.value(spec_.clock(stations, i), p);
+    out(i, 0) = spec_.value(spec_.reading(stations, i), p);
 }
 
 void SingleAmplitude::columns_of_shapes(const Stations& stations,
                                         std::span<const std::vector<double>> shapes,
                                         Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
-  const Eigen::VectorXd q = readings(stations, spec_.clock);
+  const Eigen::VectorXd q = readings(stations, spec_.reading);
   for (std::size_t s = 0; s < shapes.size(); ++s) {
     const double p = shapes[s].empty() ? 0.0 : shapes[s][0];
     for (Eigen::Index i = 0; i < q.size(); ++i)
@@ -90,7 +90,7 @@ void SingleAmplitude::derivatives(const Stations& stations, std::span<const doub
                                   int which, Eigen::Ref<Eigen::MatrixXd> out) const {
   if (shapes()[which].stepwise || !applies_to(stations.setup())) return void(out.setZero());
   for (Eigen::Index i = 0; i < stations.size(); ++i)
-    out(i, 0) = spec_.shape->derivative(spec_.clock(stations, i), shape[0]);
+    out(i, 0) = spec_.shape->derivative(spec_.reading(stations, i), shape[0]);
 }
 
 std::pair<double, double> within_bounds(std::pair<double, double> range,

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "clock_range.hpp"
 #include "slideway/effects/effect.hpp"
+#include "variable_range.hpp"
 
 namespace slideway {
 
@@ -55,14 +55,15 @@ struct SingleAmplitudeSpec {
   Description description;
   Parameter amplitude;
   double unit = kMicrometre;  // the unit of the amplitude's parameter in mm, s
-  ClockReading clock = nullptr;
+  VariableReading reading = nullptr;
   double (*value)(double q, double shape) = [](double q, double) { return q; };
   bool (*applies_to)(const Setup&) = nullptr;
   bool needs_cut_radius = false;
   std::optional<ShapeSpec> shape = std::nullopt;
 };
 
-// h = A * value(q; shape) of what the clock reads, q: one amplitude, at most one shape parameter.
+// h = A * value(q; shape) of the independent variable q: one amplitude, at most one shape
+// parameter.
 class SingleAmplitude : public LinearEffect {
  public:
   explicit SingleAmplitude(SingleAmplitudeSpec spec);

@@ -34,7 +34,7 @@ std::pair<double, double> PeriodicEffect::search_range(int /*shape*/,
 }
 
 double PeriodicEffect::resolution(int /*shape*/, double value, const Stations& stations) const {
-  const double cycles = kCyclesPerStep / range_of(stations, spec_.clock).extent();
+  const double cycles = kCyclesPerStep / range_of(stations, spec_.reading).extent();
   return spec_.rate_is_period ? value * value * cycles : cycles;
 }
 
@@ -48,14 +48,14 @@ void PeriodicEffect::columns(const Stations& stations, std::span<const double> s
                              Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
   fill(
-      cycles(shape), [&](Eigen::Index i) { return spec_.clock(stations, i); }, out);
+      cycles(shape), [&](Eigen::Index i) { return spec_.reading(stations, i); }, out);
 }
 
 void PeriodicEffect::columns_of_shapes(const Stations& stations,
                                        std::span<const std::vector<double>> shapes,
                                        Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
-  const Eigen::VectorXd q = readings(stations, spec_.clock);
+  const Eigen::VectorXd q = readings(stations, spec_.reading);
   for (std::size_t s = 0; s < shapes.size(); ++s)
     fill(cycles(shapes[s]), q, out.middleCols(static_cast<Eigen::Index>(2 * s), 2));
 }
@@ -66,9 +66,9 @@ void PeriodicEffect::derivatives(const Stations& stations, std::span<const doubl
   const double rate = cycles(shape), rate_slope = spec_.rate_is_period ? -rate * rate : 1.0;
   Phasor phasor;
   for (Eigen::Index i = 0; i < stations.size(); ++i) {
-    const double clock = spec_.clock(stations, i);
-    phasor.turn_to(kTurn * rate * clock);
-    const double angle_slope = kTurn * rate_slope * clock;
+    const double q = spec_.reading(stations, i);
+    phasor.turn_to(kTurn * rate * q);
+    const double angle_slope = kTurn * rate_slope * q;
     out(i, 0) = -phasor.sine() * angle_slope;
     out(i, 1) = phasor.cosine() * angle_slope;
   }
@@ -102,8 +102,8 @@ Eigen::VectorXd PeriodicEffect::from_parameters(const Eigen::VectorXd& values) c
   return result;
 }
 
-std::pair<double, double> period_range(const Stations& stations, ClockReading clock) {
-  const ClockRange range = range_of(stations, clock);
+std::pair<double, double> period_range(const Stations& stations, VariableReading reading) {
+  const VariableRange range = range_of(stations, reading);
   return {4.0 * range.step, 2.0 * range.extent()};
 }
 

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "clock_range.hpp"
 #include "slideway/effects/effect.hpp"
+#include "variable_range.hpp"
 
 namespace slideway {
 
@@ -14,15 +14,16 @@ inline constexpr double kCyclesPerStep = 1.0 / 3.0;
 
 struct PeriodicSpec {
   Description description;
-  Parameter rate;  // the period, or the number of cycles per unit of the clock
+  Parameter rate;  // the period, or the number of cycles per unit of the variable
   bool rate_is_period = true;
-  ClockReading clock = nullptr;
+  VariableReading reading = nullptr;
   std::pair<double, double> (*range)(const Stations&) = nullptr;
   bool (*applies_to)(const Setup&) = is_height;
 };
 
-// h = A cos(2πq + φ) with q = clock / period or clock * frequency. The amplitudes are A cos φ on
-// cos 2πq and -A sin φ on sin 2πq; the parameters amplitude_um, period or frequency, phase_rad.
+// h = A cos(2πq + φ) with q = v / period or v * frequency, v the variable. The amplitudes are A cos
+// φ on cos 2πq and -A sin φ on sin 2πq; the parameters amplitude_um, period or frequency,
+// phase_rad.
 class PeriodicEffect : public Effect {
  public:
   explicit PeriodicEffect(PeriodicSpec spec);
@@ -47,14 +48,14 @@ class PeriodicEffect : public Effect {
   [[nodiscard]] bool linear_parameters() const override { return false; }
 
  private:
-  [[nodiscard]] double cycles(std::span<const double> shape) const;  // per unit of the clock
+  [[nodiscard]] double cycles(std::span<const double> shape) const;  // per unit of the variable
 
   PeriodicSpec spec_;
   std::vector<Parameter> parameters_;
   std::vector<Shape> shapes_;
 };
 
-// Periods from 4 samples to twice what the profile covers of the clock.
-std::pair<double, double> period_range(const Stations& stations, ClockReading clock);
+// Periods from 4 samples to twice what the profile covers of the variable.
+std::pair<double, double> period_range(const Stations& stations, VariableReading reading);
 
 }  // namespace slideway

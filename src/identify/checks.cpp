@@ -5,6 +5,7 @@
 
 #include "residual.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/identify/straightness.hpp"
 
 namespace slideway {
 namespace {
@@ -15,58 +16,29 @@ constexpr double kGoodTravel = 200.0;
 constexpr double kTold = 5.0;          // standard uncertainties
 constexpr double kImplausible = 10.0;  // times the good slide's
 
-/// Σ_k p_k x^k and its derivative, from the parameters `prefix`0, 1, ... of a term ("b", "c").
-struct Polynomial {
-  std::vector<double> coefficients;
-  [[nodiscard]] double operator()(double x) const {
-    double sum = 0.0;
-    for (std::size_t k = coefficients.size(); k-- > 0;) sum = sum * x + coefficients[k];
-    return sum;
-  }
-  [[nodiscard]] double slope(double x) const {
-    double sum = 0.0;
-    for (std::size_t k = coefficients.size(); k-- > 1;)
-      sum = sum * x + static_cast<double>(k) * coefficients[k];
-    return sum;
-  }
-};
-
-const ModelTerm* find_term(const Model& model, const std::string& name) {
+/// Errors of all bodies at a pose, from the fitted effects.
+std::vector<BodyErrors> body_errors(const Model& model, const Solution& fit, const Pose& pose,
+                                    double slide) {
+  std::vector<BodyErrors> errors(model.machine.bodies().size());
   for (const ModelTerm& term : model.terms)
-    if (term.name == name) return &term;
-  return nullptr;
-}
-
-Polynomial polynomial(const ModelTerm* term, const Solution& fit, std::size_t first_power) {
-  Polynomial out;
-  if (!term) return out;
-  out.coefficients.assign(first_power, 0.0);
-  for (std::size_t p = 0; p < term->effect->parameters().size(); ++p)
-    out.coefficients.push_back(fit.parameters.values[term->first_parameter + p]);
-  return out;
+    term.effect->add_body_errors(
+        pose, slide,
+        fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes()), errors);
+  return errors;
 }
 
 /// Largest |exact - first order| of the volumetric error's height at the fitted values, mm.
 std::optional<double> neglected_height(const Model& model, const Solution& fit) {
-  const Polynomial straightness = polynomial(find_term(model, "straightness"), fit, 0);
-  const Polynomial vertical = polynomial(find_term(model, "vertical_straightness"), fit, 1);
-  const ModelTerm* squareness = find_term(model, "squareness");
-  const std::vector<int> x = model.machine.carriages(Axis::x), z = model.machine.carriages(Axis::z);
   std::optional<double> largest;
   for (const Observation* observation : fit.linear.observations) {
     const Setup& setup = observation->profile->setup;
-    if (setup.kind != Kind::face || x.empty()) continue;
+    if (setup.kind != Kind::face) continue;
     const double reach = std::max(std::abs(setup.first_mm - setup.center_mm),
                                   std::abs(setup.last_mm - setup.center_mm));
     for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       const Pose pose{part * reach, setup.z_mm, setup.overhang_mm};
-      std::vector<BodyErrors> errors(model.machine.bodies().size());
-      BodyErrors& carriage = errors[x.front() - 1];
-      const double slide = setup.spindle_position_mm + pose.radius;
-      carriage.motion.z = straightness(slide);
-      carriage.motion.beta = straightness.slope(slide);
-      if (squareness) carriage.squareness = fit.parameters.values[squareness->first_parameter];
-      if (!z.empty()) errors[z.front() - 1].motion.beta = vertical.slope(setup.z_mm);
+      const std::vector<BodyErrors> errors =
+          body_errors(model, fit, pose, setup.spindle_position_mm + pose.radius);
       const double gap = model.machine.volumetric_error(pose, errors).z() -
                          model.machine.volumetric_error_first_order(pose, errors).z();
       largest = std::max(largest.value_or(0.0), std::abs(gap));
@@ -75,42 +47,41 @@ std::optional<double> neglected_height(const Model& model, const Solution& fit) 
   return largest;
 }
 
-/// Peak to valley of a curve about its least-squares line over [low, high].
-double straightness_error(const Polynomial& curve, double low, double high) {
+/// Peak to valley of a straightness about its least-squares line over the travel, mm.
+double straightness_error(const Model& model, const ModelTerm& term, const Solution& fit) {
   constexpr int kPoints = 201;
-  Eigen::VectorXd x(kPoints), y(kPoints);
-  for (int i = 0; i < kPoints; ++i) {
-    x[i] = low + (high - low) * i / (kPoints - 1);
-    y[i] = curve(x[i]);
-  }
-  x.array() -= x.mean();
-  y.array() -= y.mean();
-  y -= x * (x.dot(y) / x.squaredNorm());
-  return y.maxCoeff() - y.minCoeff();
+  const Eigen::VectorXd x =
+      Eigen::VectorXd::LinSpaced(kPoints, model.range.slide_min, model.range.slide_max);
+  const Eigen::MatrixXd columns = along_slide(*term.effect, model.machine, x, Quantity::height,
+                                              shapes_of(term, fit.estimate.shapes));
+  return least_squares_line(
+             x, columns * fit.estimate.amplitudes.segment(term.first_amplitude, columns.cols()))
+      .error;
 }
 
 /// Whether a curvature of the straightness is told from zero.
-bool is_curved(const FitResult& out) {
-  return std::any_of(out.parameters.begin(), out.parameters.end(), [](const FittedParameter& p) {
-    const bool curvature =
-        p.name.starts_with("straightness") && !p.name.ends_with(".b0") && !p.name.ends_with(".b1");
-    return curvature && p.value && p.standard_uncertainty &&
-           std::abs(*p.value) > kTold * *p.standard_uncertainty;
-  });
+bool is_curved(const ModelTerm& term, const FitResult& out) {
+  const std::vector<Parameter>& parameters = term.effect->parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const FittedParameter& p = out.parameters[static_cast<std::size_t>(term.first_parameter) + i];
+    if (!parameters[i].by_convention && p.value && p.standard_uncertainty &&
+        std::abs(*p.value) > kTold * *p.standard_uncertainty)
+      return true;
+  }
+  return false;
 }
 
 void check_plausibility(const Model& model, const Solution& fit, FitResult& out) {
-  const ModelTerm* term = find_term(model, "straightness");
+  const ModelTerm* term = model.find_term(MotionError::straightness);
   const double travel = model.range.slide_max - model.range.slide_min;
   if (!term || !(travel > 0.0)) return;
   bool face = false;
   for (const Observation* observation : fit.linear.observations)
     face = face || observation->profile->setup.kind == Kind::face;
-  const double found =
-      straightness_error(polynomial(term, fit, 0), model.range.slide_min, model.range.slide_max);
+  const double found = straightness_error(model, *term, fit);
   const double part = travel / kGoodTravel;
   const double good = kGoodStraightness * (part < 1.0 ? part * part : part);
-  if (!face || found < kImplausible * good || !is_curved(out)) return;
+  if (!face || found < kImplausible * good || !is_curved(*term, out)) return;
   out.implausible = "the fitted straightness is " + significant(found / kMicrometre, 2) +
                     " µm over " + significant(travel, 4) +
                     " mm; a slide of 1 µm per 200 mm makes " + significant(good / kMicrometre, 2) +

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
 
 namespace slideway {
 namespace {
@@ -13,7 +14,7 @@ constexpr double kConsistent = 1.0;  // E_n up to here is consistent
 
 const FittedParameter* squareness_of(const FitResult& fit) {
   for (const FittedParameter& parameter : fit.parameters)
-    if (parameter.name.starts_with("squareness")) return &parameter;
+    if (motion_error_of(parameter.name) == MotionError::squareness) return &parameter;
   return nullptr;
 }
 

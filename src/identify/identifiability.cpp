@@ -10,17 +10,6 @@ namespace {
 
 constexpr double kAbsent = 1e-6;         // a coefficient this small in a null direction is rounding
 
-/// Which parameter of a null direction gives way: the higher the sooner. Offset and slope of a
-/// straightness are fixed by convention, c_1 is a squareness.
-int gauge_order(const std::string& parameter) {
-  if (parameter.ends_with(".b0")) return 5;
-  if (parameter.ends_with(".b1")) return 4;
-  if (parameter.starts_with("vertical_straightness")) return 3;
-  if (parameter.starts_with("straightness")) return 1;
-  if (parameter.starts_with("squareness")) return 0;
-  return 2;
-}
-
 /// Column-reduces `parameters` (scaled, P by d) so that each column has an own row: a 1 where all
 /// other columns have 0. The same operations go to `amplitudes`.
 std::vector<Eigen::Index> reduce(Eigen::MatrixXd& parameters, Eigen::MatrixXd& amplitudes,
@@ -56,49 +45,29 @@ std::vector<Eigen::Index> reduce(Eigen::MatrixXd& parameters, Eigen::MatrixXd& a
   return own;
 }
 
-std::string advice(const std::vector<std::string>& names, const Model& model) {
-  const auto any = [&](auto&& test) { return std::any_of(names.begin(), names.end(), test); };
-  const auto has = [&](const std::string& name) {
-    return any([&](const std::string& n) { return n == name; });
-  };
-  const auto of = [&](const std::string& effect) {
-    return any([&](const std::string& n) { return n.starts_with(effect + "."); });
-  };
-  if (std::all_of(names.begin(), names.end(), fixed_by_convention))
-    return "offset and slope of a straightness are fixed by its reference line (ISO 230-1), not by "
-           "these data; no measurement is needed";
-  if (has("squareness.dbeta_xz") && has("vertical_straightness.c1"))
-    return "no face can tell c_1 from the squareness: both tilt the Z carriage by a constant; read "
-           "the "
-           "straightness of the Z carriage along Z, or measure the squareness itself (run-out, Eq. "
-           "21)";
-  if (of("vertical_straightness") && of("squareness"))
-    return "cut faces at more Z levels (z_mm): each further level determines one more c_k";
-  if (of("vertical_straightness"))
-    return "cut faces at more Z levels (z_mm), with an offset that levelling has not removed or "
-           "with "
-           "lever = \"paper\"; read the straightness of the Z carriage along Z";
-  if (of("squareness") && names.size() == 1)
-    return "levelling has removed it: trace a full diameter (the squareness comes back as a cone), "
-           "or keep "
-           "the tilt against the spindle axis (free = [\"offset\"])";
-  if (of("squareness") && of("straightness"))
-    return "the squareness is the slope of the face: give the slope of the straightness by a prior "
-           "(an "
-           "autocollimator against the spindle axis), or measure the squareness itself (run-out, "
-           "Eq. 21)";
-  if (of("straightness") && model.terms.size() > 1)
-    return "one profile cannot tell them apart: read the straightness along the slide (kind = "
-           "\"slide\"), give a prior, or cut with another feed or direction";
+/// What to measure, from the first effect in the direction that has an advice of its own.
+/// @param in_direction  P
+std::string advice(const Model& model, const std::vector<bool>& in_direction) {
+  std::vector<UndeterminedPart> parts(model.terms.size());
+  for (std::size_t t = 0; t < model.terms.size(); ++t) {
+    const std::vector<Parameter>& parameters = model.terms[t].effect->parameters();
+    for (std::size_t p = 0; p < parameters.size(); ++p)
+      if (in_direction[static_cast<std::size_t>(model.terms[t].first_parameter) + p])
+        parts[t].own.push_back(parameters[p].name);
+  }
+  for (std::size_t t = 0; t < parts.size(); ++t) {
+    if (parts[t].own.empty()) continue;
+    for (std::size_t other = 0; other < parts.size(); ++other)
+      if (other != t && !parts[other].own.empty())
+        parts[t].others.push_back(model.terms[other].effect.get());
+    parts[t].model_has_others = parts.size() > 1;
+    if (std::string text = model.terms[t].effect->advice(parts[t]); !text.empty()) return text;
+  }
   return "measure more of the travel, or more profiles that differ in feed, direction, overhang or "
          "Z";
 }
 
 }  // namespace
-
-bool fixed_by_convention(const std::string& parameter) {
-  return parameter.ends_with(".b0") || parameter.ends_with(".b1");
-}
 
 Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
                   double tolerance) {
@@ -106,6 +75,11 @@ Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
   rank.basis = rank.null_space = Eigen::MatrixXd(triangle.cols(), 0);
   if (triangle.cols() == 0) return rank;
   const Eigen::VectorXd unit = scale.unaryExpr([](double s) { return s > 0.0 ? s : 1.0; });
+  if (triangle.size() == 0) {  // nothing is asked, or nothing was measured
+    rank.basis.resize(triangle.cols(), 0);
+    rank.null_space = unit.cwiseInverse().asDiagonal();
+    return rank;
+  }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle * unit.cwiseInverse().asDiagonal(),
                                               Eigen::ComputeFullV);
   const Eigen::VectorXd& singular = svd.singularValues();
@@ -121,13 +95,13 @@ Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
 NullDirections null_directions(const Model& model, const Eigen::MatrixXd& null_space,
                                const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& scale) {
   NullDirections null;
-  const std::vector<std::string> names = model.parameter_names();
   std::vector<int> order;
-  for (const std::string& name : names) order.push_back(gauge_order(name));
+  for (const ModelTerm& term : model.terms)
+    for (const Parameter& parameter : term.effect->parameters()) order.push_back(parameter.gauge);
   null.amplitudes = null_space;
   Eigen::MatrixXd scaled = scale.asDiagonal() * (jacobian * null_space);
   null.own = reduce(scaled, null.amplitudes, order);
-  null.identifiable.assign(names.size(), true);
+  null.identifiable.assign(order.size(), true);
   for (Eigen::Index j = 0; j < scaled.cols(); ++j) {
     const double largest = scaled.col(j).cwiseAbs().maxCoeff();
     for (Eigen::Index i = 0; i < scaled.rows(); ++i) {
@@ -151,14 +125,14 @@ std::vector<UndeterminedDirection> undetermined(const Model& model, const NullDi
   std::vector<UndeterminedDirection> out;
   for (Eigen::Index d = 0; d < null.parameters.cols(); ++d) {
     UndeterminedDirection direction;
-    std::vector<std::string> involved;
+    std::vector<bool> involved(names.size(), false);
     const double length = null.parameters.col(d).norm();
     for (std::size_t p = 0; p < names.size(); ++p) {
       if (null.parameters(p, d) == 0.0) continue;
       direction.combination.emplace_back(names[p], null.parameters(p, d) / length);
-      involved.push_back(names[p]);
+      involved[p] = true;
     }
-    direction.advice = advice(involved, model);
+    direction.advice = advice(model, involved);
     out.push_back(std::move(direction));
   }
   return out;

@@ -7,8 +7,8 @@
 
 #include "closure_summary.hpp"
 #include "slideway/base/statistics.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/crosscheck.hpp"
-#include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/ranking.hpp"
 
 namespace slideway {

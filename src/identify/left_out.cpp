@@ -83,15 +83,10 @@ Eigen::VectorXd steep_curve(const Model& model, const Estimate& estimate,
                             const Observation& observation) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(observation.values.size());
   for (const ModelTerm& term : model.terms)
-    if (is_steep_at_centre(*term.effect))
+    if (term.effect->description().steep_at_centre)
       out += low_band_columns(model, term, observation, shapes_of(term, estimate.shapes)) *
              estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
   return out;
-}
-
-bool is_steep_at_centre(const Effect& effect) {
-  return effect.description().clock == Clock::radius && !effect.shapes().empty() &&
-         !effect.shapes()[0].stepwise;
 }
 
 double left_out_radius(const Model& model) {

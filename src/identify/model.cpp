@@ -171,6 +171,12 @@ std::vector<std::string> Model::parameter_names() const {
   return names;
 }
 
+const ModelTerm* Model::find_term(MotionError error) const {
+  const auto found = std::ranges::find_if(
+      terms, [&](const ModelTerm& term) { return term.effect->description().motion == error; });
+  return found == terms.end() ? nullptr : &*found;
+}
+
 void append_term(Model& model, const DeclaredEffect& declared, const TravelRange& range) {
   ModelTerm term{
       declared.name,   make_effect(declared.name, declared.options, model.machine, range),

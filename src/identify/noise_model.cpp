@@ -10,7 +10,6 @@
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/identifiability.hpp"
-#include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
@@ -271,8 +270,9 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
 }
 
 std::vector<Noise> noise_under(const Linearisation& linear, const Gates& gates) {
-  std::vector<Noise> noise = noise_beside(linear, gates);
-  if (lack_of_fit(linear, noise, gates).significant(gates)) return noise;
+  std::vector<Noise> noise(linear.observations.size());
+  for (std::size_t i = 0; i < noise.size(); ++i)
+    noise[i].innovation = std::max(rms(linear.residuals[i]), 1e-300);
   std::vector<std::size_t> all(noise.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   from_whole_residuals(linear, all, gates, noise);

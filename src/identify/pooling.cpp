@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "slideway/base/distribution.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/uncertainty.hpp"
 #include "trend.hpp"
@@ -242,8 +243,7 @@ std::vector<MatrixXd> drifting(const std::vector<MatrixXd>& parts,
 }  // namespace
 
 bool is_carriage_parameter(const std::string& name) {
-  return name.starts_with("straightness.") || name.starts_with("vertical_straightness.") ||
-         name.starts_with("squareness.");
+  return motion_error_of(name) != MotionError::none;
 }
 
 PooledMachine pool(const std::string& machine, const std::vector<PoolItem>& items) {

@@ -42,6 +42,14 @@ std::vector<double> places_between(const std::vector<CoarseProfile>& profiles,
   return out;
 }
 
+/// Every other value, the first and the last among them.
+std::vector<double> coarser(const std::vector<double>& axis) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < axis.size(); i += 2) out.push_back(axis[i]);
+  if (axis.size() % 2 == 0) out.push_back(axis.back());
+  return out;
+}
+
 }  // namespace
 
 std::vector<double> shape_grid(const Model& model, const ModelTerm& term, int shape) {
@@ -76,6 +84,22 @@ std::vector<double> shape_grid(const Model& model, const ModelTerm& term, int sh
                       ? 0.5 * (parameter.lower + parameter.upper)
                       : parameter.scale);
   return out;
+}
+
+std::vector<std::vector<double>> shape_axes(const Model& model, const ModelTerm& term) {
+  std::vector<std::vector<double>> axes;
+  for (std::size_t s = 0; s < term.effect->shapes().size(); ++s)
+    axes.push_back(shape_grid(model, term, static_cast<int>(s)));
+  const auto points = [&] {
+    double product = 1.0;
+    for (const std::vector<double>& axis : axes) product *= static_cast<double>(axis.size());
+    return product;
+  };
+  while (axes.size() > 1 && points() > static_cast<double>(kMostPoints)) {
+    const auto longest = std::ranges::max_element(axes, {}, &std::vector<double>::size);
+    *longest = coarser(*longest);
+  }
+  return axes;
 }
 
 }  // namespace slideway

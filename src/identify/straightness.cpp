@@ -48,18 +48,6 @@ ReferenceLine through(const std::string& name, const Eigen::VectorXd& x, const E
   return line;
 }
 
-ReferenceLine least_squares(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
-  ReferenceLine line{"least squares"};
-  const Eigen::VectorXd centred = x.array() - x.mean();
-  line.slope = centred.dot(z) / centred.squaredNorm();
-  line.at_zero = z.mean() - line.slope * x.mean();
-  evaluate(x, z, line);
-  const Eigen::MatrixXd deviations = least_squares_deviations(x);
-  line.sensitivity = deviations.row(static_cast<Eigen::Index>(line.highest_at)) -
-                     deviations.row(static_cast<Eigen::Index>(line.lowest_at));
-  return line;
-}
-
 /// Indices of the upper (sign 1) or lower (-1) convex hull.
 std::vector<Eigen::Index> hull(const Eigen::VectorXd& x, const Eigen::VectorXd& z, double sign) {
   std::vector<Eigen::Index> out;
@@ -90,47 +78,45 @@ ReferenceLine minimum_zone(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
   return *best;
 }
 
-/// f_j(x) of a straightness term: what a reading along the slide itself sees.
-Eigen::MatrixXd locus(const Model& model, const ModelTerm& term, const Eigen::VectorXd& x,
-                      std::span<const double> shape) {
-  Setup setup;
-  setup.kind = Kind::slide;
-  setup.first_mm = x[0];
-  setup.last_mm = x[x.size() - 1];
-  Eigen::MatrixXd columns(x.size(), term.effect->amplitudes());
-  term.effect->columns({{x.data(), static_cast<std::size_t>(x.size())}, setup, model.machine},
-                       shape, columns);
-  return columns;
-}
-
 /// All but offset and slope, which the reference line takes.
 bool is_determined(const ModelTerm& term, const Solution& fit) {
   const std::vector<Parameter>& parameters = term.effect->parameters();
   for (std::size_t p = 0; p < parameters.size(); ++p)
     if (!fit.null.identifiable[term.first_parameter + static_cast<Eigen::Index>(p)] &&
-        !fixed_by_convention(term.name + "." + parameters[p].name))
+        !parameters[p].by_convention)
       return false;
   return true;
 }
 
 }  // namespace
 
+ReferenceLine least_squares_line(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
+  ReferenceLine line{"least squares"};
+  const Eigen::VectorXd centred = x.array() - x.mean();
+  line.slope = centred.dot(z) / centred.squaredNorm();
+  line.at_zero = z.mean() - line.slope * x.mean();
+  evaluate(x, z, line);
+  const Eigen::MatrixXd deviations = least_squares_deviations(x);
+  line.sensitivity = deviations.row(static_cast<Eigen::Index>(line.highest_at)) -
+                     deviations.row(static_cast<Eigen::Index>(line.lowest_at));
+  return line;
+}
+
 std::vector<ReferenceLine> reference_lines(const Eigen::VectorXd& positions,
                                            const Eigen::VectorXd& heights) {
   return {through("end-point", positions, heights, 0, positions.size() - 1),
-          least_squares(positions, heights), minimum_zone(positions, heights)};
+          least_squares_line(positions, heights), minimum_zone(positions, heights)};
 }
 
 std::optional<IdentifiedStraightness> identified_straightness(const Model& model,
                                                               const Solution& fit,
                                                               const MoreVariance& more) {
-  const auto term = std::find_if(model.terms.begin(), model.terms.end(),
-                                 [](const ModelTerm& each) { return each.name == "straightness"; });
-  if (term == model.terms.end() || !(model.range.slide_max > model.range.slide_min))
-    return std::nullopt;
+  const ModelTerm* term = model.find_term(MotionError::straightness);
+  if (!term || !(model.range.slide_max > model.range.slide_min)) return std::nullopt;
   const Eigen::VectorXd x =
       Eigen::VectorXd::LinSpaced(kPoints, model.range.slide_min, model.range.slide_max);
-  const Eigen::MatrixXd columns = locus(model, *term, x, shapes_of(*term, fit.estimate.shapes));
+  const Eigen::MatrixXd columns = along_slide(*term->effect, model.machine, x, Quantity::height,
+                                              shapes_of(*term, fit.estimate.shapes));
   const Eigen::Index first = term->first_amplitude, count = columns.cols();
   const Eigen::MatrixXd deviations = least_squares_deviations(x);
   IdentifiedStraightness out;

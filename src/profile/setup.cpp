@@ -2,37 +2,39 @@
 
 namespace slideway {
 
-std::string_view symbol(Clock clock) {
-  switch (clock) {
-    case Clock::radius:
+std::string_view symbol(IndependentVariable variable) {
+  switch (variable) {
+    case IndependentVariable::radius:
       return "r";
-    case Clock::slide:
+    case IndependentVariable::slide:
       return "x";
-    case Clock::time:
+    case IndependentVariable::time:
       return "t";
-    case Clock::revolution:
+    case IndependentVariable::revolution:
       return "k";
-    case Clock::distance:
+    case IndependentVariable::distance:
       return "s";
-    case Clock::trace:
+    case IndependentVariable::trace:
       return "X";
-    case Clock::measuring_time:
+    case IndependentVariable::measuring_time:
       return "m";
   }
   return "";
 }
 
-std::vector<std::string> missing_for(Clock clock, const Setup& setup) {
+std::vector<std::string> missing_for(IndependentVariable variable, const Setup& setup) {
   std::vector<std::string> missing;
-  const bool turning = clock == Clock::revolution || clock == Clock::distance;
-  if ((clock == Clock::radius || clock == Clock::distance) && setup.kind != Kind::face)
+  const bool turning =
+      variable == IndependentVariable::revolution || variable == IndependentVariable::distance;
+  if ((variable == IndependentVariable::radius || variable == IndependentVariable::distance) &&
+      setup.kind != Kind::face)
     missing.emplace_back("kind = \"face\"");
-  if (turning || clock == Clock::time) {
+  if (turning || variable == IndependentVariable::time) {
     if (!setup.feed_mm_per_min) missing.emplace_back("feed_mm_per_min");
     if (!setup.cut_direction) missing.emplace_back("cut_direction");
   }
   if (turning && !setup.spindle_rpm) missing.emplace_back("spindle_rpm");
-  if (clock == Clock::measuring_time && !setup.traverse_mm_per_s)
+  if (variable == IndependentVariable::measuring_time && !setup.traverse_mm_per_s)
     missing.emplace_back("traverse_mm_per_s");
   return missing;
 }

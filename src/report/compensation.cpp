@@ -1,14 +1,15 @@
 #include "slideway/report/compensation.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <functional>
-#include <map>
+#include <iterator>
+#include <memory>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/report/document.hpp"
 #include "slideway/report/number.hpp"
 
@@ -17,53 +18,96 @@ namespace {
 
 constexpr double kPieces = 50.0;  // of the travel, where no step is asked for
 constexpr double kMost = 5000.0;
+constexpr Eigen::Index kSamples = 51;  // of the travel, to see what a parameter changes
+constexpr double kRounding = 1e-9;     // of the rise a parameter makes
 
 using Parameters = std::vector<FittedParameter>;
 
 bool is_determined(const FittedParameter& p) { return p.identifiable && p.value; }
 
-/// The tool tip's deviation in Z that straightness makes: Σ b_k (x^k - p_x k x^(k-1)), mm.
+/// Parameters of the effect that is this error of the carriages.
+Parameters parameters_of(const Parameters& all, MotionError error) {
+  Parameters out;
+  std::ranges::copy_if(all, std::back_inserter(out),
+                       [&](const FittedParameter& p) { return motion_error_of(p.name) == error; });
+  return out;
+}
+
+std::string effect_name(const FittedParameter& p) { return p.name.substr(0, p.name.find('.')); }
+
+/// The tool tip's deviation in Z that the straightness makes, mm: what the carriage rises minus the
+/// lever p_x times what it pitches.
 class TipLocus {
  public:
-  TipLocus(const Parameters& parameters, const TravelSummary& travel) : travel_(&travel) {
-    constexpr std::string_view kPrefix = "straightness.b";
-    for (const FittedParameter& p : parameters) {
-      if (!p.name.starts_with(kPrefix)) continue;
-      std::size_t k = 0;
-      std::from_chars(p.name.data() + kPrefix.size(), p.name.data() + p.name.size(), k);
-      b_[k] = &p;
-    }
-  }
-
-  [[nodiscard]] bool is_declared() const { return !b_.empty(); }
-
-  /// Names of b_first and above that the data do not determine.
-  [[nodiscard]] std::vector<std::string> undetermined(std::size_t first) const {
+  TipLocus(const Parameters& parameters, const TravelSummary& travel)
+      : travel_(travel), parameters_(parameters_of(parameters, MotionError::straightness)) {
+    if (parameters_.empty()) return;
     std::vector<std::string> names;
-    for (const auto& [k, p] : b_)
-      if (k >= first && !is_determined(*p)) names.push_back(p->symbol);
-    return names;
+    const std::string name = effect_name(parameters_.front());
+    for (const FittedParameter& p : parameters_) names.push_back(p.name.substr(name.size() + 1));
+    effect_ =
+        make_effect_with(name, names, machine_,
+                         {.slide_min = travel.slide_min_mm, .slide_max = travel.slide_max_mm});
+    amplitudes_ = Eigen::VectorXd::Zero(effect_->amplitudes());
+    for (const FittedParameter& p : parameters_)
+      if (is_determined(p)) amplitudes_ += *p.value * unit_of(p);
   }
 
-  [[nodiscard]] double operator()(double x) const {
-    long double sum = 0.0L;
-    for (const auto& [k, p] : b_) {
-      if (!is_determined(*p)) continue;
-      const long double below = k == 0 ? 0.0L : std::pow(static_cast<long double>(x), k - 1.0L);
-      sum += *p->value * (k == 0 ? 1.0L : (x - lever(x) * static_cast<double>(k)) * below);
+  [[nodiscard]] bool is_declared() const { return effect_ != nullptr; }
+
+  /// Deviations at slide coordinates.
+  [[nodiscard]] Eigen::VectorXd at(const Eigen::VectorXd& x) const { return tip(x, amplitudes_); }
+
+  /// Symbols of what the data do not determine and would change the form, as seen from the line
+  /// through its end points, or that line's slope.
+  [[nodiscard]] std::vector<std::string> undetermined(bool slope) const {
+    const Eigen::VectorXd x =
+        Eigen::VectorXd::LinSpaced(kSamples, travel_.slide_min_mm, travel_.slide_max_mm);
+    std::vector<std::string> symbols;
+    for (const FittedParameter& p : parameters_) {
+      if (is_determined(p)) continue;
+      const Eigen::VectorXd unit = unit_of(p);
+      const double size = (rises(x, Quantity::height) * unit).cwiseAbs().maxCoeff();
+      const Eigen::VectorXd z = tip(x, unit);
+      const double rise = z[z.size() - 1] - z[0];
+      const Eigen::VectorXd line = Eigen::VectorXd::LinSpaced(z.size(), z[0], z[z.size() - 1]);
+      const double change = slope ? std::abs(rise) : (z - line).cwiseAbs().maxCoeff();
+      if (change > kRounding * size) symbols.push_back(p.symbol);
     }
-    return static_cast<double>(sum);
+    return symbols;
   }
 
  private:
   [[nodiscard]] double lever(double x) const {
-    if (!travel_->spindle_position_mm) return 0.0;  // read along the slide itself
-    return travel_->lever == "paper" ? x - *travel_->spindle_position_mm
-                                     : travel_->overhang_mm.value_or(0.0);
+    if (!travel_.spindle_position_mm) return 0.0;  // read along the slide itself
+    return travel_.lever == "paper" ? x - *travel_.spindle_position_mm
+                                    : travel_.overhang_mm.value_or(0.0);
   }
 
-  const TravelSummary* travel_;
-  std::map<std::size_t, const FittedParameter*> b_;
+  [[nodiscard]] Eigen::MatrixXd rises(const Eigen::VectorXd& x, Quantity quantity) const {
+    return along_slide(*effect_, machine_, x, quantity);
+  }
+
+  [[nodiscard]] Eigen::VectorXd tip(const Eigen::VectorXd& x,
+                                    const Eigen::VectorXd& amplitudes) const {
+    const Eigen::VectorXd levers = x.unaryExpr([this](double at) { return lever(at); });
+    return rises(x, Quantity::height) * amplitudes -
+           levers.cwiseProduct(rises(x, Quantity::slope) * amplitudes);
+  }
+
+  /// Amplitudes where this parameter is 1 and all others are 0.
+  [[nodiscard]] Eigen::VectorXd unit_of(const FittedParameter& p) const {
+    const std::vector<Parameter>& all = effect_->parameters();
+    const std::string own = p.name.substr(p.name.find('.') + 1);
+    const auto index = std::ranges::find(all, own, &Parameter::name) - all.begin();
+    return effect_->from_parameters(Eigen::VectorXd::Unit(std::ssize(all), index));
+  }
+
+  const TravelSummary& travel_;
+  Machine machine_{Machine::paper_lathe(), Lever::paper};
+  Parameters parameters_;
+  std::unique_ptr<Effect> effect_;
+  Eigen::VectorXd amplitudes_;
 };
 
 std::vector<double> evenly(const TravelSummary& travel, double step_mm) {
@@ -115,7 +159,7 @@ void refuse_whole(const Analysis& analysis) {
   if (!analysis.result.travel)
     refuse("the report says no travel, being of an older slideway; identify the problem again");
   for (const FittedParameter& p : final_parameters(analysis))
-    if (p.name.starts_with("straightness[") || p.name.starts_with("squareness["))
+    if (motion_error_of(p.name) != MotionError::none && effect_name(p).ends_with(']'))
       refuse("several carriages move along X; accepted: a machine with one");
   if (analysis.trace && analysis.trace->verdict == "not_identifiable")
     refuse(
@@ -130,7 +174,7 @@ double add_straightness(const Analysis& analysis, const TipLocus& locus, Compens
   };
   const TravelSummary& travel = *analysis.result.travel;
   if (!locus.is_declared()) return leave_out("the model has no straightness");
-  if (const auto names = locus.undetermined(2); !names.empty())
+  if (const auto names = locus.undetermined(false); !names.empty())
     return leave_out("the data do not determine " + joined(names));
   if (travel.spindle_position_mm && travel.lever == "split" && !travel.overhang_mm)
     return leave_out("the faces were cut at several overhangs, and its pitch acts on each");
@@ -139,16 +183,21 @@ double add_straightness(const Analysis& analysis, const TipLocus& locus, Compens
     return leave_out(implausible);
 
   const double first = out.positions_mm.front(), last = out.positions_mm.back();
-  const double slope = (locus(last) - locus(first)) / (last - first);
-  const auto deviation = [&](double x) { return locus(x) - locus(first) - slope * (x - first); };
-  std::vector<double> form;
-  for (const double x : out.positions_mm) form.push_back(deviation(x));
+  const Eigen::VectorXd ends = locus.at(Eigen::Vector2d(first, last));
+  const double slope = (ends[1] - ends[0]) / (last - first);
+  const auto deviations = [&](const std::vector<double>& x) {
+    const Eigen::Map<const Eigen::VectorXd> at(x.data(), std::ssize(x));
+    const Eigen::VectorXd z = (locus.at(at) - slope * at).array() - ends[0] + slope * first;
+    return std::vector<double>(z.begin(), z.end());
+  };
+  std::vector<double> form = deviations(out.positions_mm), between;
   form.front() = form.back() = 0.0;
-  for (std::size_t i = 0; i + 1 < form.size(); ++i) {
-    const double x = (out.positions_mm[i] + out.positions_mm[i + 1]) / 2.0;
+  for (std::size_t i = 0; i + 1 < form.size(); ++i)
+    between.push_back((out.positions_mm[i] + out.positions_mm[i + 1]) / 2.0);
+  between = deviations(between);
+  for (std::size_t i = 0; i < between.size(); ++i)
     out.interpolation_mm =
-        std::max(out.interpolation_mm, std::abs(deviation(x) - (form[i] + form[i + 1]) / 2.0));
-  }
+        std::max(out.interpolation_mm, std::abs(between[i] - (form[i] + form[i + 1]) / 2.0));
   if (const std::string why = drowned(analysis, out, form); !why.empty()) return leave_out(why);
   out.straightness_mm = std::move(form);
   const std::string lever = !travel.spindle_position_mm ? ", of the carriage"
@@ -166,13 +215,12 @@ void add_squareness(const Analysis& analysis, const TipLocus& locus, double slop
   const auto leave_out = [&](const std::string& why) {
     out.left_out.push_back("B0X is left out: " + why);
   };
-  const Parameters& parameters = final_parameters(analysis);
-  const auto found = std::ranges::find(parameters, "squareness.dbeta_xz", &FittedParameter::name);
-  if (found == parameters.end()) return leave_out("the model has no squareness");
+  const Parameters squareness = parameters_of(final_parameters(analysis), MotionError::squareness);
+  if (squareness.empty()) return leave_out("the model has no squareness");
+  const FittedParameter* found = &squareness.front();
   if (!is_determined(*found)) return leave_out("the data do not determine " + found->symbol);
-  const bool needs_b1 = analysis.result.travel->lever == "split" && !out.straightness_mm.empty();
-  if (needs_b1)
-    if (const auto names = locus.undetermined(1); !names.empty())
+  if (!out.straightness_mm.empty())
+    if (const auto names = locus.undetermined(true); !names.empty())
       return leave_out("the data do not determine " + joined(names));
   const auto& check = analysis.result.squareness;
   if (check && check->verdict == "inconsistent")
@@ -212,11 +260,11 @@ Compensation compensation(const Analysis& analysis, double step_mm) {
     out.left_out.emplace_back(
         "in doubt: the closed loop's verdict is ambiguous, and its rivals would leave other "
         "numbers");
-  const auto is_pitch_of_z = [](const FittedParameter& p) {
-    return p.name.starts_with("vertical_straightness.");
-  };
-  if (std::ranges::any_of(final_parameters(analysis), is_pitch_of_z))
-    out.left_out.emplace_back("not in this table: vertical_straightness of the report (E_BZ)");
+  const Parameters pitch_of_z =
+      parameters_of(final_parameters(analysis), MotionError::vertical_straightness);
+  if (!pitch_of_z.empty())
+    out.left_out.push_back("not in this table: " + effect_name(pitch_of_z.front()) +
+                           " of the report (E_BZ)");
   return out;
 }
 

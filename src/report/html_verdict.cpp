@@ -4,7 +4,7 @@
 #include "html_parts.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
-#include "slideway/identify/identifiability.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/report/number.hpp"
 
 namespace slideway {
@@ -134,7 +134,7 @@ using Fact = std::pair<std::string, std::string>;
 
 void add_squareness(const Node& report, std::vector<Fact>& facts) {
   for (const Node& parameter : final_parameters(report)) {
-    if (!parameter["name"].verbatim().starts_with("squareness")) continue;
+    if (motion_error_of(parameter["name"].verbatim()) != MotionError::squareness) continue;
     const std::string head = "Squareness " + html_symbol(parameter["symbol"].verbatim());
     const auto found = known(parameter);
     if (!found) {

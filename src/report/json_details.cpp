@@ -20,7 +20,7 @@ Json effect(const EffectInModel& effect) {
           {"formula", what.formula},
           {"source", what.source},
           {"cause", what.cause},
-          {"clock", symbol(what.clock)},
+          {"clock", symbol(what.variable)},
           {"confounded_with", what.confounded_with},
           {"separated_by", what.separated_by},
           {"added", effect.added}};

@@ -6,6 +6,7 @@
 
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "slideway/report/report.hpp"
@@ -147,7 +148,8 @@ void add_parameter(TextTable& table, const FittedParameter& p) {
   table.add({p.symbol, p.name, value_of(p), unit_text(p.unit),
              known && p.expanded_uncertainty ? fixed_point(p.coverage_factor, 2) : "",
              p.at_bound ? "at its bound" : ""});
-  if (!known || !p.expanded_uncertainty || !p.name.starts_with("squareness.")) return;
+  const bool is_squareness = motion_error_of(p.name) == MotionError::squareness;
+  if (!known || !p.expanded_uncertainty || !is_squareness) return;
   table.add({"", "  in µm/m", with_uncertainty(*p.value * 1e6, *p.expanded_uncertainty * 1e6),
              "µm/m", "", ""});
   table.add({"", "  in arcsec",

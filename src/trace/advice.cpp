@@ -90,20 +90,29 @@ Planned plan(const Problem& problem, const std::vector<Profile>& profiles, const
   return out;
 }
 
-/// A rival with a grid of its own around the shape it was fitted at: a longer clock resolves more
-/// than the grid of the search.
+/// A rival with a grid of its own around the shapes it was fitted at: a longer variable resolves
+/// more than the grid of the search.
 Candidate near_fitted(const Refined& rival) {
   const Effect& effect = *rival.candidate->term.effect;
-  Candidate out{rival.candidate->term, {}, false, {rival.shape}, {}};
+  Candidate out;
+  out.term = rival.candidate->term;
   if (rival.shape.empty()) return out;
-  const auto index = static_cast<std::size_t>(effect.shapes()[0].parameter);
-  const Parameter& parameter = effect.parameters()[index];
-  const double step = kReach / kSteps * rival.uncertainties[static_cast<Eigen::Index>(index)];
-  out.shapes.clear();
-  for (int i = -kSteps; i <= kSteps; ++i) {
-    const double shape = rival.shape[0] + i * step;
-    if (shape > parameter.lower && shape < parameter.upper) out.shapes.push_back({shape});
+  // As many points for several shapes as for one, about.
+  const double points = std::pow(2 * kSteps + 1, 1.0 / static_cast<double>(rival.shape.size()));
+  const int steps = std::max(1, static_cast<int>(std::lround(points) / 2));
+  std::vector<std::vector<double>> axes;
+  for (std::size_t s = 0; s < rival.shape.size(); ++s) {
+    const auto index = static_cast<std::size_t>(effect.shapes()[s].parameter);
+    const Parameter& parameter = effect.parameters()[index];
+    const double step = kReach / steps * rival.uncertainties[static_cast<Eigen::Index>(index)];
+    std::vector<double>& axis = axes.emplace_back();
+    for (int i = -steps; i <= steps; ++i) {
+      const double shape = rival.shape[s] + i * step;
+      const bool inside = shape > parameter.lower && shape < parameter.upper;
+      if (i == 0 || (inside && step > 0.0)) axis.push_back(shape);
+    }
   }
+  out.grid = ShapeLattice(std::move(axes));
   return out;
 }
 
@@ -127,7 +136,9 @@ double predicted_separation(const Planned& planned, const Whitened& data, const 
   Finding best{&near};
   for (Eigen::Index atom = 0; atom < near.atoms(); ++atom) {
     const double gain =
-        project(white, stacked_columns(planned.model, near.term, near.shapes[atom], priors)).gain;
+        project(white, stacked_columns(planned.model, near.term,
+                                       near.grid.points()[static_cast<std::size_t>(atom)], priors))
+            .gain;
     if (gain > best.gain) best.gain = gain, best.atom = atom;
   }
   const double most = refine(planned.model, white, best).projection.gain;

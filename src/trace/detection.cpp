@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "background.hpp"
-#include "gates.hpp"
+#include "search_round.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
@@ -15,38 +14,38 @@
 namespace slideway {
 namespace {
 
-constexpr double kPower = 0.8;
-constexpr double kPowerDeviate = 0.8416;  // normal deviate of 80 %
 constexpr int kSpreadShapes = 5;
-constexpr int kMostRounds = 8;        // of a limit that depends on itself
-constexpr double kMostVisible = 1.0;  // mm or rad in a low band: beyond it nothing is a flatness
-constexpr double kNegligible = 0.02;  // of a column's size: not worth a name
+constexpr int kMostRounds = 8;          // of a limit that depends on itself
+constexpr double kMostOfRange = 100.0;  // of a profile's range: what is larger would be seen
+constexpr double kNegligible = 0.02;    // of a column's size: not worth a name
 
-std::span<const double> middle_shape(const Candidate& candidate) {
-  return candidate.shapes[candidate.shapes.size() / 2];
-}
-
-/// Places from one end of what the search looks at to the other, in the logarithm unless they are
-/// positions, at the nodes of Chebyshev: what lies between them can be interpolated, near the ends
-/// too. One empty shape for a candidate without.
+/// Values of the first shape from one end of what the search looks at to the other, in the
+/// logarithm unless they are positions, at the nodes of Chebyshev: what lies between them can be
+/// interpolated, near the ends too. The other shapes stand in the middle of theirs. One empty shape
+/// for a candidate without.
 std::vector<std::vector<double>> spread_shapes(const Candidate& candidate) {
-  if (candidate.shapes.front().empty()) return {{}};
-  const double first = candidate.shapes.front()[0], last = candidate.shapes.back()[0];
-  const bool is_position = candidate.term.effect->shapes()[0].stepwise;
-  std::vector<std::vector<double>> out;
+  if (candidate.grid.axes().empty()) return {{}};
+  const std::vector<double>& axis = candidate.grid.axes().front();
+  const double first = axis.front(), last = axis.back();
+  const bool linear = candidate.term.effect->shapes()[0].stepwise || !(first > 0.0);
+  std::vector<std::vector<double>> out(kSpreadShapes, candidate.grid.middle());
   for (int i = 0; i < kSpreadShapes; ++i) {
     const double share = 0.5 - 0.5 * std::cos(kPi * (i + 0.5) / kSpreadShapes);
-    out.push_back(
-        {is_position ? first + share * (last - first) : first * std::pow(last / first, share)});
+    out[static_cast<std::size_t>(i)][0] =
+        linear ? first + share * (last - first) : first * std::pow(last / first, share);
   }
   return out;
 }
 
+/// "position_mm = 3, width_mm = 0.5"
 std::string shape_text(const Candidate& candidate, std::span<const double> shape) {
-  if (shape.empty()) return "";
   const Effect& effect = *candidate.term.effect;
-  const auto p = static_cast<std::size_t>(effect.shapes()[0].parameter);
-  return effect.parameters()[p].name + " = " + significant(shape[0], 3);
+  std::vector<std::string> out;
+  for (std::size_t s = 0; s < shape.size(); ++s) {
+    const auto p = static_cast<std::size_t>(effect.shapes()[s].parameter);
+    out.push_back(effect.parameters()[p].name + " = " + significant(shape[s], 3));
+  }
+  return joined(out);
 }
 
 /// Share of a candidate's column each parameter of the model takes, as a column of its own.
@@ -101,56 +100,25 @@ struct Case {
   }
 };
 
-/// The joint fit, whose least squares weigh profiles but not frequencies.
-class JointFit {
- public:
-  JointFit(const Linearisation& linear, const Whitened& data, const std::vector<Noise>& noise)
-      : data_(data), noise_(noise) {
-    Eigen::MatrixXd span = model_span(linear);
-    weigh(span);
-    basis_ = orthonormal(std::move(span));
-  }
-
-  /// Standard uncertainty of the amplitude of one column.
-  [[nodiscard]] double uncertainty(Eigen::MatrixXd column) const {
-    weigh(column);
-    column -= basis_ * (basis_.transpose() * column);
-    const double squares = column.squaredNorm();
-    weigh(column);
-    double variance = 0.0;
-    for (std::size_t i = 0; i < data_.observations(); ++i)
-      variance += covariance_under(noise_[i], column.middleRows(data_.first_row(i), data_.count(i)))
-                      .value();
-    return std::sqrt(variance) / squares;
-  }
-
- private:
-  void weigh(Eigen::MatrixXd& columns) const {
-    for (std::size_t i = 0; i < data_.observations(); ++i)
-      columns.middleRows(data_.first_row(i), data_.count(i)) /= noise_[i].weight_deviation();
-  }
-
-  const Whitened& data_;
-  const std::vector<Noise>& noise_;
-  Eigen::MatrixXd basis_;
-};
-
 /// What an effect has to show itself in, and the least gain that counts.
 struct Design {
   const FittedModel& fitted;
   const Whitened& data;
-  JointFit joint;
   double least_gain;
+  double deviate;  // normal deviate of the detection power
+
+  [[nodiscard]] const Gates& gates() const { return fitted.model.gates; }
 };
 
-/// Size found with 80 % probability in these data.
-std::optional<double> limit_in(const Whitened& data, const Case& one, double least_gain) {
+/// Size found with the detection power in these data.
+std::optional<double> limit_in(const Design& design, const Whitened& data, const Case& one) {
+  const Gates& gates = design.gates();
   const Projection own = project(data, one.columns);
   if (own.rank == 0) return std::nullopt;
-  const double enough = std::max(penalty(data, one.candidate.unknowns(own.rank)) + least_gain,
-                                 kLeastSize * kLeastSize);
+  const double enough = std::max(penalty(data, one.candidate.unknowns(own.rank)) + design.least_gain,
+                                 gates.size * gates.size);
   const double noncentrality =
-      chi_squared_noncentrality(static_cast<double>(own.rank), enough, 1.0 - kPower);
+      chi_squared_noncentrality(static_cast<double>(own.rank), enough, 1.0 - gates.detection_power);
   const Eigen::Index a = one.candidate.amplitudes();
   // Gain of one unit of the first parameter; the mean over its phase, where it has one.
   const double gain = own.gram.diagonal().head(std::min<Eigen::Index>(a, 2)).mean() *
@@ -159,18 +127,38 @@ std::optional<double> limit_in(const Whitened& data, const Case& one, double lea
   const double by_gain = std::sqrt(noncentrality / gain);
   if (one.shape.empty()) return by_gain;
   const Eigen::VectorXd inner = one.amplitudes(by_gain);
-  Eigen::MatrixXd joint(data.rows(), a + 1);
-  joint << one.columns,
-      stacked_derivatives(one.model, one.candidate.term, one.shape, data.rows() - data.values()) *
-          inner;
+  Eigen::MatrixXd joint(data.rows(), a + std::ssize(one.shape));
+  joint.leftCols(a) = one.columns;
+  for (Eigen::Index which = 0; which < std::ssize(one.shape); ++which)
+    joint.col(a + which) =
+        stacked_derivatives(one.model, one.candidate.term, one.shape, static_cast<int>(which),
+                            data.rows() - data.values()) *
+        inner;
   const Eigen::MatrixXd covariance = amplitude_covariance(data.outside(std::move(joint)));
   const ParameterValues at = one.candidate.term.effect->parameter_values(inner, one.shape);
   const double uncertainty =
       std::sqrt(at.jacobian.row(0) * covariance * at.jacobian.row(0).transpose());
-  return std::max(by_gain, (kLeastSize + kPowerDeviate) * uncertainty);
+  if (!std::isfinite(uncertainty)) return std::nullopt;
+  return std::max(by_gain, (gates.size + design.deviate) * uncertainty);
 }
 
 /// The same; an effect that is steep at the centre takes the values there out of the search, the
+/// more of them the larger it is.
+std::optional<double> limit_at(const Design& design, const Case& one) {
+  const auto& [model, fit] = design.fitted;
+  std::optional<double> limit = limit_in(design, design.data, one);
+  if (!one.candidate.term.effect->description().steep_at_centre) return limit;
+  Eigen::Index lost = 0;
+  for (int round = 0; limit && round < kMostRounds; ++round) {
+    const Eigen::MatrixXd undescribed = undescribed_columns(
+        model, fit, design.data.noise(), one.columns * one.amplitudes(*limit));
+    if (undescribed.cols() <= lost) break;
+    lost = undescribed.cols();
+    limit = limit_in(design, {fit.linear, design.data.noise(), undescribed}, one);
+  }
+  return limit;
+}
+
 /// more of them the larger it is.
 std::optional<double> limit_at(const Design& design, const Case& one) {
   const auto& [fitted, data, joint, least_gain] = design;
@@ -190,6 +178,18 @@ std::optional<double> limit_at(const Design& design, const Case& one) {
   return limit;
 }
 
+/// Whether no profile would hold more of this signal than a hundred times its own range.
+bool is_flatness(const Linearisation& linear, const Eigen::VectorXd& signal) {
+  Eigen::Index first = 0;
+  for (const Observation* observation : linear.observations) {
+    const Eigen::VectorXd& values = observation->values;
+    const double most = kMostOfRange * (values.maxCoeff() - values.minCoeff());
+    if (!(signal.segment(first, values.size()).cwiseAbs().maxCoeff() <= most)) return false;
+    first += values.size();
+  }
+  return true;
+}
+
 /// Over all shapes, stated for the one nearest to the middle that has a limit.
 std::optional<DetectionLimit> detection_limit(const Design& design, const Candidate& candidate) {
   if (!candidate.term.effect->has_one_size()) return std::nullopt;
@@ -205,7 +205,8 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
         model, candidate, shape,
         stacked_columns(model, candidate.term, shape, design.data.rows() - design.data.values())};
     const std::optional<double> limit = limit_at(design, one);
-    if (!limit || !((one.columns * one.amplitudes(*limit)).cwiseAbs().maxCoeff() < kMostVisible))
+    if (!limit || !(*limit > 0.0) || !std::isfinite(*limit) ||
+        !is_flatness(design.fitted.fit.linear, one.columns * one.amplitudes(*limit)))
       continue;
     if (!shape.empty()) out.by_shape.emplace_back(shape[0], *limit);
     if (std::abs(s - middle) >= nearest) continue;
@@ -220,11 +221,12 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
 }  // namespace
 
 std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Whitened& data,
-                                             const std::vector<Noise>& joint_noise,
                                              const Candidates& candidates,
-                                             const Calibration& calibration, double significance) {
-  const Design design{fitted, data, JointFit(fitted.fit.linear, data, joint_noise),
-                      std::max(kEnough, calibration.threshold(significance))};
+                                             const Calibration& calibration) {
+  const Gates& gates = fitted.model.gates;
+  const Design design{fitted, data,
+                      std::max(gates.delta_bic, calibration.threshold(gates.significance)),
+                      normal_limit(1.0 - gates.detection_power)};
   std::vector<std::optional<DetectionLimit>> limits(candidates.size());
   parallel_for(candidates.size(),
                [&](std::size_t c) { limits[c] = detection_limit(design, *candidates[c]); });
@@ -241,7 +243,7 @@ std::vector<std::pair<std::string, std::string>> inseparable(const Model& model,
   std::vector<std::pair<std::string, std::string>> out;
   for (const Candidate* candidate : candidates) {
     const Eigen::MatrixXd columns = stacked_columns(
-        model, candidate->term, middle_shape(*candidate), data.rows() - data.values());
+        model, candidate->term, candidate->grid.middle(), data.rows() - data.values());
     if (project(data, columns).rank > 0 || columns.isZero(0.0)) continue;
     out.emplace_back(candidate->name(), made_by(model, fit, data, columns.col(0)));
   }

@@ -17,7 +17,6 @@ namespace {
 
 constexpr int kThinLevel = 2;  // four samples a low-band value show a search what it looks at
 constexpr Eigen::Index kAtomsAtATime = 16;
-constexpr int kVerticalDegree = 2;
 
 /// A profile with four samples a low-band value: means of equal blocks are again the low band for
 /// db1, so its columns are those of the whole profile but for what varies inside a quarter.
@@ -109,89 +108,74 @@ std::string needs(const Model& model, const Effect& effect) {
   return shown ? "" : "a reading that shows it";
 }
 
-/// One entry per point of the grid; an empty one if the effect has no shape.
-std::vector<std::vector<double>> shapes_of(const Model& model, const ModelTerm& term) {
-  if (term.effect->shapes().empty()) return {{}};
-  std::vector<std::vector<double>> out;
-  for (const double value : shape_grid(model, term, 0)) out.push_back({value});
-  return out;
-}
-
-void fill(const Viewer& viewer, Candidate& candidate) {
+void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
+  candidate.grid = ShapeLattice(shape_axes(model, candidate.term));
   const Eigen::Index a = candidate.amplitudes(), atoms = candidate.atoms();
   candidate.columns.resize(viewer.rows(), a * atoms);
   parallel_for((atoms + kAtomsAtATime - 1) / kAtomsAtATime, [&](std::size_t block) {
     const Eigen::Index first = static_cast<Eigen::Index>(block) * kAtomsAtATime;
     const Eigen::Index count = std::min(kAtomsAtATime, atoms - first);
     const auto shapes =
-        std::span(candidate.shapes)
+        std::span(candidate.grid.points())
             .subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
     viewer.columns(candidate.term, shapes, candidate.columns.middleCols(first * a, count * a));
   });
 }
 
-/// A straightness of more terms than the declared one, if there is one and no second. A higher
-/// degree is one more hypothesis each: the search takes the one that pays.
-std::vector<Candidate> straightnesses(const Model& model, const Problem& problem) {
-  constexpr int kMoreTerms[] = {1, 2, 4, 6};
-  const auto is_one = [](const DeclaredEffect& effect) { return effect.name == "straightness"; };
-  const auto declared = std::find_if(problem.effects.begin(), problem.effects.end(), is_one);
+/// The hypotheses about an effect: it is missing, or it needs more terms than the one declared of
+/// that name. None where the problem declares several of it.
+void add_hypotheses(const Model& model, const Problem& problem, const std::string& name,
+                    const Viewer& viewer, Dictionary& out) {
+  const auto of_name = [&](const DeclaredEffect& effect) { return effect.name == name; };
+  const auto declared = std::ranges::find_if(problem.effects, of_name);
   const bool any = declared != problem.effects.end();
-  if (any && std::any_of(std::next(declared), problem.effects.end(), is_one)) return {};
-  std::vector<Candidate> out;
-  for (const int more : kMoreTerms) {
+  if (std::ranges::count_if(problem.effects, of_name) > 1) return;
+  const auto hypotheses = specimen(name).hypotheses(any ? &declared->options : nullptr);
+  const auto lacking = specimen(name).lacking_of_machine(model.range);
+  if (!hypotheses.empty() && !lacking.empty())
+    return out.not_testable.push_back({name, joined(lacking) + " in [machine]"});
+  std::string missing;
+  bool added = false;
+  for (const EffectOptions& options : hypotheses) {
     Candidate candidate;
-    candidate.term.name = "straightness";
-    if (any) candidate.options = declared->options;
+    candidate.term.name = name;
+    candidate.options = options;
+    candidate.options.above.reset();
     candidate.raises_degree = any;
-    const int known = any ? *candidate.options.degree : 1;  // b_0 and b_1 are the trace's own
-    candidate.options.degree = known + more;
     try {
-      candidate.term.effect =
-          any ? make_straightness_terms(known + 1, candidate.options, model.machine, model.range)
-              : make_effect("straightness", candidate.options, model.machine, model.range);
-    } catch (const UsageError&) {  // no such carriage, or no such degree
-      continue;
+      candidate.term.effect = make_effect(name, options, model.machine, model.range);
+      missing = needs(model, *candidate.term.effect);
+    } catch (const UsageError& error) {  // the machine lacks what the effect needs
+      missing = error.what();
     }
-    if (needs(model, *candidate.term.effect).empty()) out.push_back(std::move(candidate));
+    if (!missing.empty()) continue;
+    lay_out(model, viewer, candidate);
+    out.candidates.push_back(std::move(candidate));
+    added = true;
   }
-  return out;
+  if (!added && !missing.empty()) out.not_testable.push_back({name, missing});
 }
 
 }  // namespace
 
+Eigen::MatrixXd Candidate::columns_around(Eigen::Index atom) const {
+  const std::vector<Eigen::Index> atoms = grid.around(atom);
+  Eigen::MatrixXd out(columns.rows(), std::ssize(atoms) * amplitudes());
+  for (std::size_t i = 0; i < atoms.size(); ++i)
+    out.middleCols(static_cast<Eigen::Index>(i) * amplitudes(), amplitudes()) =
+        columns.middleCols(atoms[i] * amplitudes(), amplitudes());
+  return out;
+}
+
+void lay_out(const Model& model, Eigen::Index prior_rows, Candidate& candidate) {
+  lay_out(model, Viewer(model, prior_rows), candidate);
+}
+
 Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows) {
   Dictionary out;
   const Viewer viewer(model, prior_rows);
-  const auto add = [&](Candidate candidate, const std::string& missing) {
-    if (!missing.empty()) {
-      out.not_testable.push_back({candidate.name(), missing});
-      return;
-    }
-    candidate.shapes = shapes_of(model, candidate.term);
-    fill(viewer, candidate);
-    out.candidates.push_back(std::move(candidate));
-  };
-  for (const std::string& name : problem.trace.candidates) {
-    if (name == "straightness") {
-      for (Candidate& candidate : straightnesses(model, problem)) add(std::move(candidate), "");
-      continue;
-    }
-    const bool declared = std::any_of(model.terms.begin(), model.terms.end(),
-                                      [&](const ModelTerm& term) { return term.name == name; });
-    if (declared) continue;
-    Candidate candidate;
-    candidate.term.name = name;
-    if (name == "vertical_straightness") candidate.options.degree = kVerticalDegree;
-    try {
-      candidate.term.effect = make_effect(name, candidate.options, model.machine, model.range);
-    } catch (const UsageError& error) {  // the machine or the problem lacks what the effect needs
-      add(std::move(candidate), name == "gantry_sag" ? "span_mm in [machine]" : error.what());
-      continue;
-    }
-    const std::string missing = needs(model, *candidate.term.effect);
-    add(std::move(candidate), missing);
-  }
+  for (const std::string& name : problem.trace.candidates)
+    add_hypotheses(model, problem, name, viewer, out);
   return out;
 }
 
@@ -204,10 +188,11 @@ Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,
 }
 
 Eigen::MatrixXd stacked_derivatives(const Model& model, const ModelTerm& term,
-                                    std::span<const double> shape, Eigen::Index prior_rows) {
+                                    std::span<const double> shape, int which,
+                                    Eigen::Index prior_rows) {
   const auto observations = fitted_observations(model);
   return stack(observations, prior_rows, term.effect->amplitudes(), [&](std::size_t i) {
-    return low_band_derivatives(model, term, *observations[i], shape, 0);
+    return low_band_derivatives(model, term, *observations[i], shape, which);
   });
 }
 

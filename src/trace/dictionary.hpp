@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "shape_lattice.hpp"
 #include "slideway/identify/model.hpp"
 
 namespace slideway {
@@ -11,13 +12,15 @@ namespace slideway {
 struct Candidate {
   ModelTerm term;
   EffectOptions options;
-  bool raises_degree = false;  // of the declared straightness; its columns are the terms that lacks
-  std::vector<std::vector<double>> shapes;  // one entry per atom; an empty shape if it has none
-  Eigen::MatrixXd columns;                  // stacked rows by (#amplitudes * #atoms), not whitened
+  bool raises_degree = false;  // of the declared effect; the columns are the terms that one lacks
+  ShapeLattice grid;           // its points are the atoms
+  Eigen::MatrixXd columns;     // stacked rows by (#amplitudes * #atoms), not whitened
 
   [[nodiscard]] const std::string& name() const { return term.name; }
   [[nodiscard]] Eigen::Index amplitudes() const { return term.effect->amplitudes(); }
-  [[nodiscard]] Eigen::Index atoms() const { return static_cast<Eigen::Index>(shapes.size()); }
+  [[nodiscard]] Eigen::Index atoms() const { return std::ssize(grid.points()); }
+  /// Columns of an atom and of its neighbours on the grid, for a shape that lies between them.
+  [[nodiscard]] Eigen::MatrixXd columns_around(Eigen::Index atom) const;
   /// Free numbers: the amplitudes that the model does not span, and the shapes.
   [[nodiscard]] Eigen::Index unknowns(Eigen::Index rank) const {
     return rank + std::ssize(term.effect->shapes());
@@ -37,16 +40,20 @@ struct Dictionary {
   std::vector<Untestable> not_testable;
 };
 
-/// Effects of those names that are not declared, and a declared straightness with more terms.
+/// The hypotheses of every candidate effect about itself (Effect::hypotheses).
 /// @param prior_rows  rows of zeros below the observations', one per prior of the model
 Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows);
+
+/// Gives a candidate whose effect is set the grid of its shapes and the columns there.
+void lay_out(const Model& model, Eigen::Index prior_rows, Candidate& candidate);
 
 /// Low-band columns of an effect under one another for all fitted observations, prior rows zero.
 Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,
                                 std::span<const double> shape, Eigen::Index prior_rows);
 
-/// The same for d(columns)/d(shape[0]).
+/// The same for d(columns)/d(shape[which]).
 Eigen::MatrixXd stacked_derivatives(const Model& model, const ModelTerm& term,
-                                    std::span<const double> shape, Eigen::Index prior_rows);
+                                    std::span<const double> shape, int which,
+                                    Eigen::Index prior_rows);
 
 }  // namespace slideway

@@ -24,7 +24,8 @@ std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
     for (std::size_t p = 0; p < known.size(); ++p) {
       FittedParameter parameter{entry.effect + "." + known[p].name, known[p].symbol, known[p].unit};
       parameter.value = refined.values[static_cast<Eigen::Index>(p)];
-      parameter.standard_uncertainty = refined.uncertainties[static_cast<Eigen::Index>(p)];
+      const double uncertainty = refined.uncertainties[static_cast<Eigen::Index>(p)];
+      if (std::isfinite(uncertainty)) parameter.standard_uncertainty = uncertainty;
       entry.parameters.push_back(std::move(parameter));
     }
     out.push_back(std::move(entry));

@@ -1,7 +1,7 @@
 #include "refine.hpp"
 
+#include <ceres/cost_function.h>
 #include <ceres/problem.h>
-#include <ceres/sized_cost_function.h>
 #include <ceres/solver.h>
 
 #include <Eigen/QR>
@@ -15,61 +15,86 @@ namespace {
 
 constexpr double kSamePlace = 1e-6;  // of what is scanned: both halves of a diameter are one
 
-/// The residual outside model and candidate as a function of the shape.
-class ProjectedResidual final : public ceres::SizedCostFunction<ceres::DYNAMIC, 1> {
+constexpr int kRounds = 3;  // between stepwise and smooth shapes, where there are both
+
+/// The residual outside model and candidate as a function of some of its shapes, in their inner
+/// scale.
+class ProjectedResidual final : public ceres::CostFunction {
  public:
-  ProjectedResidual(const Model& model, const Whitened& data, const ModelTerm& term)
-      : model_(model), data_(data), term_(term) {
+  ProjectedResidual(const Model& model, const Whitened& data, const ModelTerm& term,
+                    std::vector<double> shape, std::vector<std::size_t> moving)
+      : model_(model),
+        data_(data),
+        term_(term),
+        shape_(std::move(shape)),
+        moving_(std::move(moving)) {
     set_num_residuals(static_cast<int>(data.rows()));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(moving_.size()));
   }
 
   bool Evaluate(const double* const* parameters, double* residuals,
                 double** jacobians) const override {
-    const Shape& kind = term_.effect->shapes()[0];
-    const std::vector<double> shape{kind.outer(parameters[0][0])};
+    std::vector<double> shape = shape_;
+    for (std::size_t j = 0; j < moving_.size(); ++j)
+      shape[moving_[j]] = term_.effect->shapes()[moving_[j]].outer(parameters[0][j]);
     const Eigen::Index priors = data_.rows() - data_.values();
     const Eigen::MatrixXd columns = data_.outside(stacked_columns(model_, term_, shape, priors));
     const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition(columns);
     const Eigen::VectorXd amplitudes = decomposition.solve(data_.residual());
     Eigen::Map<Eigen::VectorXd> out(residuals, data_.rows());
     out = data_.residual() - columns * amplitudes;
-    if (jacobians && jacobians[0]) {
+    if (!jacobians || !jacobians[0]) return out.allFinite();
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::Map<RowMajor> jacobian(jacobians[0], data_.rows(), std::ssize(moving_));
+    for (std::size_t j = 0; j < moving_.size(); ++j) {
+      const auto which = static_cast<int>(moving_[j]);
       Eigen::VectorXd slope =
-          data_.outside(stacked_derivatives(model_, term_, shape, priors)) * amplitudes;
+          data_.outside(stacked_derivatives(model_, term_, shape, which, priors)) * amplitudes;
       slope -= columns * decomposition.solve(slope);
-      if (kind.logarithmic) slope *= shape[0];
-      Eigen::Map<Eigen::VectorXd>(jacobians[0], data_.rows()) = -slope;
+      if (term_.effect->shapes()[moving_[j]].logarithmic) slope *= shape[moving_[j]];
+      jacobian.col(static_cast<Eigen::Index>(j)) = -slope;
     }
-    return out.allFinite();
+    return out.allFinite() && jacobian.allFinite();
   }
 
  private:
   const Model& model_;
   const Whitened& data_;
   const ModelTerm& term_;
+  std::vector<double> shape_;
+  std::vector<std::size_t> moving_;
 };
 
-/// Neighbours of an atom on the grid.
-std::pair<double, double> neighbours(const Finding& finding) {
-  const auto& shapes = finding.candidate->shapes;
-  const Eigen::Index last = finding.candidate->atoms() - 1;
-  return {shapes[std::max<Eigen::Index>(finding.atom - 1, 0)][0],
-          shapes[std::min(finding.atom + 1, last)][0]};
+/// Shapes of a kind whose neighbours on the grid leave them room.
+std::vector<std::size_t> moving_shapes(const Finding& finding, bool stepwise) {
+  const std::vector<Shape>& shapes = finding.candidate->term.effect->shapes();
+  std::vector<std::size_t> out;
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    const auto [low, high] = finding.candidate->grid.neighbours(finding.atom, s);
+    if (shapes[s].stepwise == stepwise && low < high) out.push_back(s);
+  }
+  return out;
 }
 
-double best_smooth_shape(const Model& model, const Whitened& data, const Finding& finding) {
+/// Brings the smooth shapes to their best together, between the neighbours on the grid.
+void move_smooth_shapes(const Model& model, const Whitened& data, const Finding& finding,
+                        std::vector<double>& shape) {
   const ModelTerm& term = finding.candidate->term;
-  const Shape& kind = term.effect->shapes()[0];
-  const auto [low, high] = neighbours(finding);
-  double x = kind.inner(finding.candidate->shapes[finding.atom][0]);
-  if (!(low < high)) return kind.outer(x);
-  ProjectedResidual cost(model, data, term);
+  const std::vector<std::size_t> moving = moving_shapes(finding, false);
+  if (moving.empty()) return;
+  ProjectedResidual cost(model, data, term, shape, moving);
   ceres::Problem::Options keep;
   keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::Problem problem(keep);
-  problem.AddResidualBlock(&cost, nullptr, &x);
-  problem.SetParameterLowerBound(&x, 0, kind.inner(low));
-  problem.SetParameterUpperBound(&x, 0, kind.inner(high));
+  std::vector<double> x;
+  for (const std::size_t s : moving) x.push_back(term.effect->shapes()[s].inner(shape[s]));
+  problem.AddResidualBlock(&cost, nullptr, x.data());
+  for (std::size_t j = 0; j < moving.size(); ++j) {
+    const Shape& kind = term.effect->shapes()[moving[j]];
+    const auto [low, high] = finding.candidate->grid.neighbours(finding.atom, moving[j]);
+    problem.SetParameterLowerBound(x.data(), static_cast<int>(j), kind.inner(low));
+    problem.SetParameterUpperBound(x.data(), static_cast<int>(j), kind.inner(high));
+  }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.logging_type = ceres::SILENT;
@@ -78,14 +103,16 @@ double best_smooth_shape(const Model& model, const Whitened& data, const Finding
   options.function_tolerance = 1e-9;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  return kind.outer(x);
+  for (std::size_t j = 0; j < moving.size(); ++j)
+    shape[moving[j]] = term.effect->shapes()[moving[j]].outer(x[j]);
 }
 
-/// Every place between two samples of any profile, between the neighbours on the grid.
-double best_step(const Model& model, const Whitened& data, const Finding& finding) {
-  const ModelTerm& term = finding.candidate->term;
-  const auto [low, high] = neighbours(finding);
-  std::vector<double> places{finding.candidate->shapes[finding.atom][0]};
+/// Places between two samples of any profile, between the neighbours on the grid; first the one
+/// where the shape is.
+std::vector<double> places_of(const Model& model, const Finding& finding, std::size_t which,
+                              double now) {
+  const auto [low, high] = finding.candidate->grid.neighbours(finding.atom, which);
+  std::vector<double> places{now};
   for (const Observation* observation : fitted_observations(model)) {
     const Stations stations = observation->profile->stations(model.machine);
     for (Eigen::Index i = 1; i < stations.size(); ++i) {
@@ -97,32 +124,57 @@ double best_step(const Model& model, const Whitened& data, const Finding& findin
   const double same = kSamePlace * (high - low);
   const auto is_same = [&](double a, double b) { return b - a <= same; };
   places.erase(std::unique(places.begin() + 1, places.end(), is_same), places.end());
-  double best = places[0], largest = -1.0;
-  for (const double place : places) {
-    const Projection projection =
-        project(data, stacked_columns(model, term, {&place, 1}, data.rows() - data.values()));
-    if (projection.gain > largest) largest = projection.gain, best = place;
-  }
-  return best;
+  return places;
 }
 
-/// Covariance of amplitudes and shape at the solution.
+/// Brings each stepwise shape to the best place, the others held.
+void move_stepwise_shapes(const Model& model, const Whitened& data, const Finding& finding,
+                          std::vector<double>& shape) {
+  for (const std::size_t s : moving_shapes(finding, true)) {
+    double best = shape[s], largest = -1.0;
+    for (const double place : places_of(model, finding, s, shape[s])) {
+      shape[s] = place;
+      const Projection projection = project(
+          data,
+          stacked_columns(model, finding.candidate->term, shape, data.rows() - data.values()));
+      if (projection.gain > largest) largest = projection.gain, best = place;
+    }
+    shape[s] = best;
+  }
+}
+
+/// Whether a smooth shape stands at an end of what the search covers.
+bool is_at_end(const Candidate& candidate, const std::vector<double>& shape) {
+  for (std::size_t s = 0; s < shape.size(); ++s) {
+    const Shape& kind = candidate.term.effect->shapes()[s];
+    const std::vector<double>& axis = candidate.grid.axes()[s];
+    const double first = kind.inner(axis.front()), last = kind.inner(axis.back());
+    const double at = kind.inner(shape[s]);
+    if (!kind.stepwise && std::min(at - first, last - at) < 1e-6 * (last - first)) return true;
+  }
+  return false;
+}
+
+/// Covariance of amplitudes and shapes at the solution.
 void assess(const Model& model, const Whitened& data, Refined& out) {
   const ModelTerm& term = out.candidate->term;
   const Eigen::Index a = term.effect->amplitudes();
   const auto s = static_cast<Eigen::Index>(out.shape.size());
   Eigen::MatrixXd columns(data.rows(), a + s);
   columns.leftCols(a) = out.columns;
-  if (s > 0)
-    columns.col(a) = stacked_derivatives(model, term, out.shape, data.rows() - data.values()) *
-                     out.projection.amplitudes;
+  for (Eigen::Index which = 0; which < s; ++which)
+    columns.col(a + which) = stacked_derivatives(model, term, out.shape, static_cast<int>(which),
+                                                 data.rows() - data.values()) *
+                             out.projection.amplitudes;
   columns = data.outside(std::move(columns));
   const Eigen::MatrixXd covariance = amplitude_covariance(columns);
   const ParameterValues values =
       term.effect->parameter_values(out.projection.amplitudes, out.shape);
   out.values = values.values;
-  out.uncertainties =
-      (values.jacobian * covariance * values.jacobian.transpose()).diagonal().cwiseSqrt();
+  out.uncertainties = (values.jacobian * covariance * values.jacobian.transpose())
+                          .diagonal()
+                          .cwiseMax(0.0)
+                          .cwiseSqrt();
   // One number for the size: the parameter itself, or for several amplitudes their joint gain.
   out.size_in_uncertainties = term.effect->has_one_size() && out.uncertainties[0] > 0.0
                                   ? std::abs(out.values[0]) / out.uncertainties[0]
@@ -134,17 +186,14 @@ void assess(const Model& model, const Whitened& data, Refined& out) {
 Refined refine(const Model& model, const Whitened& data, const Finding& finding) {
   Refined out;
   out.candidate = finding.candidate;
-  out.shape = finding.candidate->shapes[finding.atom];
+  out.shape = finding.candidate->grid.points()[static_cast<std::size_t>(finding.atom)];
   const ModelTerm& term = finding.candidate->term;
-  if (!out.shape.empty()) {
-    out.shape[0] = term.effect->shapes()[0].stepwise ? best_step(model, data, finding)
-                                                     : best_smooth_shape(model, data, finding);
-    const Shape& kind = term.effect->shapes()[0];
-    const double first = kind.inner(finding.candidate->shapes.front()[0]);
-    const double last = kind.inner(finding.candidate->shapes.back()[0]);
-    const double at = kind.inner(out.shape[0]);
-    out.at_end = !kind.stepwise && std::min(at - first, last - at) < 1e-6 * (last - first);
+  const bool both = !moving_shapes(finding, true).empty() && !moving_shapes(finding, false).empty();
+  for (int round = 0; round < (both ? kRounds : 1); ++round) {
+    move_stepwise_shapes(model, data, finding, out.shape);
+    move_smooth_shapes(model, data, finding, out.shape);
   }
+  out.at_end = is_at_end(*finding.candidate, out.shape);
   out.columns = stacked_columns(model, term, out.shape, data.rows() - data.values());
   out.projection = project(data, out.columns);
   out.delta_bic = finding.delta_bic + finding.gain - out.projection.gain;

@@ -6,7 +6,6 @@
 
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/left_out.hpp"
 #include "slideway/identify/noise_model.hpp"
 
@@ -30,10 +29,7 @@ std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
                                                 const Finding* finding) {
   Eigen::MatrixXd columns(0, 0);
   if (finding) {
-    const Eigen::Index a = finding->candidate->amplitudes();
-    const Eigen::Index first = std::max<Eigen::Index>(finding->atom - 1, 0);
-    const Eigen::Index last = std::min(finding->atom + 1, finding->candidate->atoms() - 1);
-    columns = finding->candidate->columns.middleCols(first * a, (last - first + 1) * a);
+    columns = finding->candidate->columns_around(finding->atom);
   }
   std::vector<Eigen::MatrixXd> out;
   Eigen::Index first = 0;
@@ -156,7 +152,7 @@ std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& c
   for (const TestedCandidate& each : tested) {
     const bool counts = each.refused(gates).empty() ||
                         (each.is_possible() &&
-                         (unknowns(each) <= unknowns(chosen) || is_carriage_effect(chosen.name())));
+                         (unknowns(each) <= unknowns(chosen) || chosen.refined.candidate->term.effect->is_carriage()));
     const bool known =
         std::ranges::any_of(out, [&](const auto* other) { return other->name() == each.name(); });
     if (counts && !known && each.name() != chosen.name() &&
@@ -199,7 +195,7 @@ SearchRound search_round(const Model& model, const Solution& fit, const Candidat
   if (!calibration) calibration = calibrate(out.data, candidates, model.gates, progress);
   out.tested = test_best(model, fit, out.data, findings, *calibration);
   if (out.tested.empty() ||
-      !is_steep_at_centre(*out.tested.front().refined.candidate->term.effect))
+      !out.tested.front().refined.candidate->term.effect->description().steep_at_centre)
     return out;
   const Refined& best = out.tested.front().refined;
   const Eigen::MatrixXd undescribed = undescribed_columns(

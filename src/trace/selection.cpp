@@ -6,7 +6,6 @@
 #include "fit_numbers.hpp"
 #include "outcome.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/effects/catalogue.hpp"
 #include "structure.hpp"
 
 namespace slideway {
@@ -85,7 +84,7 @@ class Selector {
   std::string reason_against(const Effects& effects, std::size_t which) {
     const Effects others = all_but(effects, which);
     std::string why = worsens(extender_.summary(others), extender_.summary(effects));
-    if (why.empty() && is_carriage_effect(effects[which].name()) &&
+    if (why.empty() && effects[which].candidate->term.effect->is_carriage() &&
         !outdoes_process(effects, which))
       why = "a smooth process without a name fits as well";
     return why;

@@ -17,14 +17,16 @@ constexpr double kSizes[] = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0};  
 struct ClockOf {
   std::string symbol, unit;
   double (*read)(const Stations&, Eigen::Index);
-  std::optional<Clock> needs;
+  std::optional<IndependentVariable> needs;
 };
 
 const std::vector<ClockOf>& clocks() {
   static const std::vector<ClockOf> kAll{
       {"r", "mm", [](const Stations& s, Eigen::Index i) { return s.slide(i); }, std::nullopt},
-      {"t", "s", [](const Stations& s, Eigen::Index i) { return s.time(i); }, Clock::time},
-      {"s", "mm", [](const Stations& s, Eigen::Index i) { return s.distance(i); }, Clock::distance},
+      {"t", "s", [](const Stations& s, Eigen::Index i) { return s.time(i); },
+       IndependentVariable::time},
+      {"s", "mm", [](const Stations& s, Eigen::Index i) { return s.distance(i); },
+       IndependentVariable::distance},
       {"X", "mm", [](const Stations& s, Eigen::Index i) { return s.trace(i); }, std::nullopt}};
   return kAll;
 }

@@ -136,7 +136,7 @@ class Loop {
     const FittedModel& base = extender_.base();
     out.detection_limits =
         detection_limits(base, {base.fit.linear, data.noise()}, extender_.candidates_beside({}),
-                         *extender_.calibration(), problem_.trace.gates);
+                         *extender_.calibration());
   }
 
   const Problem& problem_;

@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-// Name and clock of every effect of the interface.
+// Name and independent variable of every effect of the interface.
 const std::map<std::string, std::string> kEffects{
     {"straightness", "x"},        {"vertical_straightness", "r"},
     {"squareness", "r"},          {"linear_drift", "t"},
@@ -27,7 +27,7 @@ const std::map<std::string, std::string> kEffects{
 
 class Effects : public ProgramTest {};
 
-TEST_F(Effects, ListsEveryEffectOfTheInterfaceWithItsClock) {
+TEST_F(Effects, ListsEveryEffectOfTheInterfaceWithItsVariable) {
   const ProgramRun done = run({"effects", "--json", "-"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
   std::map<std::string, std::string> listed;
@@ -40,18 +40,18 @@ TEST_F(Effects, PrintsEveryEffectWithin80Columns) {
   const ProgramRun done = run({"effects"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
   EXPECT_EQ(done.err, "");
-  for (const auto& [name, clock] : kEffects)
-    EXPECT_THAT("\n" + done.out, HasSubstr("\n" + name + "\n  clock " + clock + " "));
+  for (const auto& [name, variable] : kEffects)
+    EXPECT_THAT("\n" + done.out, HasSubstr("\n" + name + "\n  variable " + variable + " "));
   for (const std::string& line : lines_of(done.out)) EXPECT_LE(code_points(line), 80U) << line;
 }
 
 TEST_F(Effects, PrintsOneEntryInFull) {
-  for (const auto& [name, clock] : kEffects) {
+  for (const auto& [name, variable] : kEffects) {
     const ProgramRun done = run({"effects", name});
     EXPECT_EQ(done.exit_code, 0) << done.err;
     EXPECT_THAT(done.out, testing::StartsWith(name + "\n"));
     for (const char* label :
-         {"formula:", "clock:", "parameters:", "confounded with:", "separated by:"})
+         {"formula:", "variable:", "parameters:", "confounded with:", "separated by:"})
       EXPECT_THAT(done.out, HasSubstr(std::string("\n  ") + label)) << name;
     for (const std::string& line : lines_of(done.out)) EXPECT_LE(code_points(line), 80U) << line;
   }

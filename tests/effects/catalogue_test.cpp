@@ -38,11 +38,26 @@ TEST(Catalogue, HoldsTheEffectsOfTheInterface) {
                           "cup", "traverse_datum", "centre_step", "traverse_periodic"));
 }
 
-TEST(Catalogue, KnowsWhatTheCarriageModelHolds) {
-  EXPECT_TRUE(is_carriage_effect("straightness"));
-  EXPECT_TRUE(is_carriage_effect("vertical_straightness"));
-  EXPECT_TRUE(is_carriage_effect("squareness"));
-  EXPECT_FALSE(is_carriage_effect("gantry_sag"));
+TEST(Catalogue, TellsTheErrorsOfTheCarriagesByTermAndParameter) {
+  EXPECT_EQ(motion_error_of("straightness[upper].b2"), MotionError::straightness);
+  EXPECT_EQ(motion_error_of("vertical_straightness.c1"), MotionError::vertical_straightness);
+  EXPECT_EQ(motion_error_of("squareness"), MotionError::squareness);
+  EXPECT_EQ(motion_error_of("gantry_sag.sag_um"), MotionError::none);
+  EXPECT_EQ(motion_error_of("coolant.a"), MotionError::none);
+}
+
+TEST(Catalogue, HoldsOffsetAndSlopeOfAStraightnessForConventionsAlone) {
+  for (const char* fixed : {"straightness.b0", "straightness.b1", "straightness[upper].b0"})
+    EXPECT_TRUE(fixed_by_convention(fixed)) << fixed;
+  for (const char* data : {"straightness.b2", "straightness.b10", "vertical_straightness.c1",
+                           "squareness.dbeta_xz", "coolant.b0"})
+    EXPECT_FALSE(fixed_by_convention(data)) << data;
+}
+
+TEST(Catalogue, MakesTheEffectOfAReportsParameters) {
+  const auto effect = make_effect_with("straightness", {"b2", "b4"}, lathe(), {});
+  EXPECT_EQ(effect->parameters().size(), 5U);
+  EXPECT_THROW((void)make_effect_with("straightness", {"c1"}, lathe(), {}), UsageError);
 }
 
 TEST(Catalogue, NamesParametersAsTheProblemFileDoes) {

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "effects/effect_cases.hpp"
+#include "slideway/base/error.hpp"
 
 namespace slideway {
 namespace {
@@ -15,15 +17,24 @@ class EffectContract : public ::testing::TestWithParam<std::string> {
  protected:
   std::unique_ptr<Effect> effect_ = make(GetParam());
 
-  // Shape parameters to try: ordinary, and close to each end of what is possible.
+  // Shape parameters to try: ordinary, and each close to an end of what is possible.
   [[nodiscard]] std::vector<std::vector<double>> shapes_to_try(const Stations& stations) const {
-    if (effect_->shapes().empty()) return {{}};
-    const Parameter& p = effect_->parameters()[effect_->shapes()[0].parameter];
-    const auto [low, high] = effect_->search_range(0, stations);
-    std::vector<std::vector<double>> result{{std::sqrt(low * high)}, {low}, {high}};
-    // Ends far outside the search: three decades beyond, or the bound itself.
-    result.push_back({std::max(p.lower, low * 1e-3)});
-    result.push_back({std::min(p.upper, high * 1e3)});
+    std::vector<double> ordinary;
+    for (std::size_t s = 0; s < effect_->shapes().size(); ++s) {
+      const auto [low, high] = effect_->search_range(static_cast<int>(s), stations);
+      ordinary.push_back(std::sqrt(low * high));
+    }
+    std::vector<std::vector<double>> result{ordinary};
+    for (std::size_t s = 0; s < ordinary.size(); ++s) {
+      const Parameter& p = effect_->parameters()[effect_->shapes()[s].parameter];
+      const auto [low, high] = effect_->search_range(static_cast<int>(s), stations);
+      // The last two lie far outside the search: three decades beyond, or the bound itself.
+      for (const double end :
+           {low, high, std::max(p.lower, low * 1e-3), std::min(p.upper, high * 1e3)}) {
+        result.push_back(ordinary);
+        result.back()[s] = end;
+      }
+    }
     return result;
   }
 
@@ -197,9 +208,9 @@ TEST_P(EffectContract, NamesTheMetadataItLacks) {
     bare.cut_direction.reset();
     bare.traverse_mm_per_s.reset();
     const std::vector<std::string> lacking = effect_->lacking(bare);
-    for (const std::string& key : missing_for(effect_->description().clock, bare))
+    for (const std::string& key : missing_for(effect_->description().variable, bare))
       EXPECT_THAT(lacking, ::testing::Contains(key));
-    EXPECT_EQ(lacking.empty(), missing_for(effect_->description().clock, bare).empty());
+    EXPECT_EQ(lacking.empty(), missing_for(effect_->description().variable, bare).empty());
   }
 }
 
@@ -216,6 +227,96 @@ TEST_P(EffectContract, SearchesInsideTheBounds) {
       EXPECT_GT(low, 0.0) << profile.name;
     }
   }
+}
+
+TEST_P(EffectContract, NamesRealEffectsItIsConfoundedWith) {
+  const Description& d = effect_->description();
+  for (const std::string& other : d.confounded_effects) {
+    EXPECT_THAT(effect_names(), ::testing::Contains(other));
+    EXPECT_NE(other, GetParam());
+    EXPECT_THAT(d.confounded_with, ::testing::HasSubstr(other));
+  }
+}
+
+TEST_P(EffectContract, LetsConventionsGiveWayBeforeWhatDataDetermine) {
+  int least_conventional = 1000, most_measured = -1;
+  for (const Parameter& p : effect_->parameters())
+    if (p.by_convention)
+      least_conventional = std::min(least_conventional, p.gauge);
+    else
+      most_measured = std::max(most_measured, p.gauge);
+  EXPECT_LT(most_measured, least_conventional);
+}
+
+// To first order what an error of a body does to a face is what the columns say, Eq. (5).
+TEST_P(EffectContract, ErrorsOfTheBodiesMakeTheColumnsOfAFace) {
+  const Case profile = all_cases()[0];
+  if (!effect_->applies_to(profile.setup)) return;
+  const Stations stations(profile.positions, profile.setup, lathe());
+  for (const std::vector<double>& shape : shapes_to_try(stations)) {
+    const Eigen::MatrixXd columns = columns_at(stations, shape);
+    const Eigen::VectorXd amplitudes =
+        Eigen::VectorXd::LinSpaced(effect_->amplitudes(), 1e-4, 2e-4);
+    for (Eigen::Index i = 0; i < stations.size(); ++i) {
+      const Pose pose{stations.radius(i), profile.setup.z_mm, profile.setup.overhang_mm};
+      std::vector<BodyErrors> errors(lathe().bodies().size());
+      effect_->add_body_errors(pose, stations.slide(i), amplitudes, errors);
+      const double height = lathe().volumetric_error_first_order(pose, errors).z();
+      const bool silent = height == 0.0 && !effect_->is_carriage();
+      if (silent) continue;
+      EXPECT_NEAR(height, columns.row(i).dot(amplitudes), 1e-15) << i;
+    }
+  }
+}
+
+TEST_P(EffectContract, CarriagesAdviseOnADirectionOfTheirOwn) {
+  if (!effect_->is_carriage()) return;
+  UndeterminedPart part{.others = {}, .model_has_others = true};
+  for (const Parameter& p : effect_->parameters()) part.own.push_back(p.name);
+  EXPECT_NE(effect_->advice(part), "");
+}
+
+TEST_P(EffectContract, HypothesesOfASearchCanBeMade) {
+  const TravelRange range{.slide_max = 600.0, .beam_span_mm = 700.0};
+  const std::vector<EffectOptions> missing = effect_->hypotheses(nullptr);
+  EXPECT_FALSE(missing.empty());
+  for (const EffectOptions& options : missing)
+    EXPECT_GT(make_effect(GetParam(), options, lathe(), range)->amplitudes(), 0);
+}
+
+// Of a declared effect a search tries parameters that it does not have.
+TEST_P(EffectContract, HypothesesOfADeclaredEffectAddParameters) {
+  EffectOptions declared;
+  if (effect_->amplitudes() > 1 && effect_->is_carriage()) declared.degree = 3;
+  const auto names = [&](const EffectOptions& options) {
+    std::set<std::string> out;
+    const auto effect = make_effect(GetParam(), options, lathe(), kTravel);
+    for (const Parameter& p : effect->parameters()) out.insert(p.name);
+    return out;
+  };
+  for (const EffectOptions& options : effect_->hypotheses(&declared))
+    for (const std::string& name : names(options))
+      EXPECT_FALSE(names(declared).contains(name)) << name;
+}
+
+TEST_P(EffectContract, NeedsOfTheMachineWhatItSays) {
+  EXPECT_THAT(effect_->lacking_of_machine({.beam_span_mm = 700.0}), ::testing::IsEmpty());
+  const EffectOptions options = effect_->hypotheses(nullptr).front();
+  if (effect_->lacking_of_machine({}).empty())
+    EXPECT_NO_THROW((void)make_effect(GetParam(), options, lathe(), {}));
+  else
+    EXPECT_THROW((void)make_effect(GetParam(), options, lathe(), {}), UsageError);
+}
+
+TEST_P(EffectContract, IsSteepestAtTheCentreWhereItSaysSo) {
+  if (!effect_->description().steep_at_centre) return;
+  const Case profile = all_cases()[0];
+  const Stations stations(profile.positions, profile.setup, lathe());
+  const Eigen::MatrixXd z = columns_at(stations, shapes_to_try(stations).front());
+  const Eigen::VectorXd change = (z.bottomRows(z.rows() - 1) - z.topRows(z.rows() - 1)).cwiseAbs();
+  Eigen::Index steepest = -1;
+  change.maxCoeff(&steepest);
+  EXPECT_LE(steepest, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, EffectContract, ::testing::ValuesIn(effect_names()),

@@ -90,7 +90,7 @@ void expect_period(const std::string& name, double feed, double rate, double per
   EXPECT_GT(a.cwiseAbs().maxCoeff(), 0.5) << name;
 }
 
-TEST(Periodic, EachClockGivesItsOwnWavelengthOnTheFace) {
+TEST(Periodic, EachVariableGivesItsOwnWavelengthOnTheFace) {
   for (const double feed : {2.0, 8.0}) {
     expect_period("slide_periodic", feed, 1.7, 1.7);                      // fixed in mm
     expect_period("time_periodic", feed, 30.0, feed * 0.5);               // feed times T
@@ -116,7 +116,7 @@ TEST(FeedMarks, RepeatOncePerTurnWithMeanZero) {
   EXPECT_NEAR(groove.mean(), 0.0, 1e-5);
 }
 
-TEST(FeedMarks, DoNotMoveWithTheStartOfTheClock) {
+TEST(FeedMarks, DoNotMoveWithTheStartOfTheCut) {
   Case late = face(spaced(0, 10, 77));
   const Eigen::VectorXd z = height_um("feed_marks", late, {1.0});
   late.setup.start_s = 77.7;

@@ -203,5 +203,24 @@ TEST(Identifiability, OfASlideReadingHasNoSquareness) {
   EXPECT_THAT(known.result.identifiability.determined, IsEmpty());
 }
 
+TEST(Rank, OfNoColumnsIsNothing) {
+  const Rank rank = analyse_rank(Eigen::MatrixXd(3, 0), Eigen::VectorXd(0));
+  EXPECT_EQ(rank.basis.rows(), 0);
+  EXPECT_EQ(rank.basis.cols(), 0);
+  EXPECT_EQ(rank.null_space.cols(), 0);
+  EXPECT_EQ(rank.condition, 1.0);
+  const NullDirections null =
+      null_directions(Model{{Machine::paper_lathe(), Lever::paper}, {}, {}, {}}, rank.null_space,
+                      Eigen::MatrixXd(0, 0), Eigen::VectorXd(0));
+  EXPECT_THAT(null.own, IsEmpty());
+  EXPECT_EQ(determined_rows(null).rows(), 0);
+}
+
+TEST(Rank, OfNoRowsDeterminesNothing) {
+  const Rank rank = analyse_rank(Eigen::MatrixXd(0, 2), Eigen::Vector2d(2.0, 0.0));
+  EXPECT_EQ(rank.basis.cols(), 0);
+  EXPECT_EQ(rank.null_space.cols(), 2);
+}
+
 }  // namespace
 }  // namespace slideway

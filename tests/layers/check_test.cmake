@@ -1,4 +1,5 @@
-# Runs the layer check over made-up trees of one source file and looks at what it says.
+# Runs the layer check over made-up trees of one file (and the registration list of three effects)
+# and looks at what it says.
 cmake_minimum_required(VERSION 3.25)
 get_filename_component(docs ${CHECK}/../../docs ABSOLUTE)
 set(drawing "")
@@ -12,6 +13,7 @@ function(expect path contents message)
   else()
     file(WRITE ${TREE}/docs/architecture.md "${drawing}")
   endif()
+  file(WRITE ${TREE}/src/effects/CMakeLists.txt "set(SLIDEWAY_EFFECTS\n  thermal_drift\n  step cup)\n")
   execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${TREE} -P ${CHECK}
                   RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(message STREQUAL "" AND NOT status EQUAL 0)
@@ -41,6 +43,13 @@ expect(src/cli/a.cpp "#include <nlohmann/json.hpp>\n" "")
 expect(src/cli/a.cpp "#include <pybind11/pybind11.h>\n" "pybind11/ belongs in the sources of")
 expect(include/slideway/report/a.hpp "${once}#include <nlohmann/json.hpp>\n"
        "nlohmann/ belongs in the sources of")
+expect(src/trace/a.cpp "if (name == \"step\") return;\n" "names the effect step")
+expect(src/trace/a.cpp "name.starts_with(\"cup.\")\n" "names the effect cup")
+expect(src/cli/a.cpp "say(\"not for thermal_drift; nor others\");\n" "names the effect thermal_drift")
+expect(src/cli/a.cpp "say(\"in a step of 3 mm\"); // \"step\"\n" "")
+expect(src/cli/a.cpp "say(\"centre_step\" \"steps\");\n" "")
+expect(src/cli/command_export.cpp "add(\"step\");\n" "")
+expect(src/effects/terms/a.cpp "rivals = {\"step\", \"thermal_drift\"};\n" "")
 string(REPEAT "\n" 400 long)
 expect(src/base/a.cpp "${long}" "")
 expect(src/base/a.cpp "${long}\n" "401 lines")

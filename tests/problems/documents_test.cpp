@@ -38,10 +38,9 @@ std::string effects_document() {
   using Json = nlohmann::ordered_json;
   std::string text =
       "# The effects\n\n"
-      "The catalogue, made by `slideway effects --json -` (`ctest -R Documents`). The clock is "
-      "what "
-      "an effect is\nlocked to: r radius, x slide coordinate, t machining time, k turns of the "
-      "spindle, s cutting distance,\nX trace position, m measuring time.\n\n"
+      "The catalogue, made by `slideway effects --json -` (`ctest -R Documents`). An effect is "
+      "a\nfunction of one independent variable: r radius, x slide coordinate, t machining time, k "
+      "turns of\nthe spindle, s cutting distance, X trace position, m measuring time.\n\n"
       "<!-- output: help effects -->\n```text\n```\n";
   const Json document = Json::parse(output_of("effects --json -"));
   for (const Json& effect : document["effects"]) {
@@ -54,7 +53,7 @@ std::string effects_document() {
     };
     text += "\n## `" + effect["name"].get<std::string>() + "`\n\n| | |\n|---|---|\n" +
             row("standard name", "standard_name") + row("formula", "formula") +
-            row("source", "source") + row("clock", "clock") + row("cause", "cause") +
+            row("source", "source") + row("variable", "clock") + row("cause", "cause") +
             row("typical", "typical");
     std::string parameters;
     for (const Json& p : effect["parameters"]) {

@@ -13,8 +13,10 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr Clock kClocks[] = {Clock::radius,   Clock::slide, Clock::time,          Clock::revolution,
-                             Clock::distance, Clock::trace, Clock::measuring_time};
+constexpr IndependentVariable kVariables[] = {
+    IndependentVariable::radius,        IndependentVariable::slide,    IndependentVariable::time,
+    IndependentVariable::revolution,    IndependentVariable::distance, IndependentVariable::trace,
+    IndependentVariable::measuring_time};
 
 // The paper's face: radius 10 mm at 110 rpm.
 Setup face(double feed, CutDirection direction) {
@@ -28,19 +30,19 @@ Setup face(double feed, CutDirection direction) {
   return setup;
 }
 
-class Clocks : public testing::Test {
+class Variables : public testing::Test {
  protected:
   Machine machine_{Machine::paper_lathe(), Lever::paper};
   std::vector<double> positions_{0.0, 6.0, 10.0};
 };
 
-TEST(Clock, HasOneLetter) {
+TEST(IndependentVariable, HasOneLetter) {
   std::string letters;
-  for (const Clock clock : kClocks) letters += symbol(clock);
+  for (const IndependentVariable variable : kVariables) letters += symbol(variable);
   EXPECT_EQ(letters, "rxtksXm");
 }
 
-TEST_F(Clocks, WholeCutTakesTheTimeTurnsAndPathOfTheFeed) {
+TEST_F(Variables, WholeCutTakesTheTimeTurnsAndPathOfTheFeed) {
   // Time R / feed, turns R / f, path pi R^2 / f with f = feed / rpm: 300 s, 550 turns, 17.28 m at
   // 2 mm/min; 75 s, 137.5 turns, 4.32 m at 8 mm/min. 5 mm: the path is rounded to 10 mm.
   for (const auto& [feed, time, turns, path] :
@@ -59,7 +61,7 @@ TEST_F(Clocks, WholeCutTakesTheTimeTurnsAndPathOfTheFeed) {
   }
 }
 
-TEST_F(Clocks, InwardAndOutwardPathsAddUpToTheWholeFace) {
+TEST_F(Variables, InwardAndOutwardPathsAddUpToTheWholeFace) {
   const auto outward = face(2.0, CutDirection::outward);
   const auto inward = face(2.0, CutDirection::inward);
   const Stations out(positions_, outward, machine_);
@@ -68,7 +70,7 @@ TEST_F(Clocks, InwardAndOutwardPathsAddUpToTheWholeFace) {
   EXPECT_DOUBLE_EQ(out.distance(1) / out.distance(2), 0.36);  // (6 / 10)^2
 }
 
-TEST_F(Clocks, FaceTakesBothSidesOfADiameterAlike) {
+TEST_F(Variables, FaceTakesBothSidesOfADiameterAlike) {
   auto setup = face(2.0, CutDirection::inward);
   setup.center_mm = 8.0;
   setup.spindle_position_mm = 100.0;
@@ -83,7 +85,7 @@ TEST_F(Clocks, FaceTakesBothSidesOfADiameterAlike) {
   EXPECT_EQ(stations.measuring_time(2), 20.0);
 }
 
-TEST_F(Clocks, SlideReadingRunsFromEitherEnd) {
+TEST_F(Variables, SlideReadingRunsFromEitherEnd) {
   auto setup = face(30.0, CutDirection::outward);
   setup.kind = Kind::slide;
   const Stations stations(positions_, setup, machine_);
@@ -93,30 +95,33 @@ TEST_F(Clocks, SlideReadingRunsFromEitherEnd) {
   EXPECT_DOUBLE_EQ(stations.time(1), 8.0);
 }
 
-TEST(MissingFor, NamesTheKeysThatWouldMakeAClockKnown) {
+TEST(MissingFor, NamesTheKeysThatWouldMakeAVariableKnown) {
   const slideway::Setup bare;
-  EXPECT_THAT(missing_for(Clock::radius, bare), IsEmpty());
-  EXPECT_THAT(missing_for(Clock::slide, bare), IsEmpty());
-  EXPECT_THAT(missing_for(Clock::trace, bare), IsEmpty());
-  EXPECT_THAT(missing_for(Clock::time, bare), ElementsAre("feed_mm_per_min", "cut_direction"));
-  EXPECT_THAT(missing_for(Clock::revolution, bare),
+  EXPECT_THAT(missing_for(IndependentVariable::radius, bare), IsEmpty());
+  EXPECT_THAT(missing_for(IndependentVariable::slide, bare), IsEmpty());
+  EXPECT_THAT(missing_for(IndependentVariable::trace, bare), IsEmpty());
+  EXPECT_THAT(missing_for(IndependentVariable::time, bare),
+              ElementsAre("feed_mm_per_min", "cut_direction"));
+  EXPECT_THAT(missing_for(IndependentVariable::revolution, bare),
               ElementsAre("feed_mm_per_min", "cut_direction", "spindle_rpm"));
-  EXPECT_THAT(missing_for(Clock::distance, bare),
+  EXPECT_THAT(missing_for(IndependentVariable::distance, bare),
               ElementsAre("feed_mm_per_min", "cut_direction", "spindle_rpm"));
-  EXPECT_THAT(missing_for(Clock::measuring_time, bare), ElementsAre("traverse_mm_per_s"));
+  EXPECT_THAT(missing_for(IndependentVariable::measuring_time, bare),
+              ElementsAre("traverse_mm_per_s"));
 }
 
 TEST(MissingFor, FindsNothingInACompleteSetup) {
   const auto setup = face(2.0, CutDirection::inward);
-  for (const Clock clock : kClocks) EXPECT_THAT(missing_for(clock, setup), IsEmpty());
+  for (const IndependentVariable variable : kVariables)
+    EXPECT_THAT(missing_for(variable, setup), IsEmpty());
 }
 
-TEST(MissingFor, AsksForAFaceWhereOnlyAFaceHasTheClock) {
+TEST(MissingFor, AsksForAFaceWhereOnlyAFaceHasTheVariable) {
   auto setup = face(2.0, CutDirection::inward);
   setup.kind = Kind::slide;
-  EXPECT_THAT(missing_for(Clock::radius, setup), ElementsAre("kind = \"face\""));
-  EXPECT_THAT(missing_for(Clock::distance, setup), ElementsAre("kind = \"face\""));
-  EXPECT_THAT(missing_for(Clock::revolution, setup), IsEmpty());
+  EXPECT_THAT(missing_for(IndependentVariable::radius, setup), ElementsAre("kind = \"face\""));
+  EXPECT_THAT(missing_for(IndependentVariable::distance, setup), ElementsAre("kind = \"face\""));
+  EXPECT_THAT(missing_for(IndependentVariable::revolution, setup), IsEmpty());
 }
 
 }  // namespace

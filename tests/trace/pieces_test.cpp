@@ -255,6 +255,15 @@ TEST(DetectionLimit, IsTheSizeWhoseGainPassesTheGateInFourOfFive) {
   EXPECT_NEAR(limits[0].value * norm, std::sqrt(gate) + 0.8416, 1e-4);
 }
 
+// In noise of a millimetre nothing below a hundred times the range of the face would be found.
+TEST(DetectionLimit, IsNoneBeyondAHundredTimesTheRangeOfAProfile) {
+  const Bench bench;
+  const Dictionary dictionary =
+      make_dictionary(bench.model, problem_of({"feed_marks", "thermal_drift"}), 0);
+  EXPECT_EQ(limits_at(bench, dictionary, 5e-5).size(), 2U);
+  EXPECT_TRUE(limits_at(bench, dictionary, 1.0).empty());
+}
+
 TEST(DetectionLimit, GrowsWithTheNoise) {
   const Bench bench;
   const Dictionary dictionary = make_dictionary(

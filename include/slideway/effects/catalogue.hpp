@@ -11,9 +11,6 @@ namespace slideway {
 /// Names of all effects, the carriage's own first, in the order of the registration list.
 const std::vector<std::string>& effect_names();
 
-/// True for straightness, vertical_straightness and squareness: what the carriage model holds.
-bool is_carriage_effect(const std::string& name);
-
 /// Makes an effect of the catalogue.
 /// @throws UsageError  a name that is not in it (with the nearest one that is), an option the
 /// effect
@@ -22,9 +19,22 @@ bool is_carriage_effect(const std::string& name);
 std::unique_ptr<Effect> make_effect(const std::string& name, const EffectOptions& options,
                                     const Machine& machine, const TravelRange& range);
 
-/// The coefficients b_first ... b_degree of a straightness alone: what one of degree first - 1
-/// lacks. @throws UsageError as make_effect()
-std::unique_ptr<Effect> make_straightness_terms(int first, const EffectOptions& options,
-                                                const Machine& machine, const TravelRange& range);
+/// An effect of the catalogue to ask about itself: on the paper's lathe, with options it cannot do
+/// without. REQUIRES a name of effect_names().
+const Effect& specimen(const std::string& name);
+
+/// Which error of the carriages a term ("straightness[upper]") or its parameter
+/// ("squareness.dbeta_xz") is of; none for a name that is not in the catalogue.
+MotionError motion_error_of(const std::string& name);
+
+/// Whether a parameter ("straightness.b0") is fixed by a convention; see Parameter::by_convention.
+bool fixed_by_convention(const std::string& parameter);
+
+/// The effect a report gives parameters of: made with the least degree that has all of them.
+/// @param parameters  "b2", "b3": without the name of the effect
+/// @throws UsageError  no degree has them
+std::unique_ptr<Effect> make_effect_with(const std::string& name,
+                                         const std::vector<std::string>& parameters,
+                                         const Machine& machine, const TravelRange& range);
 
 }  // namespace slideway

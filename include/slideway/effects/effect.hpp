@@ -31,6 +31,20 @@ struct Parameter {
   double lower =
       -std::numeric_limits<double>::infinity();  // physically possible range, in the unit
   double upper = std::numeric_limits<double>::infinity();
+  /// In a direction of parameter space that the data do not determine, the parameter with the
+  /// highest of these is set to 0 and the others take its part.
+  int gauge = 2;
+  /// Fixed by a convention, not by data: the reference line of ISO 230-1 takes offset and slope of
+  /// a straightness.
+  bool by_convention = false;
+};
+
+/// Errors of the carriages, by their ISO 230-1 names for the paper's lathe.
+enum class MotionError {
+  none,                   // not of a carriage
+  straightness,           // E_ZX with the pitch E_BX that follows from it, Eqs. (10), (12)
+  vertical_straightness,  // E_BZ, the pitch that follows from E_XZ, Eq. (13)
+  squareness              // E_B(0C)X, Eq. (15)
 };
 
 /// What a person wants to know about an effect.
@@ -41,9 +55,14 @@ struct Description {
   std::string source;         // "Eq. (15)", "ISO 230-3"
   std::string cause;          // what makes it
   std::string typical;        // "5 to 50 µm/m on a precision lathe"
-  Clock clock = Clock::radius;
-  std::string confounded_with;
+  IndependentVariable variable = IndependentVariable::radius;
+  std::string confounded_with;                       // in words
+  std::vector<std::string> confounded_effects = {};  // those of the catalogue among it
   std::string separated_by;
+  MotionError motion = MotionError::none;
+  /// Grows without bound, or bends sharply, towards the spindle axis, where the nose of a tool
+  /// cannot follow it.
+  bool steep_at_centre = false;
 };
 
 /// One shape parameter: which of the parameters it is, and where to look for it.
@@ -71,6 +90,24 @@ struct TravelRange {
   double beam_span_mm = 0.0;                // between the supports of the cross-beam; 0: unknown
 };
 
+/// What the problem file says of a declared effect, besides its name.
+struct EffectOptions {
+  std::optional<std::string> body = std::nullopt;
+  std::optional<int> degree = std::nullopt;
+  std::optional<double> span_mm = std::nullopt;  // between the supports of a beam
+  /// Only the terms above this degree: what a search adds to a declared effect.
+  std::optional<int> above = std::nullopt;
+};
+
+class Effect;
+
+/// A direction in parameter space that the data do not determine, as one of its effects sees it.
+struct UndeterminedPart {
+  std::vector<std::string> own;       // parameters of the effect in it
+  std::vector<const Effect*> others;  // the other effects in it
+  bool model_has_others = false;      // whether or not they are in it
+};
+
 class Effect {
  public:
   virtual ~Effect() = default;
@@ -95,7 +132,7 @@ class Effect {
   /// its columns are then zero.
   [[nodiscard]] virtual bool applies_to(const Setup& setup) const = 0;
 
-  /// Keys of the problem file this profile lacks for the effect's clock; see missing_for().
+  /// Keys of the problem file this profile lacks for the effect's variable; see missing_for().
   [[nodiscard]] virtual std::vector<std::string> lacking(const Setup& setup) const;
 
   /// Fills `out` (#stations by #amplitudes): mm per unit of amplitude for heights, rad for slopes.
@@ -130,13 +167,30 @@ class Effect {
   [[nodiscard]] virtual double size(const Eigen::VectorXd& parameter_values) const {
     return std::abs(parameter_values[0]);
   }
+
+  [[nodiscard]] bool is_carriage() const { return description().motion != MotionError::none; }
+
+  /// Adds what the effect does to the bodies of the machine (errors[j-1] of body j) when the slide
+  /// stands at `slide_mm`. Nothing, unless it is an error of a body.
+  virtual void add_body_errors(const Pose& pose, double slide_mm, const Eigen::VectorXd& amplitudes,
+                               std::span<BodyErrors> errors) const;
+
+  /// What to measure so that a direction it takes part in becomes determined; "": nothing that is
+  /// special to this effect.
+  [[nodiscard]] virtual std::string advice(const UndeterminedPart& part) const;
+
+  /// The hypotheses about itself a search tries. By default the effect as it is where it is not
+  /// declared, and none where it is; an effect with a degree has one for each degree to be tried.
+  /// @param declared  the options it is declared with, or null
+  [[nodiscard]] virtual std::vector<EffectOptions> hypotheses(const EffectOptions* declared) const;
+
+  /// Keys of [machine] the effect cannot do without and the problem does not give.
+  [[nodiscard]] virtual std::vector<std::string> lacking_of_machine(const TravelRange& range) const;
 };
 
-/// What the problem file says of a declared effect, besides its name.
-struct EffectOptions {
-  std::optional<std::string> body;
-  std::optional<int> degree;
-  std::optional<double> span_mm;  // gantry_sag
-};
+/// Columns of an effect in a reading along the slide itself, at slide coordinates x: heights in mm,
+/// or local slopes in rad, per unit of amplitude.
+Eigen::MatrixXd along_slide(const Effect& effect, const Machine& machine, const Eigen::VectorXd& x,
+                            Quantity quantity, std::span<const double> shape = {});
 
 }  // namespace slideway

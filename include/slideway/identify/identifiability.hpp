@@ -27,7 +27,7 @@ Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
                   double tolerance);
 
 /// Null directions in terms of parameters a person can read: each has one parameter of its own that
-/// appears in no other (the one a convention may set to 0: gauge terms b_0, b_1, then c_1 ...).
+/// appears in no other: the one with the highest Parameter::gauge, which may be set to 0.
 struct NullDirections {
   Eigen::MatrixXd parameters;      // P by d; 1 at the own parameter
   Eigen::MatrixXd amplitudes;      // A by d, the same directions
@@ -40,9 +40,6 @@ struct NullDirections {
 /// @param scale       P, size of one unit of each parameter in the data
 NullDirections null_directions(const Model& model, const Eigen::MatrixXd& null_space,
                                const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& scale);
-
-/// Offset and slope of a straightness are not straightness: ISO 230-1's reference line takes them.
-bool fixed_by_convention(const std::string& parameter);
 
 /// The directions in words, with what to measure.
 std::vector<UndeterminedDirection> undetermined(const Model& model, const NullDirections& null);

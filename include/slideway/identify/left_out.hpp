@@ -30,9 +30,6 @@ ValueIndices undescribed_values(const Model& model, const Estimate& estimate,
 Eigen::VectorXd steep_curve(const Model& model, const Estimate& estimate,
                             const Observation& observation);
 
-/// True if the effect can be steep at the centre: a smooth function of the radius.
-bool is_steep_at_centre(const Effect& effect);
-
 /// Radius out to which values of faces are left out, mm; 0: no face has such values.
 double left_out_radius(const Model& model);
 

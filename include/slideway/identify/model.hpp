@@ -74,12 +74,14 @@ struct Model {
   [[nodiscard]] Eigen::Index parameters() const;
   /// "squareness.dbeta_xz"
   [[nodiscard]] std::vector<std::string> parameter_names() const;
+  /// The first term that is this error of the carriages, or null.
+  [[nodiscard]] const ModelTerm* find_term(MotionError error) const;
 };
 
 /// Builds effects (with an inner basis for the travel of the profiles) and the low bands. The
 /// profiles must outlive the model.
 /// @param most_values  of a profile's low band: its level is raised until it has no more
-/// @throws UsageError  an effect lacks the metadata of its clock, named by profile and key
+/// @throws UsageError  an effect lacks the metadata of its variable, named by profile and key
 /// @throws DataError   fewer samples than 2^level
 Model build_model(const Problem& problem, const std::vector<Profile>& profiles,
                   std::size_t most_values = std::numeric_limits<std::size_t>::max());

@@ -20,8 +20,9 @@ namespace slideway {
 std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
                                 const std::vector<Eigen::MatrixXd>& suspect = {});
 
-/// The noise of every fitted profile under the model: from the whole residual, unless the slow band
-/// holds structure (lack_of_fit()); then noise_beside() it.
+/// The noise of every fitted profile under the model alone, by restricted maximum likelihood: from
+/// the whole residual, the model left free. What the model lacks counts as noise here, so that
+/// uncertainties allow for it.
 std::vector<Noise> noise_under(const Linearisation& linear, const Gates& gates);
 
 /// White noise of the declared size, or of the size of the values after levelling: what a fit begins

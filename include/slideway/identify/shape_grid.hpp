@@ -11,4 +11,9 @@ namespace slideway {
 /// between two low-band values. The middle of the parameter's range where no profile shows it.
 std::vector<double> shape_grid(const Model& model, const ModelTerm& term, int shape);
 
+/// The grids of all shapes of a term. Where their product has more points than a search can look at
+/// (8192), the longest is made coarser by half, its ends kept, until it has not; a single one stays
+/// as it is.
+std::vector<std::vector<double>> shape_axes(const Model& model, const ModelTerm& term);
+
 }  // namespace slideway

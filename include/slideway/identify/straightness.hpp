@@ -26,6 +26,9 @@ struct ReferenceLine {
 std::vector<ReferenceLine> reference_lines(const Eigen::VectorXd& positions,
                                            const Eigen::VectorXd& heights);
 
+/// The one of least squares alone.
+ReferenceLine least_squares_line(const Eigen::VectorXd& positions, const Eigen::VectorXd& heights);
+
 /// Straightness of the slide the fit has found, E_ZX, with its uncertainty.
 struct IdentifiedStraightness {
   struct Error {

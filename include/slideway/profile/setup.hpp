@@ -41,17 +41,17 @@ struct Setup {
   double last_mm = 0.0;
 };
 
-/// What an effect is locked to (one clock per kind of cause).
-enum class Clock { radius, slide, time, revolution, distance, trace, measuring_time };
+/// The independent variable of an effect: what its form is a function of, one per kind of cause.
+enum class IndependentVariable { radius, slide, time, revolution, distance, trace, measuring_time };
 
 /// One letter, as the literature of the project has it: r x t k s X m.
-std::string_view symbol(Clock clock);
+std::string_view symbol(IndependentVariable variable);
 
-/// Keys of the problem file a profile lacks before that clock can be told, e.g.
-/// {"feed_mm_per_min", "cut_direction"}; empty if the clock is known.
-std::vector<std::string> missing_for(Clock clock, const Setup& setup);
+/// Keys of the problem file a profile lacks before that variable is known, e.g.
+/// {"feed_mm_per_min", "cut_direction"}; empty if it is known.
+std::vector<std::string> missing_for(IndependentVariable variable, const Setup& setup);
 
-/// The samples of a profile (or a part of them) with their clocks.
+/// The samples of a profile (or a part of them) with their independent variables.
 ///
 /// A view: positions and setup must outlive it.
 class Stations {
@@ -76,16 +76,17 @@ class Stations {
   [[nodiscard]] double slide(Eigen::Index i) const {
     return setup_->kind == Kind::face ? setup_->spindle_position_mm + radius(i) : positions_[i];
   }
-  /// t, machining time, s. REQUIRES missing_for(Clock::time, setup) empty.
+  /// t, machining time, s. REQUIRES missing_for(IndependentVariable::time, setup) empty.
   [[nodiscard]] double time(Eigen::Index i) const;
-  /// k = t rpm / 60, revolutions. REQUIRES Clock::revolution known.
+  /// k = t rpm / 60, revolutions. REQUIRES IndependentVariable::revolution known.
   [[nodiscard]] double revolution(Eigen::Index i) const {
     return time(i) * *setup_->spindle_rpm / kMinute;
   }
   /// s, cutting distance along the spiral, mm: π (R² - r²) / f inward, π r² / f outward, with the
-  /// feed per revolution f. REQUIRES Clock::distance known.
+  /// feed per revolution f. REQUIRES IndependentVariable::distance known.
   [[nodiscard]] double distance(Eigen::Index i) const;
-  /// m = (X - first) / traverse, s: time on the instrument. REQUIRES Clock::measuring_time known.
+  /// m = (X - first) / traverse, s: time on the instrument. REQUIRES
+  /// IndependentVariable::measuring_time known.
   [[nodiscard]] double measuring_time(Eigen::Index i) const {
     return (positions_[i] - setup_->first_mm) / *setup_->traverse_mm_per_s;
   }

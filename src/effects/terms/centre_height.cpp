@@ -1,8 +1,8 @@
 #include <cmath>
 
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -28,13 +28,15 @@ std::unique_ptr<Effect> make_centre_height(const Request& request) {
                                "beside the diameter looks the same",
                       .typical = "h is 1 to 50 µm; the nub at the centre is at most as high as the "
                                  "depth of cut",
-                      .clock = Clock::radius,
+                      .variable = IndependentVariable::radius,
                       .confounded_with = "speed_effect; a trace off the diameter by h",
+                      .confounded_effects = {"speed_effect"},
                       .separated_by =
                           "parallel traces at known spacing, a microscope: a nub is there "
-                          "or not"},
+                          "or not",
+                      .steep_at_centre = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
-      .clock = radius_of,
+      .reading = radius_of,
       .value = value,
       .applies_to = is_face_height,
       .shape = ShapeSpec{.parameter = {"height_mm", "h", "mm", 0.05, 1e-4, 10.0},

@@ -1,6 +1,6 @@
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -27,12 +27,12 @@ std::unique_ptr<Effect> make_centre_step(const Request& request) {
                           "axial motion of odd order per turn: the two halves of a diameter were "
                           "cut at opposite spindle angles",
                       .typical = "5 to 50 nm (aerostatic spindle), 0.1 to 1 µm (rolling bearings)",
-                      .clock = Clock::trace,
+                      .variable = IndependentVariable::trace,
                       .confounded_with = "a centring error of the trace on a conical face",
                       .separated_by = "traces at three or more azimuths: the step goes with the "
                                       "spindle angle; on a radius it cannot be seen"},
       .amplitude = {"height_um", "A", "µm", 0.01},
-      .clock = [](const Stations& stations, Eigen::Index i) { return stations.trace(i); },
+      .reading = [](const Stations& stations, Eigen::Index i) { return stations.trace(i); },
       .value = value,
       .applies_to = crosses_the_axis});
 }

@@ -1,6 +1,6 @@
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -22,14 +22,15 @@ std::unique_ptr<Effect> make_cup(const Request& request) {
            .cause = "spring-back after clamping, residual stress, the part still warm when "
                     "measured",
            .typical = "0.05 to 5 µm by clamping, 3 to 70 nm by residual stress",
-           .clock = Clock::radius,
+           .variable = IndependentVariable::radius,
            .confounded_with = "b_2 of straightness (exactly), tool_wear at one feed "
                               "(exactly)",
+           .confounded_effects = {"straightness", "tool_wear"},
            .separated_by = "measuring while still clamped, another clamping force; an "
                            "independent reading of the straightness; a second feed against "
                            "tool_wear"},
       .amplitude = {"sag_um", "A", "µm", 0.1},
-      .clock = relative_radius,
+      .reading = relative_radius,
       .value = [](double ratio, double) { return ratio * ratio; },
       .applies_to = is_face_height,
       .needs_cut_radius = true});

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -30,15 +30,16 @@ std::unique_ptr<Effect> make_edge_roll_off(const Request& request) {
                       .source = "empirical shape of a rim",
                       .cause = "the rim gives way, burrs, or is rounded where the tool enters",
                       .typical = "0.05 to 5 µm, w of 0.03 to 0.4 mm",
-                      .clock = Clock::radius,
+                      .variable = IndependentVariable::radius,
                       .confounded_with =
                           "a short thermal_drift or tool_running_in of an inward cut "
                           "at one feed",
+                      .confounded_effects = {"thermal_drift", "tool_running_in"},
                       .separated_by =
                           "it stays at the same radii at every feed and in both cutting "
                           "directions"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
-      .clock = from_rim,
+      .reading = from_rim,
       .value = value,
       .applies_to = is_face_height,
       .needs_cut_radius = true,

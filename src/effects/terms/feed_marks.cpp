@@ -1,7 +1,7 @@
-#include "../clock_range.hpp"
 #include "../groove.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -17,7 +17,7 @@ Description describe() {
           .typical =
               "8 to 83 nm at 18 µm per turn, 0.1 to 1.3 µm at 73 µm per turn (nose "
               "radius 5 to 0.5 mm)",
-          .clock = Clock::revolution,
+          .variable = IndependentVariable::revolution,
           .confounded_with =
               "nothing if the grooves are resolved; averaged over blocks "
               "of a similar width it returns as a long alias",

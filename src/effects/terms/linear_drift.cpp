@@ -1,6 +1,6 @@
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 
@@ -13,14 +13,15 @@ std::unique_ptr<Effect> make_linear_drift(const Request& request) {
                       .source = "ISO 230-3",
                       .cause = "slow warming of spindle, column or room, seen over a short cut",
                       .typical = "0.2 to 100 nm/min",
-                      .clock = Clock::time,
+                      .variable = IndependentVariable::time,
                       .confounded_with = "squareness and tilt at one feed (exactly)",
+                      .confounded_effects = {"squareness"},
                       .separated_by =
                           "a second feed: the slope on the face goes with 1/feed; a cut "
                           "in the other direction changes its sign"},
       .amplitude = {"rate_um_per_min", "a", "µm/min", 0.01},
       .unit = kMicrometre / kMinute,
-      .clock = time_of,
+      .reading = time_of,
       .applies_to = is_height});
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 // One groove per turn samples a face: above half a cycle per turn everything is an alias.
 std::pair<double, double> search(const Stations& stations) {
-  const ClockRange range = range_of(stations, revolution_of);
+  const VariableRange range = range_of(stations, revolution_of);
   const double limit = 0.5 / range.step;
   const bool is_face = stations.setup().kind == Kind::face;
   return {0.5 / range.extent(), is_face && limit > 0.5 ? 0.5 : limit};
@@ -18,24 +18,24 @@ std::pair<double, double> search(const Stations& stations) {
 std::unique_ptr<Effect> make_revolution_periodic(const Request& request) {
   request.accept_only({});
   return std::make_unique<PeriodicEffect>(PeriodicSpec{
-      .description = {.name = "revolution_periodic",
-                      .standard_name = "asynchronous axial error motion of the spindle (ISO 230-7)",
-                      .formula = "A cos(2πνk + φ), k = t rpm/60",
-                      .source = "ISO 230-7",
-                      .cause = "asynchronous motion of the spindle or vibration of the structure, "
-                               "sampled once per turn by the groove",
-                      .typical = "5 to 30 nm",
-                      .clock = Clock::revolution,
-                      .confounded_with =
-                          "slide_periodic, time_periodic and traverse_periodic at one "
-                          "feed and one traverse speed; on a face ν stands for all its "
-                          "aliases ν + 1, ν + 2, ...",
-                      .separated_by =
-                          "a second feed (the wavelength on the face is the feed per turn "
-                          "over ν) and a change of spindle speed by 1 % (the alias jumps)"},
+      .description =
+          {.name = "revolution_periodic",
+           .standard_name = "asynchronous axial error motion of the spindle (ISO 230-7)",
+           .formula = "A cos(2πνk + φ), k = t rpm/60",
+           .source = "ISO 230-7",
+           .cause = "asynchronous motion of the spindle or vibration of the structure, "
+                    "sampled once per turn by the groove",
+           .typical = "5 to 30 nm",
+           .variable = IndependentVariable::revolution,
+           .confounded_with = "slide_periodic, time_periodic and traverse_periodic at one "
+                              "feed and one traverse speed; on a face ν stands for all its "
+                              "aliases ν + 1, ν + 2, ...",
+           .confounded_effects = {"slide_periodic", "time_periodic", "traverse_periodic"},
+           .separated_by = "a second feed (the wavelength on the face is the feed per turn "
+                           "over ν) and a change of spindle speed by 1 % (the alias jumps)"},
       .rate = {"cycles_per_revolution", "ν", "1", 0.1, 0.0, 1e4},
       .rate_is_period = false,
-      .clock = cutting_revolution_of,
+      .reading = cutting_revolution_of,
       .range = search,
       .applies_to = is_height});
 }

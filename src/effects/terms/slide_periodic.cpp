@@ -15,7 +15,7 @@ constexpr double kTurn = 2.0 * kPi;
 CarriageReading height_only() { return {.height = {1.0, 0.0}, .pitch = {0.0, 0.0}}; }
 
 std::pair<double, double> search(const Stations& stations) {
-  const ClockRange range = range_of(stations, slide_of);
+  const VariableRange range = range_of(stations, slide_of);
   return {std::max(4.0 * range.step, 0.1), range.extent()};
 }
 
@@ -74,16 +74,18 @@ std::unique_ptr<Effect> make_slide_periodic(const Request& request) {
                           "of the feed screw through the force of its nut",
                       .typical = "5 to 50 nm; λ is 20 to 60 mm for bolts and orifices, 2 to 10 mm "
                                  "for a screw",
-                      .clock = Clock::slide,
+                      .variable = IndependentVariable::slide,
                       .confounded_with =
                           "the straightness polynomial when λ is longer than most of "
                           "the travel; revolution_periodic, time_periodic and "
                           "traverse_periodic at one feed and one traverse speed",
+                      .confounded_effects = {"straightness", "revolution_periodic", "time_periodic",
+                                             "traverse_periodic"},
                       .separated_by = "a second feed or spindle speed: λ stays as it is in mm; a "
                                       "data-sheet pitch"},
       .rate = {"period_mm", "λ", "mm", 1.0, 1e-3, 1e5},
       .rate_is_period = true,
-      .clock = slide_of,
+      .reading = slide_of,
       .range = search,
       .applies_to = sees_carriage});
 }

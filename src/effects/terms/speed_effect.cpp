@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -34,12 +34,14 @@ std::unique_ptr<Effect> make_speed_effect(const Request& request) {
                       .cause = "the cutting speed falls to zero at the centre: the force grows and "
                                "lifts the tool, chips build up on the edge",
                       .typical = "1 to 40 nm over the face, m of 0.1 to 0.5",
-                      .clock = Clock::radius,
+                      .variable = IndependentVariable::radius,
                       .confounded_with = "centre_height and everything singular at the centre",
+                      .confounded_effects = {"centre_height"},
                       .separated_by = "a spring pass (no depth of cut, no force), a second feed "
-                                      "(force grows with about f^0.7)"},
+                                      "(force grows with about f^0.7)",
+                      .steep_at_centre = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.01, 0.0},
-      .clock = log_speed_ratio,
+      .reading = log_speed_ratio,
       .value = value,
       .applies_to = is_face_height,
       .needs_cut_radius = true,

@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../periodic_effect.hpp"
 #include "../phasor.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -43,10 +43,11 @@ Description describe() {
       .typical =
           "5 to 50 nm (aerostatic spindle), 0.1 to 10 µm for a test bar read along the "
           "slide",
-      .clock = Clock::revolution,
+      .variable = IndependentVariable::revolution,
       .confounded_with =
           "slide_periodic at one feed; on a face one groove per turn samples it at "
           "a fixed angle, so that its lines become constants and slow drifts",
+      .confounded_effects = {"slide_periodic"},
       .separated_by = "a second feed or spindle speed: the lines stay at whole orders per turn"};
 }
 

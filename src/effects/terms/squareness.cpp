@@ -1,7 +1,7 @@
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../locus.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -17,19 +17,24 @@ Description describe() {
               "the X guideway is not at a right angle to the spindle axis: the face becomes a "
               "cone",
           .typical = "5 to 50 µrad on a precision lathe: 50 to 500 nm over a radius of 10 mm",
-          .clock = Clock::radius,
+          .variable = IndependentVariable::radius,
           .confounded_with =
               "the tilt of the trace on a radius; c_1 of vertical_straightness; "
               "linear_drift at one feed",
+          .confounded_effects = {"vertical_straightness", "linear_drift"},
           .separated_by =
               "a trace over the full diameter (cone against tilt), a second feed "
-              "(linear_drift), cuts from both sides of the axis (the cone changes sign)"};
+              "(linear_drift), cuts from both sides of the axis (the cone changes sign)",
+          .motion = MotionError::squareness};
 }
 
 class Squareness : public LinearEffect {
  public:
   explicit Squareness(int body)
-      : LinearEffect(describe(), {{"dbeta_xz", "Δβxz", "rad", 1e-5}}, diagonal_map(1, 1.0)),
+      : LinearEffect(
+            describe(),
+            {{.name = "dbeta_xz", .symbol = "Δβxz", .unit = "rad", .scale = 1e-5, .gauge = 0}},
+            diagonal_map(1, 1.0)),
         body_(body) {}
 
   [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_face_height(setup); }
@@ -41,6 +46,17 @@ class Squareness : public LinearEffect {
       return stations.machine().squareness_sensitivity(body_, pose);
     });
     for (Eigen::Index i = 0; i < stations.size(); ++i) out(i, 0) = lever(stations.radius(i));
+  }
+
+  void add_body_errors(const Pose& /*pose*/, double /*slide_mm*/, const Eigen::VectorXd& amplitudes,
+                       std::span<BodyErrors> errors) const override {
+    errors[body_ - 1].squareness += amplitudes[0];
+  }
+
+  [[nodiscard]] std::string advice(const UndeterminedPart& part) const override {
+    if (!part.others.empty()) return "";
+    return "levelling has removed it: trace a full diameter (the squareness comes back as a cone), "
+           "or keep the tilt against the spindle axis (free = [\"offset\"])";
   }
 
  private:

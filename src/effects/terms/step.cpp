@@ -1,13 +1,13 @@
-#include "../clock_range.hpp"
 #include "../groove.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
 
 std::pair<double, double> search(const Stations& stations) {
-  const ClockRange range = range_of(stations, radius_of);
+  const VariableRange range = range_of(stations, radius_of);
   return {range.low + range.step, range.high - range.step};
 }
 
@@ -24,14 +24,15 @@ std::unique_ptr<Effect> make_step(const Request& request) {
                           "chipped edge, built-up edge that forms or breaks off, a pause, a jump "
                           "of the Z scale",
                       .typical = "5 to 500 nm",
-                      .clock = Clock::radius,
+                      .variable = IndependentVariable::radius,
                       .confounded_with = "a fast transient (thermal_drift, tool_running_in) that "
                                          "starts late, dust in the trace",
+                      .confounded_effects = {"thermal_drift", "tool_running_in"},
                       .separated_by =
                           "both halves of a diameter show it at the same radius; the next "
                           "part does not"},
       .amplitude = {"height_um", "A", "µm", 0.1},
-      .clock = tool_radius_of,
+      .reading = tool_radius_of,
       .value = [](double radius, double position) { return radius < position ? 1.0 : 0.0; },
       .applies_to = is_face_height,
       .shape = ShapeSpec{.parameter = {"position_mm", "r_c", "mm", 1.0, 0.0},

@@ -44,8 +44,14 @@ std::vector<Parameter> parameters_of(int first, int degree, const TravelRange& r
   std::vector<Parameter> parameters;
   for (int k = first; k <= degree; ++k) {
     const std::string index = std::to_string(k);
-    parameters.push_back(
-        {"b" + index, "b_" + index, power_of_mm(1 - k), kMicrometre * std::pow(reach, -k)});
+    parameters.push_back({.name = "b" + index,
+                          .symbol = "b_" + index,
+                          .unit = power_of_mm(1 - k),
+                          .scale = kMicrometre * std::pow(reach, -k),
+                          .gauge = k == 0   ? 5
+                                   : k == 1 ? 4
+                                            : 1,
+                          .by_convention = k <= 1});
   }
   return parameters;
 }
@@ -62,15 +68,17 @@ Description describe() {
       .typical =
           "0.5 to 1 µm over 200 mm on an aerostatic slide: about 10 nm of curvature "
           "within 10 mm of travel, 2 to 10 µm over 600 mm on a conventional bed",
-      .clock = Clock::slide,
+      .variable = IndependentVariable::slide,
       .confounded_with =
-          "every smooth effect: b_2 with cup, linear tool wear and slow drift; "
+          "every smooth effect: b_2 with cup, tool_wear and a slow linear_drift or thermal_drift; "
           "with one lever p_x = x the coefficient b_1 vanishes, and b_0 is the "
           "offset of the trace (both are gauge: the reference line of ISO 230-1)",
+      .confounded_effects = {"cup", "tool_wear", "linear_drift", "thermal_drift"},
       .separated_by =
           "a second feed or cutting direction (drift and wear change, straightness "
           "does not), a reading along the slide by autocollimator or straightedge "
-          "reversal, a second overhang (pitch against straightness)"};
+          "reversal, a second overhang (pitch against straightness)",
+      .motion = MotionError::straightness};
 }
 
 // b_first..b_n of Eq. (10); inside, Legendre polynomials over the travel.
@@ -94,18 +102,35 @@ class Straightness : public LinearEffect {
 
   void columns(const Stations& stations, std::span<const double> /*shape*/,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
-    const auto legendre = [this](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value,
-                                 Eigen::ArrayXXd& slope) {
-      value.col(0) = 1.0;
-      slope.col(0) = 0.0;
-      if (value.cols() == 1) return;
-      value.col(1) = (x - interval_.centre) / interval_.half;
-      slope.col(1) = rise_[0];
-      wide([&] {
-        for (Eigen::Index k = 1; k + 1 < value.cols(); ++k) add_degree(k, value, slope);
-      });
-    };
-    fill_from_locus(stations, carriage_reading(stations, body_, 1.0), legendre, out, first_);
+    const auto locus = [this](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value,
+                              Eigen::ArrayXXd& slope) { legendre(x, value, slope); };
+    fill_from_locus(stations, carriage_reading(stations, body_, 1.0), locus, out, first_);
+  }
+
+  void add_body_errors(const Pose& /*pose*/, double slide_mm, const Eigen::VectorXd& amplitudes,
+                       std::span<BodyErrors> errors) const override {
+    const Eigen::Index count = amplitudes.size();
+    Eigen::ArrayXXd value(1, first_ + count), slope(1, first_ + count);
+    legendre(Eigen::ArrayXd::Constant(1, slide_mm), value, slope);
+    ErrorMotion& motion = errors[body_ - 1].motion;
+    motion.z += value.rightCols(count).matrix().row(0).dot(amplitudes);
+    motion.beta += slope.rightCols(count).matrix().row(0).dot(amplitudes);
+  }
+
+  [[nodiscard]] std::string advice(const UndeterminedPart& part) const override;
+
+  // A higher degree is one more hypothesis each: the search takes the one that pays.
+  [[nodiscard]] std::vector<EffectOptions> hypotheses(
+      const EffectOptions* declared) const override {
+    EffectOptions options = declared ? *declared : EffectOptions{};
+    const int known = declared ? *declared->degree : 1;  // b_0 and b_1 are the trace's own
+    if (declared) options.above = known;
+    std::vector<EffectOptions> out;
+    for (const int more : {1, 2, 4, 6}) {
+      options.degree = known + more;
+      if (*options.degree <= kMostDegree) out.push_back(options);
+    }
+    return out;
   }
 
   [[nodiscard]] double size(const Eigen::VectorXd& values) const override {
@@ -119,6 +144,18 @@ class Straightness : public LinearEffect {
   }
 
  private:
+  // Columns of P_k((x - centre)/half) and of their slopes.
+  void legendre(const Eigen::ArrayXd& x, Eigen::ArrayXXd& value, Eigen::ArrayXXd& slope) const {
+    value.col(0) = 1.0;
+    slope.col(0) = 0.0;
+    if (value.cols() == 1) return;
+    value.col(1) = (x - interval_.centre) / interval_.half;
+    slope.col(1) = rise_[0];
+    wide([&] {
+      for (Eigen::Index k = 1; k + 1 < value.cols(); ++k) add_degree(k, value, slope);
+    });
+  }
+
   // Column k + 1 of P_k(u) and of its derivative by x, from those before; u is column 1.
   void add_degree(Eigen::Index k, Eigen::ArrayXXd& value, Eigen::ArrayXXd& slope) const {
     const double ahead = ahead_[k], back = back_[k], rise = rise_[k];
@@ -138,15 +175,35 @@ class Straightness : public LinearEffect {
   std::vector<double> ahead_, back_, rise_;
 };
 
+bool has(const UndeterminedPart& part, MotionError motion) {
+  return std::ranges::any_of(
+      part.others, [&](const Effect* other) { return other->description().motion == motion; });
+}
+
+std::string Straightness::advice(const UndeterminedPart& part) const {
+  const auto conventional = [&](const std::string& name) {
+    const auto own = std::ranges::find(parameters(), name, &Parameter::name);
+    return own->by_convention;
+  };
+  if (part.others.empty() && std::ranges::all_of(part.own, conventional))
+    return "offset and slope of a straightness are fixed by its reference line (ISO 230-1), not by "
+           "these data; no measurement is needed";
+  if (has(part, MotionError::vertical_straightness)) return "";  // that has its own advice
+  if (has(part, MotionError::squareness))
+    return "the squareness is the slope of the face: give the slope of the straightness by a prior "
+           "(an autocollimator against the spindle axis), or measure the squareness itself "
+           "(run-out, Eq. 21)";
+  if (part.model_has_others)
+    return "one profile cannot tell them apart: read the straightness along the slide (kind = "
+           "\"slide\"), give a prior, or cut with another feed or direction";
+  return "";
+}
+
 }  // namespace
 
 std::unique_ptr<Effect> make_straightness(const Request& request) {
   request.accept_only({"body", "degree"});
-  return std::make_unique<Straightness>(request.carriage(Axis::x), 0,
-                                        request.degree(0, kMostDegree), request.range);
-}
-
-std::unique_ptr<Effect> make_straightness_terms(int first, const Request& request) {
+  const int first = request.options.above ? *request.options.above + 1 : 0;
   return std::make_unique<Straightness>(request.carriage(Axis::x), first,
                                         request.degree(first, kMostDegree), request.range);
 }

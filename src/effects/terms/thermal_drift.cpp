@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
 
-// Nothing drifts before the clock starts; a trace longer than the cut would have negative times.
+// Nothing drifts before the cut starts; a trace longer than the cut would have negative times.
 double since_start(const Stations& stations, Eigen::Index i) {
   return std::max(stations.time(i), 0.0);
 }
@@ -32,14 +32,15 @@ std::unique_ptr<Effect> make_thermal_drift(const Request& request) {
                     "axis shift of a spindle that was just run up",
            .typical = "0.05 to 1 µm; τ is 0.5 to 3 min for a tool shank, 1 to 10 min for "
                       "the workpiece, 10 to 90 min for spindle and column",
-           .clock = Clock::time,
+           .variable = IndependentVariable::time,
            .confounded_with = "the straightness polynomial on one face, tool_running_in "
                               "and tool_wear at one spindle speed, edge_roll_off if τ is "
                               "short",
+           .confounded_effects = {"straightness", "tool_running_in", "tool_wear", "edge_roll_off"},
            .separated_by = "a second feed (the time scale on the face changes), a cut "
                            "outward (mirrored), a temperature log"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
-      .clock = since_start,
+      .reading = since_start,
       .value = value,
       .applies_to = is_height,
       .shape = ShapeSpec{

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -30,15 +30,16 @@ std::unique_ptr<Effect> make_tool_running_in(const Request& request) {
                       .source = "s = π (R² - r²)/f inward, π r²/f outward, f the feed per turn",
                       .cause = "a fresh edge wears quickly at first and then settles",
                       .typical = "10 to 200 nm within s0 of 0.3 to 20 m",
-                      .clock = Clock::distance,
+                      .variable = IndependentVariable::distance,
                       .confounded_with =
                           "thermal_drift at one spindle speed, edge_roll_off if s0 is "
                           "short",
+                      .confounded_effects = {"thermal_drift", "edge_roll_off"},
                       .separated_by =
                           "a change of spindle speed at the same feed rate (distance "
                           "changes, time does not), a second feed, an edge already run in"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1, 0.0},
-      .clock = since_start_m,
+      .reading = since_start_m,
       .value = value,
       .applies_to = is_face_height,
       .shape = ShapeSpec{.parameter = {"distance_m", "s0", "m", 1.0, 1e-2, 1e3},

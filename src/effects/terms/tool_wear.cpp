@@ -1,6 +1,6 @@
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 
@@ -16,15 +16,16 @@ std::unique_ptr<Effect> make_tool_wear(const Request& request) {
                     "rises along the cut",
            .typical = "far below 1 nm per 10 m for diamond in aluminium, 10 to 200 nm for "
                       "carbide or a damaged edge",
-           .clock = Clock::distance,
+           .variable = IndependentVariable::distance,
            .confounded_with = "cup and b_2 of straightness at one feed (exactly r²), "
                               "thermal_drift",
+           .confounded_effects = {"cup", "straightness", "thermal_drift"},
            .separated_by = "a second feed or spindle speed (distance goes with rpm/feed, "
                            "thermal drift does not know the rpm), the other cutting "
                            "direction"},
       .amplitude = {"rate_um_per_m", "w", "µm/m", 0.01, 0.0},
       .unit = kMicrometre / kMetre,
-      .clock = [](const Stations& stations, Eigen::Index i) { return stations.distance(i); },
+      .reading = [](const Stations& stations, Eigen::Index i) { return stations.distance(i); },
       .applies_to = is_face_height});
 }
 

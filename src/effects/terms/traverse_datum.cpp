@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -27,14 +27,15 @@ std::unique_ptr<Effect> make_traverse_datum(const Request& request) {
                       .cause = "the instrument's own guide is not straight; a three-jaw clamping "
                                "(trefoil) gives the same odd cubic on a diameter",
                       .typical = "5 to 50 nm over 20 mm",
-                      .clock = Clock::trace,
+                      .variable = IndependentVariable::trace,
                       .confounded_with = "b_3 of straightness on a radius",
+                      .confounded_effects = {"straightness"},
                       .separated_by =
                           "turning the part by 180° on the instrument (the datum stays), "
                           "a trace at another azimuth (the trefoil changes), a trace over "
                           "the diameter (odd against even)"},
       .amplitude = {"amplitude_um", "A", "µm", 0.01},
-      .clock = relative_position,
+      .reading = relative_position,
       .value = [](double ratio, double) { return ratio * ratio * ratio; },
       .applies_to = is_face_height});
 }

@@ -5,7 +5,7 @@ namespace slideway {
 namespace {
 
 std::pair<double, double> search(const Stations& stations) {
-  const ClockRange range = range_of(stations, measuring_time_of);
+  const VariableRange range = range_of(stations, measuring_time_of);
   return {0.5 / range.extent(), 0.25 / range.step};
 }
 
@@ -20,14 +20,16 @@ std::unique_ptr<Effect> make_traverse_periodic(const Request& request) {
                       .source = "profilometer in its room, not the machine tool",
                       .cause = "vibration of the floor or mains hum while the trace is measured",
                       .typical = "1 to 20 nm; floors shake at 5 to 20 Hz, mains hum at 50 or 60 Hz",
-                      .clock = Clock::measuring_time,
+                      .variable = IndependentVariable::measuring_time,
                       .confounded_with = "slide_periodic, time_periodic and revolution_periodic in "
                                          "traces measured at one speed",
+                      .confounded_effects = {"slide_periodic", "time_periodic",
+                                             "revolution_periodic"},
                       .separated_by = "a second traverse speed: the wavelength follows the stylus, "
                                       "not the feed"},
       .rate = {"frequency_hz", "f", "Hz", 1.0, 0.0, 500.0},
       .rate_is_period = false,
-      .clock = measuring_time_of,
+      .reading = measuring_time_of,
       .range = search,
       .applies_to = is_height});
 }

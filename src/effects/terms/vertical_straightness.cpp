@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../clock_range.hpp"
 #include "../linear_effect.hpp"
 #include "../locus.hpp"
 #include "../request.hpp"
+#include "../variable_range.hpp"
 
 namespace slideway {
 namespace {
@@ -23,8 +23,11 @@ std::vector<Parameter> parameters_of(int degree, double reach) {
   std::vector<Parameter> parameters;
   for (int k = 1; k <= degree; ++k) {
     const std::string index = std::to_string(k);
-    parameters.push_back(
-        {"c" + index, "c_" + index, power_of_mm(1 - k), 1e-5 * std::pow(reach, 1 - k)});
+    parameters.push_back({.name = "c" + index,
+                          .symbol = "c_" + index,
+                          .unit = power_of_mm(1 - k),
+                          .scale = 1e-5 * std::pow(reach, 1 - k),
+                          .gauge = 3});
   }
   return parameters;
 }
@@ -38,13 +41,15 @@ Description describe() {
               "the form of the guideway the Z carriage follows: its slope at the height of the "
               "face tilts the tool",
           .typical = "1 to 50 µrad over the Z travel",
-          .clock = Clock::radius,
+          .variable = IndependentVariable::radius,
           .confounded_with =
               "squareness: at one z level only Σ k c_k z^(k-1) + Δβxz is seen, and "
               "c_1 and Δβxz are one column at any number of levels (one lever)",
+          .confounded_effects = {"squareness"},
           .separated_by =
               "faces at m or more z levels for c_2 .. c_m; the split lever with two "
-              "overhangs, or a direct measurement of one of the two, for c_1"};
+              "overhangs, or a direct measurement of one of the two, for c_1",
+          .motion = MotionError::vertical_straightness};
 }
 
 // c_1..c_m of Eq. (13); inside, powers of z over the largest |z| there is.
@@ -63,12 +68,7 @@ class VerticalStraightness : public LinearEffect {
     const AlongCut lever = along_cut(stations.setup(), [&](const Pose& pose) {
       return stations.machine().height_sensitivity(body_, Component::beta, pose);
     });
-    Eigen::RowVectorXd pitch(out.cols());
-    double power = 1.0;
-    for (Eigen::Index k = 0; k < pitch.size(); ++k) {
-      pitch[k] = static_cast<double>(k + 1) * power;
-      power *= stations.setup().z_mm / reach_;
-    }
+    const Eigen::RowVectorXd pitch = pitch_at(stations.setup().z_mm);
     for (Eigen::Index i = 0; i < stations.size(); ++i)
       out.row(i) = lever(stations.radius(i)) * pitch;
   }
@@ -81,7 +81,44 @@ class VerticalStraightness : public LinearEffect {
     return largest;
   }
 
+  void add_body_errors(const Pose& pose, double /*slide_mm*/, const Eigen::VectorXd& amplitudes,
+                       std::span<BodyErrors> errors) const override {
+    errors[body_ - 1].motion.beta += pitch_at(pose.z).dot(amplitudes);
+  }
+
+  [[nodiscard]] std::string advice(const UndeterminedPart& part) const override {
+    const bool square = std::ranges::any_of(part.others, [](const Effect* other) {
+      return other->description().motion == MotionError::squareness;
+    });
+    if (square && std::ranges::count(part.own, "c1") > 0)
+      return "no face can tell c_1 from the squareness: both tilt the Z carriage by a constant; "
+             "read the straightness of the Z carriage along Z, or measure the squareness itself "
+             "(run-out, Eq. 21)";
+    if (square)
+      return "cut faces at more Z levels (z_mm): each further level determines one more c_k";
+    return "cut faces at more Z levels (z_mm), with an offset that levelling has not removed or "
+           "with lever = \"paper\"; read the straightness of the Z carriage along Z";
+  }
+
+  // A second degree is the first that a squareness does not make.
+  [[nodiscard]] std::vector<EffectOptions> hypotheses(
+      const EffectOptions* declared) const override {
+    if (declared) return {};
+    return {EffectOptions{.degree = 2}};
+  }
+
  private:
+  // d pitch / d amplitude: k (z/reach)^(k-1).
+  [[nodiscard]] Eigen::RowVectorXd pitch_at(double z) const {
+    Eigen::RowVectorXd pitch(amplitudes());
+    double power = 1.0;
+    for (Eigen::Index k = 0; k < pitch.size(); ++k) {
+      pitch[k] = static_cast<double>(k + 1) * power;
+      power *= z / reach_;
+    }
+    return pitch;
+  }
+
   int body_;
   double reach_;
 };

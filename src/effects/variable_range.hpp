@@ -6,8 +6,9 @@
 
 namespace slideway {
 
-// One clock of a station, e.g. [](const Stations& s, Eigen::Index i) { return s.time(i); }
-using ClockReading = double (*)(const Stations&, Eigen::Index);
+// Reads an independent variable at a station, e.g.
+// [](const Stations& s, Eigen::Index i) { return s.time(i); }
+using VariableReading = double (*)(const Stations&, Eigen::Index);
 
 double time_of(const Stations& stations, Eigen::Index i);
 double slide_of(const Stations& stations, Eigen::Index i);
@@ -16,20 +17,20 @@ double revolution_of(const Stations& stations, Eigen::Index i);
 double distance_m_of(const Stations& stations, Eigen::Index i);
 double measuring_time_of(const Stations& stations, Eigen::Index i);
 
-Eigen::VectorXd readings(const Stations& stations, ClockReading clock);
+Eigen::VectorXd readings(const Stations& stations, VariableReading reading);
 
-// What a profile shows of a clock.
-struct ClockRange {
+// The range of an independent variable over a profile.
+struct VariableRange {
   double low = 0.0, high = 0.0;
   double step = 0.0;  // mean change from one sample to the next
 
   [[nodiscard]] double extent() const { return high - low; }
 };
 
-ClockRange range_of(const Stations& stations, ClockReading clock);
+VariableRange range_of(const Stations& stations, VariableReading reading);
 
 // Time constants (or distances) of a transient the profile can show.
-std::pair<double, double> transient_range(const Stations& stations, ClockReading clock);
+std::pair<double, double> transient_range(const Stations& stations, VariableReading reading);
 
 // Which readings see an effect.
 bool is_height(const Setup& setup);

@@ -1,4 +1,4 @@
-#include "clock_range.hpp"
+#include "variable_range.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,22 +16,22 @@ double measuring_time_of(const Stations& stations, Eigen::Index i) {
   return stations.measuring_time(i);
 }
 
-Eigen::VectorXd readings(const Stations& stations, ClockReading clock) {
+Eigen::VectorXd readings(const Stations& stations, VariableReading reading) {
   Eigen::VectorXd out(stations.size());
-  for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = clock(stations, i);
+  for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = reading(stations, i);
   return out;
 }
 
-ClockRange range_of(const Stations& stations, ClockReading clock) {
+VariableRange range_of(const Stations& stations, VariableReading reading) {
   if (stations.size() == 0) return {};
-  ClockRange range{clock(stations, 0), clock(stations, 0), 0.0};
+  VariableRange range{reading(stations, 0), reading(stations, 0), 0.0};
   double travelled = 0.0;
   double previous = range.low;
   for (Eigen::Index i = 1; i < stations.size(); ++i) {
-    const double value = clock(stations, i);
+    const double value = reading(stations, i);
     range.low = std::min(range.low, value);
     range.high = std::max(range.high, value);
-    // On a diameter the clock of the cut runs there and back.
+    // On a diameter the variables of the cut run there and back.
     travelled += std::abs(value - previous);
     previous = value;
   }
@@ -39,8 +39,8 @@ ClockRange range_of(const Stations& stations, ClockReading clock) {
   return range;
 }
 
-std::pair<double, double> transient_range(const Stations& stations, ClockReading clock) {
-  const ClockRange range = range_of(stations, clock);
+std::pair<double, double> transient_range(const Stations& stations, VariableReading reading) {
+  const VariableRange range = range_of(stations, reading);
   return {4.0 * range.step, 10.0 * range.extent()};
 }
 
