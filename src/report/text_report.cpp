@@ -64,7 +64,8 @@ std::string inputs(const Result& result) {
                    Column::number, Column::number});
   std::string notes;
   for (const InputSummary& in : result.inputs) {
-    table.add({in.name, std::string(text_of(in.kind)) + " " + std::string(text_of(in.quantity)), std::string(text_of(in.role)), std::to_string(in.samples),
+    table.add({in.name, std::string(text_of(in.kind)) + " " + std::string(text_of(in.quantity)),
+               std::string(text_of(in.role)), std::to_string(in.samples),
                number(in.position_min_mm, 5) + " to " + number(in.position_max_mm, 5),
                size_in(in.rms_um, in.rms_urad), size_in(in.pv_um, in.pv_urad)});
     notes += note(in.name + ": " + in.file + ", sha256 " + in.sha256.substr(0, 16) +
@@ -84,10 +85,10 @@ std::string closure(const ClosureSummary& closure) {
 std::string low_band(const Result& result) {
   std::string text;
   for (const LowBandSummary& band : result.low_band) {
-    const std::string what =
-        band.level == 0 ? "none (level 0), the profile as it is"
-                        : band.wavelet + ", level " + std::to_string(band.level) + ", ends " +
-                              std::string(text_of(band.boundary));
+    const std::string what = band.level == 0
+                                 ? "none (level 0), the profile as it is"
+                                 : band.wavelet + ", level " + std::to_string(band.level) +
+                                       ", ends " + std::string(text_of(band.boundary));
     text += note(band.profile + ": " + what + ", " + counted(band.values, "value"));
   }
   return text.empty() ? "" : heading("Low band") + text;
@@ -203,8 +204,9 @@ std::string fit_table(const ModelResult& fit) {
   head += ", " + counted(fit.observations, "value") + " (" + number(fit.effective_observations, 4) +
           " effective)";
   if (fit.rms_um) head += ", residual rms " + number(*fit.rms_um, 4) + " µm";
-  const bool declared = std::all_of(fit.noise.begin(), fit.noise.end(),
-                                    [](const auto& n) { return n.scaling == NoiseScaling::declared; });
+  const bool declared = std::all_of(fit.noise.begin(), fit.noise.end(), [](const auto& n) {
+    return n.scaling == NoiseScaling::declared;
+  });
   if (declared)  // where noise is estimated, the two are equal by construction
     head += ", chi-square " + number(fit.chi_square, 4) + " at " +
             number(fit.degrees_of_freedom, 4) + " degrees of freedom";
@@ -293,8 +295,8 @@ std::string residuals(const ModelResult& fit) {
     TextTable shares({"effect", "profile", "rms", "share"},
                      {Column::effect, Column::name, Column::number, Column::number});
     for (const Contribution& c : fit.contributions)
-      shares.add({c.effect, c.profile, size_in(c.rms_um, c.rms_urad),
-                  number(100.0 * c.share, 3) + " %"});
+      shares.add(
+          {c.effect, c.profile, size_in(c.rms_um, c.rms_urad), number(100.0 * c.share, 3) + " %"});
     text += heading("Share of each effect in the low band at the fitted values") + shares.text();
   }
   if (!fit.residuals.empty()) {

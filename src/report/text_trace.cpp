@@ -117,7 +117,8 @@ std::string limits(const TraceResult& trace) {
   TextTable table({"effect", "found from", "other shapes", "at"},
                   {Column::effect, Column::number, Column::number, Column::name});
   for (const DetectionLimit& limit : trace.detection_limits)
-    table.add({limit.effect, limit.value ? number(*limit.value, 2) + " " + limit.unit : "none", extremes(limit), limit.at});
+    table.add({limit.effect, limit.value ? number(*limit.value, 2) + " " + limit.unit : "none",
+               extremes(limit), limit.at});
   return item("Sizes found with 80 % probability:") + table.text();
 }
 
