@@ -33,8 +33,7 @@ std::string straightness_errors(const std::vector<Node>& errors) {
 }
 
 std::string straightness(const Node& report) {
-  if (!report.has("final") || !report["final"].has("straightness"))
-    return "";
+  if (!report.has("final") || !report["final"].has("straightness")) return "";
   const std::vector<Node> errors = report["final"]["straightness"]["errors"].entries();
   if (errors.empty())
     return html_section(

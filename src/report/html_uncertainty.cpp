@@ -68,12 +68,13 @@ std::string correlations(const Node& fit) {
     if (parts.size() != 3) each.fail("two names and a coefficient");
     return ParameterCorrelation(parts[0].text(), parts[1].text(), parts[2].number());
   });
-  std::ranges::stable_sort(pairs, std::greater(),
-                           [](const ParameterCorrelation& pair) { return std::abs(std::get<2>(pair)); });
+  std::ranges::stable_sort(pairs, std::greater(), [](const ParameterCorrelation& pair) {
+    return std::abs(std::get<2>(pair));
+  });
   const std::size_t listed = std::min(kLargest, pairs.size());
   HtmlTable table(
-      "Correlation of the estimates, the " + std::to_string(listed) +
-          " largest of " + std::to_string(pairs.size()) + " above 0.1",
+      "Correlation of the estimates, the " + std::to_string(listed) + " largest of " +
+          std::to_string(pairs.size()) + " above 0.1",
       {{"parameter", Column::text}, {"parameter", Column::text}, {"ρ", Column::number}});
   for (const auto& [a, b, coefficient] : std::span(pairs).first(listed))
     table.add({escaped(a), escaped(b), html_number(coefficient, 4)});

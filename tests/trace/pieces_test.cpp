@@ -264,8 +264,7 @@ TEST(DetectionLimit, GrowsWithTheNoise) {
   ASSERT_EQ(quiet.size(), 4U);
   for (std::size_t i = 0; i < quiet.size(); ++i) {
     SCOPED_TRACE(quiet[i].effect);
-    EXPECT_NEAR(noisy[i].value.value(), 2.0 * quiet[i].value.value(),
-                kRounding * *quiet[i].value);
+    EXPECT_NEAR(noisy[i].value.value(), 2.0 * quiet[i].value.value(), kRounding * *quiet[i].value);
     EXPECT_EQ(quiet[i].by_shape.empty(), quiet[i].at.empty());
     for (std::size_t k = 0; k < quiet[i].by_shape.size(); ++k) {
       const double size = quiet[i].by_shape[k].value.value();
