@@ -96,8 +96,8 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
                      line.show("closing the loop: " + stage, done);
                    });
   }();
-  report([&] { return text_report(analysis.result, analysis.trace, analysis.details); },
-         [&] { return json_report(analysis.result, analysis.trace, analysis.details); });
+  report([&] { return text_report(analysis); },
+         [&] { return json_report(analysis); });
   return strict_ && is_negative(analysis) ? kNegativeVerdict : kDone;
 }
 

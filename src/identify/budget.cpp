@@ -8,7 +8,7 @@ namespace {
 
 struct Source {
   std::string name;
-  char type;
+  EvaluationType type;
   Eigen::MatrixXd covariance;  // of w
 };
 
@@ -21,19 +21,20 @@ std::vector<Source> sources_of(const Solution& fit) {
     const bool declared = fit.noise[i].declared;
     out.push_back({"noise of " + fit.linear.observations[i]->profile->name +
                        (declared ? ", as declared" : ", estimated from the residual"),
-                   declared ? 'B' : 'A', fit.uncertainty.information[i]});
+                   declared ? EvaluationType::B : EvaluationType::A, fit.uncertainty.information[i]});
   }
   if (const Eigen::MatrixXd rows = fit.linear.prior_rows * fit.rank.basis; rows.rows() > 0)
-    out.push_back({"priors of the problem file", 'B', rows.transpose() * rows});
+    out.push_back({"priors of the problem file", EvaluationType::B, rows.transpose() * rows});
   if (std::ranges::any_of(fit.noise, &Noise::is_estimated))
-    out.push_back({"noise that comes from the same data", 'A',
+    out.push_back({"noise that comes from the same data", EvaluationType::A,
                    fit.uncertainty.covariance - Eigen::MatrixXd::Identity(r, r)});
   return out;
 }
 
 }  // namespace
 
-std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit) {
+std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit,
+                                       const MoreVariance& more) {
   const std::vector<Source> sources = sources_of(fit);
   std::vector<Budget> out;
   for (const ModelTerm& term : model.terms)
@@ -47,6 +48,9 @@ std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit) 
         const double variance = (row * source.covariance * row.transpose()).value();
         budget.lines.push_back({source.name, source.type, std::sqrt(std::max(variance, 0.0))});
       }
+      if (more)
+        budget.lines.push_back({"structure without a name", EvaluationType::A,
+                                std::sqrt(more(fit.parameters.jacobian.row(index)))});
       out.push_back(std::move(budget));
     }
   return out;

@@ -60,7 +60,7 @@ double straightness_error(const Model& model, const ModelTerm& term, const Solut
 }
 
 /// Whether a curvature of the straightness is told from zero.
-bool is_curved(const ModelTerm& term, const FitResult& out) {
+bool is_curved(const ModelTerm& term, const ModelResult& out) {
   const std::vector<Parameter>& parameters = term.effect->parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const FittedParameter& p = out.parameters[static_cast<std::size_t>(term.first_parameter) + i];
@@ -71,7 +71,7 @@ bool is_curved(const ModelTerm& term, const FitResult& out) {
   return false;
 }
 
-void check_plausibility(const Model& model, const Solution& fit, FitResult& out) {
+void check_plausibility(const Model& model, const Solution& fit, ModelResult& out) {
   const ModelTerm* term = model.find_term(MotionError::straightness);
   const double travel = model.range.slide_max - model.range.slide_min;
   if (!term || !(travel > 0.0)) return;
@@ -89,7 +89,7 @@ void check_plausibility(const Model& model, const Solution& fit, FitResult& out)
   out.notes.push_back(out.implausible + ": look for another cause before blaming the slide");
 }
 
-void explain_scaling(const Solution& fit, FitResult& out) {
+void explain_scaling(const Solution& fit, ModelResult& out) {
   const bool estimated = std::any_of(fit.noise.begin(), fit.noise.end(),
                                      [](const Noise& noise) { return !noise.declared; });
   const bool correlated = std::any_of(fit.noise.begin(), fit.noise.end(), [](const Noise& noise) {
@@ -106,7 +106,7 @@ void explain_scaling(const Solution& fit, FitResult& out) {
             "from Student's t for 95.45 %");
 }
 
-void explain_long_correlation(const Solution& fit, FitResult& out) {
+void explain_long_correlation(const Solution& fit, ModelResult& out) {
   for (std::size_t i = 0; i < fit.noise.size(); ++i) {
     const Profile& profile = *fit.linear.observations[i]->profile;
     const auto n = static_cast<double>(fit.linear.observations[i]->values.size());
@@ -120,7 +120,7 @@ void explain_long_correlation(const Solution& fit, FitResult& out) {
 
 }  // namespace
 
-void add_checks(const Model& model, const Solution& fit, FitResult& out) {
+void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   if (const std::optional<double> gap = neglected_height(model, fit))
     out.neglected_um = *gap / kMicrometre;
   explain_scaling(fit, out);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reported.hpp"
 #include "residual.hpp"
 
 namespace slideway {
@@ -31,9 +32,9 @@ void evaluate(const Eigen::VectorXd& x, const Eigen::VectorXd& z, ReferenceLine&
   line.error = line.highest - line.lowest;
 }
 
-ReferenceLine through(const std::string& name, const Eigen::VectorXd& x, const Eigen::VectorXd& z,
+ReferenceLine through(ReferenceLineKind kind, const Eigen::VectorXd& x, const Eigen::VectorXd& z,
                       Eigen::Index a, Eigen::Index b) {
-  ReferenceLine line{name};
+  ReferenceLine line{kind};
   line.slope = (z[b] - z[a]) / (x[b] - x[a]);
   line.at_zero = z[a] - line.slope * x[a];
   evaluate(x, z, line);
@@ -69,7 +70,8 @@ ReferenceLine minimum_zone(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
   for (const double sign : {1.0, -1.0}) {
     const std::vector<Eigen::Index> corners = hull(x, z, sign);
     for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
-      ReferenceLine line = through("minimum zone", x, z, corners[i], corners[i + 1]);
+      ReferenceLine line =
+          through(ReferenceLineKind::minimum_zone, x, z, corners[i], corners[i + 1]);
       if (!best || line.error < best->error) best = std::move(line);
     }
   }
@@ -88,10 +90,35 @@ bool is_determined(const ModelTerm& term, const Solution& fit) {
   return true;
 }
 
+void add_error(const ReferenceLine& line, const Eigen::VectorXd& x, const Spread& spread,
+               Straightness& out) {
+  StraightnessError error;
+  error.line = line.kind;
+  error.unit = "um";
+  Reported::set(line.error, spread, kMicrometre, error);
+  error.highest_um = line.highest / kMicrometre;
+  error.highest_at_mm = x[static_cast<Eigen::Index>(line.highest_at)];
+  error.lowest_um = line.lowest / kMicrometre;
+  error.lowest_at_mm = x[static_cast<Eigen::Index>(line.lowest_at)];
+  switch (line.kind) {
+    case ReferenceLineKind::end_point:
+      out.end_point_um = error.value;
+      out.expanded_uncertainty_um = error.expanded_uncertainty;
+      break;
+    case ReferenceLineKind::least_squares:
+      out.least_squares_um = error.value;
+      break;
+    case ReferenceLineKind::minimum_zone:
+      out.minimum_zone_um = error.value;
+      break;
+  }
+  out.errors.push_back(std::move(error));
+}
+
 }  // namespace
 
 ReferenceLine least_squares_line(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
-  ReferenceLine line{"least squares"};
+  ReferenceLine line{ReferenceLineKind::least_squares};
   const Eigen::VectorXd centred = x.array() - x.mean();
   line.slope = centred.dot(z) / centred.squaredNorm();
   line.at_zero = z.mean() - line.slope * x.mean();
@@ -104,51 +131,42 @@ ReferenceLine least_squares_line(const Eigen::VectorXd& x, const Eigen::VectorXd
 
 std::vector<ReferenceLine> reference_lines(const Eigen::VectorXd& positions,
                                            const Eigen::VectorXd& heights) {
-  return {through("end-point", positions, heights, 0, positions.size() - 1),
+  return {through(ReferenceLineKind::end_point, positions, heights, 0, positions.size() - 1),
           least_squares_line(positions, heights), minimum_zone(positions, heights)};
 }
 
-std::optional<IdentifiedStraightness> identified_straightness(const Model& model,
-                                                              const Solution& fit,
-                                                              const MoreVariance& more) {
+std::optional<Straightness> identified_straightness(const Model& model, const Solution& fit,
+                                                    const MoreVariance& more) {
   const ModelTerm* term = model.find_term(MotionError::straightness);
   if (!term || !(model.range.slide_max > model.range.slide_min)) return std::nullopt;
+  Straightness out;
+  if (!is_determined(*term, fit)) {
+    out.reason = "these data do not tell the straightness from another effect";
+    return out;
+  }
   const Eigen::VectorXd x =
       Eigen::VectorXd::LinSpaced(kPoints, model.range.slide_min, model.range.slide_max);
   const Eigen::MatrixXd columns = along_slide(*term->effect, model.machine, x, Quantity::height,
                                               shapes_of(*term, fit.estimate.shapes));
   const Eigen::Index first = term->first_amplitude, count = columns.cols();
-  const Eigen::MatrixXd deviations = least_squares_deviations(x);
-  IdentifiedStraightness out;
-  if (!is_determined(*term, fit)) {
-    out.reason = "these data do not tell the straightness from another effect";
-    return out;
-  }
+  const Reported reported(fit, more);
   const auto spread = [&](const Eigen::RowVectorXd& weights) {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(fit.uncertainty.basis.rows());
     row.segment(first, count) = weights * columns;
-    Spread widened = fit.uncertainty.of(row);
-    if (more)
-      widened.standard_uncertainty = std::hypot(widened.standard_uncertainty, std::sqrt(more(row)));
-    return widened;
+    return reported.spread(row);
   };
-  const Eigen::VectorXd heights = columns * fit.estimate.amplitudes.segment(first, count);
-  const Eigen::VectorXd from_line = deviations * heights;
+  const Eigen::MatrixXd deviations = least_squares_deviations(x);
+  const Eigen::VectorXd from_line =
+      deviations * columns * fit.estimate.amplitudes.segment(first, count);
   for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const Spread own = spread(deviations.row(i));
-    out.position_mm.push_back(x[i]);
-    out.deviation_um.push_back(from_line[i] / kMicrometre);
-    out.expanded_uncertainty_um.push_back(coverage_factor(own.degrees_of_freedom) *
-                                          own.standard_uncertainty / kMicrometre);
+    QuantityValue own;
+    Reported::set(from_line[i], spread(deviations.row(i)), kMicrometre, own);
+    out.curve.position_mm.push_back(x[i]);
+    out.curve.deviation_um.push_back(*own.value);
+    out.curve.expanded_uncertainty_um.push_back(*own.expanded_uncertainty);
   }
-  for (const ReferenceLine& line : reference_lines(x, from_line)) {
-    const Spread own = spread(line.sensitivity);
-    const double k = coverage_factor(own.degrees_of_freedom);
-    const double u = own.standard_uncertainty / kMicrometre;
-    out.errors.push_back({line.name, line.error / kMicrometre, line.highest / kMicrometre,
-                          x[static_cast<Eigen::Index>(line.highest_at)], line.lowest / kMicrometre,
-                          x[static_cast<Eigen::Index>(line.lowest_at)], u, k * u, k});
-  }
+  for (const ReferenceLine& line : reference_lines(x, from_line))
+    add_error(line, x, spread(line.sensitivity), out);
   return out;
 }
 

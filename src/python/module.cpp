@@ -94,8 +94,8 @@ py::tuple analysed(const py::object& problem,
     const Analysis analysis =
         analyse(read, read_profiles(read, traces),
                 {ranks_only ? Scope::rank : Scope::identify, closes_loop, true}, let_interrupt);
-    json = json_report(analysis.result, analysis.trace, analysis.details);
-    report = text_report(analysis.result, analysis.trace, analysis.details);
+    json = json_report(analysis);
+    report = text_report(analysis);
   }
   return py::make_tuple(text(json), text(report));
 }

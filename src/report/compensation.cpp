@@ -1,16 +1,14 @@
 #include "slideway/report/compensation.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <functional>
-#include <iterator>
-#include <memory>
+#include <map>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
-#include "slideway/effects/catalogue.hpp"
-#include "slideway/report/document.hpp"
 #include "slideway/report/number.hpp"
 
 namespace slideway {
@@ -18,96 +16,53 @@ namespace {
 
 constexpr double kPieces = 50.0;  // of the travel, where no step is asked for
 constexpr double kMost = 5000.0;
-constexpr Eigen::Index kSamples = 51;  // of the travel, to see what a parameter changes
-constexpr double kRounding = 1e-9;     // of the rise a parameter makes
 
 using Parameters = std::vector<FittedParameter>;
 
 bool is_determined(const FittedParameter& p) { return p.identifiable && p.value; }
 
-/// Parameters of the effect that is this error of the carriages.
-Parameters parameters_of(const Parameters& all, MotionError error) {
-  Parameters out;
-  std::ranges::copy_if(all, std::back_inserter(out),
-                       [&](const FittedParameter& p) { return motion_error_of(p.name) == error; });
-  return out;
-}
-
-std::string effect_name(const FittedParameter& p) { return p.name.substr(0, p.name.find('.')); }
-
-/// The tool tip's deviation in Z that the straightness makes, mm: what the carriage rises minus the
-/// lever p_x times what it pitches.
+/// The tool tip's deviation in Z that straightness makes: Σ b_k (x^k - p_x k x^(k-1)), mm.
 class TipLocus {
  public:
-  TipLocus(const Parameters& parameters, const TravelSummary& travel)
-      : travel_(travel), parameters_(parameters_of(parameters, MotionError::straightness)) {
-    if (parameters_.empty()) return;
-    std::vector<std::string> names;
-    const std::string name = effect_name(parameters_.front());
-    for (const FittedParameter& p : parameters_) names.push_back(p.name.substr(name.size() + 1));
-    effect_ =
-        make_effect_with(name, names, machine_,
-                         {.slide_min = travel.slide_min_mm, .slide_max = travel.slide_max_mm});
-    amplitudes_ = Eigen::VectorXd::Zero(effect_->amplitudes());
-    for (const FittedParameter& p : parameters_)
-      if (is_determined(p)) amplitudes_ += *p.value * unit_of(p);
+  TipLocus(const Parameters& parameters, const TravelSummary& travel) : travel_(&travel) {
+    constexpr std::string_view kPrefix = "straightness.b";
+    for (const FittedParameter& p : parameters) {
+      if (!p.name.starts_with(kPrefix)) continue;
+      std::size_t k = 0;
+      std::from_chars(p.name.data() + kPrefix.size(), p.name.data() + p.name.size(), k);
+      b_[k] = &p;
+    }
   }
 
-  [[nodiscard]] bool is_declared() const { return effect_ != nullptr; }
+  [[nodiscard]] bool is_declared() const { return !b_.empty(); }
 
-  /// Deviations at slide coordinates.
-  [[nodiscard]] Eigen::VectorXd at(const Eigen::VectorXd& x) const { return tip(x, amplitudes_); }
+  /// Names of b_first and above that the data do not determine.
+  [[nodiscard]] std::vector<std::string> undetermined(std::size_t first) const {
+    std::vector<std::string> names;
+    for (const auto& [k, p] : b_)
+      if (k >= first && !is_determined(*p)) names.push_back(p->symbol);
+    return names;
+  }
 
-  /// Symbols of what the data do not determine and would change the form, as seen from the line
-  /// through its end points, or that line's slope.
-  [[nodiscard]] std::vector<std::string> undetermined(bool slope) const {
-    const Eigen::VectorXd x =
-        Eigen::VectorXd::LinSpaced(kSamples, travel_.slide_min_mm, travel_.slide_max_mm);
-    std::vector<std::string> symbols;
-    for (const FittedParameter& p : parameters_) {
-      if (is_determined(p)) continue;
-      const Eigen::VectorXd unit = unit_of(p);
-      const double size = (rises(x, Quantity::height) * unit).cwiseAbs().maxCoeff();
-      const Eigen::VectorXd z = tip(x, unit);
-      const double rise = z[z.size() - 1] - z[0];
-      const Eigen::VectorXd line = Eigen::VectorXd::LinSpaced(z.size(), z[0], z[z.size() - 1]);
-      const double change = slope ? std::abs(rise) : (z - line).cwiseAbs().maxCoeff();
-      if (change > kRounding * size) symbols.push_back(p.symbol);
+  [[nodiscard]] double operator()(double x) const {
+    long double sum = 0.0L;
+    for (const auto& [k, p] : b_) {
+      if (!is_determined(*p)) continue;
+      const long double below = k == 0 ? 0.0L : std::pow(static_cast<long double>(x), k - 1.0L);
+      sum += *p->value * (k == 0 ? 1.0L : (x - lever(x) * static_cast<double>(k)) * below);
     }
-    return symbols;
+    return static_cast<double>(sum);
   }
 
  private:
   [[nodiscard]] double lever(double x) const {
-    if (!travel_.spindle_position_mm) return 0.0;  // read along the slide itself
-    return travel_.lever == "paper" ? x - *travel_.spindle_position_mm
-                                    : travel_.overhang_mm.value_or(0.0);
+    if (!travel_->spindle_position_mm) return 0.0;  // read along the slide itself
+    return travel_->lever == Lever::paper ? x - *travel_->spindle_position_mm
+                                          : travel_->overhang_mm.value_or(0.0);
   }
 
-  [[nodiscard]] Eigen::MatrixXd rises(const Eigen::VectorXd& x, Quantity quantity) const {
-    return along_slide(*effect_, machine_, x, quantity);
-  }
-
-  [[nodiscard]] Eigen::VectorXd tip(const Eigen::VectorXd& x,
-                                    const Eigen::VectorXd& amplitudes) const {
-    const Eigen::VectorXd levers = x.unaryExpr([this](double at) { return lever(at); });
-    return rises(x, Quantity::height) * amplitudes -
-           levers.cwiseProduct(rises(x, Quantity::slope) * amplitudes);
-  }
-
-  /// Amplitudes where this parameter is 1 and all others are 0.
-  [[nodiscard]] Eigen::VectorXd unit_of(const FittedParameter& p) const {
-    const std::vector<Parameter>& all = effect_->parameters();
-    const std::string own = p.name.substr(p.name.find('.') + 1);
-    const auto index = std::ranges::find(all, own, &Parameter::name) - all.begin();
-    return effect_->from_parameters(Eigen::VectorXd::Unit(std::ssize(all), index));
-  }
-
-  const TravelSummary& travel_;
-  Machine machine_{Machine::paper_lathe(), Lever::paper};
-  Parameters parameters_;
-  std::unique_ptr<Effect> effect_;
-  Eigen::VectorXd amplitudes_;
+  const TravelSummary* travel_;
+  std::map<std::size_t, const FittedParameter*> b_;
 };
 
 std::vector<double> evenly(const TravelSummary& travel, double step_mm) {
@@ -138,7 +93,8 @@ std::string drowned(const Analysis& analysis, const Compensation& table,
                     const std::vector<double>& form) {
   if (!analysis.trace || !analysis.trace->unnamed) return "";
   const Unnamed& left = *analysis.trace->unnamed;
-  const bool slope = left.unit == "urad";
+  const bool slope = !left.rms_um;
+  const double rms = left.rms_um.value_or(left.rms_urad.value_or(0.0));
   std::vector<double> seen = form;
   if (slope) {
     const double step = table.positions_mm[1] - table.positions_mm[0];
@@ -146,22 +102,22 @@ std::string drowned(const Analysis& analysis, const Compensation& table,
     seen.pop_back();
   }
   const double size = rms_about_mean(seen) / (slope ? kMicroradian : kMicrometre);
-  if (left.rms < size) return "";
+  if (rms < size) return "";
   const std::string unit = slope ? " µrad" : " µm";
-  return "the loop leaves " + significant(left.rms, 3) + unit +
+  return "the loop leaves " + significant(rms, 3) + unit +
          " rms without a name, no less than its own " + significant(size, 3) + unit;
 }
 
 void refuse_whole(const Analysis& analysis) {
   const auto refuse = [](const std::string& why) { throw DataError("no table: " + why); };
-  if (!analysis.result.fit) refuse("the report holds no fit; accepted: one of identify or fit");
-  if (!analysis.result.fit->converged) refuse("the fit did not converge");
+  if (!analysis.result.final) refuse("the report holds no fit; accepted: one of identify or fit");
+  if (!analysis.result.final->converged) refuse("the fit did not converge");
   if (!analysis.result.travel)
     refuse("the report says no travel, being of an older slideway; identify the problem again");
-  for (const FittedParameter& p : final_parameters(analysis))
-    if (motion_error_of(p.name) != MotionError::none && effect_name(p).ends_with(']'))
+  for (const FittedParameter& p : analysis.result.final->parameters)
+    if (p.name.starts_with("straightness[") || p.name.starts_with("squareness["))
       refuse("several carriages move along X; accepted: a machine with one");
-  if (analysis.trace && analysis.trace->verdict == "not_identifiable")
+  if (analysis.trace && analysis.trace->verdict == TraceVerdict::not_identifiable)
     refuse(
         "the closed loop's verdict is not_identifiable: the data cannot tell what made the form");
 }
@@ -174,34 +130,29 @@ double add_straightness(const Analysis& analysis, const TipLocus& locus, Compens
   };
   const TravelSummary& travel = *analysis.result.travel;
   if (!locus.is_declared()) return leave_out("the model has no straightness");
-  if (const auto names = locus.undetermined(false); !names.empty())
+  if (const auto names = locus.undetermined(2); !names.empty())
     return leave_out("the data do not determine " + joined(names));
-  if (travel.spindle_position_mm && travel.lever == "split" && !travel.overhang_mm)
+  if (travel.spindle_position_mm && travel.lever == Lever::split && !travel.overhang_mm)
     return leave_out("the faces were cut at several overhangs, and its pitch acts on each");
-  const std::string& implausible = analysis.result.fit->implausible;
+  const std::string& implausible = analysis.result.final->implausible;
   if (!implausible.empty() && (!analysis.trace || analysis.trace->rounds.empty()))
     return leave_out(implausible);
 
   const double first = out.positions_mm.front(), last = out.positions_mm.back();
-  const Eigen::VectorXd ends = locus.at(Eigen::Vector2d(first, last));
-  const double slope = (ends[1] - ends[0]) / (last - first);
-  const auto deviations = [&](const std::vector<double>& x) {
-    const Eigen::Map<const Eigen::VectorXd> at(x.data(), std::ssize(x));
-    const Eigen::VectorXd z = (locus.at(at) - slope * at).array() - ends[0] + slope * first;
-    return std::vector<double>(z.begin(), z.end());
-  };
-  std::vector<double> form = deviations(out.positions_mm), between;
+  const double slope = (locus(last) - locus(first)) / (last - first);
+  const auto deviation = [&](double x) { return locus(x) - locus(first) - slope * (x - first); };
+  std::vector<double> form;
+  for (const double x : out.positions_mm) form.push_back(deviation(x));
   form.front() = form.back() = 0.0;
-  for (std::size_t i = 0; i + 1 < form.size(); ++i)
-    between.push_back((out.positions_mm[i] + out.positions_mm[i + 1]) / 2.0);
-  between = deviations(between);
-  for (std::size_t i = 0; i < between.size(); ++i)
+  for (std::size_t i = 0; i + 1 < form.size(); ++i) {
+    const double x = (out.positions_mm[i] + out.positions_mm[i + 1]) / 2.0;
     out.interpolation_mm =
-        std::max(out.interpolation_mm, std::abs(between[i] - (form[i] + form[i + 1]) / 2.0));
+        std::max(out.interpolation_mm, std::abs(deviation(x) - (form[i] + form[i + 1]) / 2.0));
+  }
   if (const std::string why = drowned(analysis, out, form); !why.empty()) return leave_out(why);
   out.straightness_mm = std::move(form);
   const std::string lever = !travel.spindle_position_mm ? ", of the carriage"
-                            : travel.lever == "paper"
+                            : travel.lever == Lever::paper
                                 ? ", at the tool tip, with the pitch on the lever p_x = r"
                                 : ", at the tool tip, with the pitch on the overhang of " +
                                       significant(*travel.overhang_mm, 6) + " mm";
@@ -215,15 +166,17 @@ void add_squareness(const Analysis& analysis, const TipLocus& locus, double slop
   const auto leave_out = [&](const std::string& why) {
     out.left_out.push_back("B0X is left out: " + why);
   };
-  const Parameters squareness = parameters_of(final_parameters(analysis), MotionError::squareness);
-  if (squareness.empty()) return leave_out("the model has no squareness");
-  const FittedParameter* found = &squareness.front();
+  const Parameters& parameters = analysis.result.final->parameters;
+  const auto found = std::ranges::find(parameters, "squareness.dbeta_xz", &FittedParameter::name);
+  if (found == parameters.end()) return leave_out("the model has no squareness");
   if (!is_determined(*found)) return leave_out("the data do not determine " + found->symbol);
-  if (!out.straightness_mm.empty())
-    if (const auto names = locus.undetermined(true); !names.empty())
+  const bool needs_b1 =
+      analysis.result.travel->lever == Lever::split && !out.straightness_mm.empty();
+  if (needs_b1)
+    if (const auto names = locus.undetermined(1); !names.empty())
       return leave_out("the data do not determine " + joined(names));
-  const auto& check = analysis.result.squareness;
-  if (check && check->verdict == "inconsistent")
+  const auto& check = analysis.result.crosscheck.squareness;
+  if (check && check->verdict == Consistency::inconsistent)
     return leave_out("the cross-check with the run-out is inconsistent (E_n " +
                      (check->En ? significant(*check->En, 3) : "unknown") + ")");
   const double angle = *found->value - slope;
@@ -233,9 +186,10 @@ void add_squareness(const Analysis& analysis, const TipLocus& locus, double slop
   out.squareness_rad = angle;
   out.basis.push_back(
       "B0X: squareness of X to the spindle axis average line, E_B(0C)X, rad: Δβxz = " +
-      (found->expanded_uncertainty ? with_uncertainty(*found->value, *found->expanded_uncertainty) +
-                                         " (U, k = " + fixed_point(found->coverage_factor, 2) + ")"
-                                   : significant(*found->value, 6)) +
+      (found->expanded_uncertainty
+           ? with_uncertainty(*found->value, *found->expanded_uncertainty) +
+                 " (U, k = " + fixed_point(found->coverage_factor.value_or(2.0), 2) + ")"
+           : significant(*found->value, 6)) +
       (out.straightness_mm.empty()
            ? ""
            : " minus " + significant(slope, 6) + ", the slope of EZX's reference line"));
@@ -248,7 +202,7 @@ Compensation compensation(const Analysis& analysis, double step_mm) {
   Compensation out;
   const TravelSummary& travel = *analysis.result.travel;
   out.positions_mm = evenly(travel, step_mm);
-  const TipLocus locus(final_parameters(analysis), travel);
+  const TipLocus locus(analysis.result.final->parameters, travel);
   const double slope = add_straightness(analysis, locus, out);
   add_squareness(analysis, locus, slope, out);
   if (out.straightness_mm.empty() && !out.squareness_rad)
@@ -256,15 +210,15 @@ Compensation compensation(const Analysis& analysis, double step_mm) {
   if (!analysis.trace)
     out.left_out.emplace_back(
         "in doubt: the closed loop was not run, so what the model lacks is in these numbers");
-  else if (analysis.trace->verdict == "ambiguous")
+  else if (analysis.trace->verdict == TraceVerdict::ambiguous)
     out.left_out.emplace_back(
         "in doubt: the closed loop's verdict is ambiguous, and its rivals would leave other "
         "numbers");
-  const Parameters pitch_of_z =
-      parameters_of(final_parameters(analysis), MotionError::vertical_straightness);
-  if (!pitch_of_z.empty())
-    out.left_out.push_back("not in this table: " + effect_name(pitch_of_z.front()) +
-                           " of the report (E_BZ)");
+  const auto is_pitch_of_z = [](const FittedParameter& p) {
+    return p.name.starts_with("vertical_straightness.");
+  };
+  if (std::ranges::any_of(analysis.result.final->parameters, is_pitch_of_z))
+    out.left_out.emplace_back("not in this table: vertical_straightness of the report (E_BZ)");
   return out;
 }
 

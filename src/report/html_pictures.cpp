@@ -33,14 +33,13 @@ std::string straightness_errors(const std::vector<Node>& errors) {
 }
 
 std::string straightness(const Node& report) {
-  if (!report.has("straightness") || !report.has("curves") || !report["curves"].has("straightness"))
-    return "";
-  const std::vector<Node> errors = report["straightness"]["errors"].entries();
+  if (!report.has("final") || !report["final"].has("straightness")) return "";
+  const std::vector<Node> errors = report["final"]["straightness"]["errors"].entries();
   if (errors.empty())
     return html_section(
         "straightness", "Straightness of the slide, ISO 230-1",
-        "<p>None is given: " + html_text(report["straightness"]["reason"]) + ".</p>\n");
-  const Node curve = report["curves"]["straightness"];
+        "<p>None is given: " + html_text(report["final"]["straightness"]["reason"]) + ".</p>\n");
+  const Node curve = report["final"]["straightness"]["curve"];
   const std::vector<double> x = curve["position_mm"].numbers();
   const std::vector<double> deviation = curve["deviation_um"].numbers();
   const std::vector<double> U = curve["expanded_uncertainty_um"].numbers();

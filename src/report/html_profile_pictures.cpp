@@ -41,8 +41,8 @@ std::string drawn(const Node& curves, const Drawing& drawing, const std::string&
 }
 
 std::string noise_of(const Node& report, const std::string& profile) {
-  if (!report.has("fit")) return "";
-  for (const Node& noise : report["fit"]["noise"].entries())
+  if (!report.has("final")) return "";
+  for (const Node& noise : report["final"]["noise"].entries())
     if (noise["profile"].verbatim() == profile)
       return ", as wide as the noise (standard deviation " +
              html_size(noise, "standard_deviation", 2) + ")";

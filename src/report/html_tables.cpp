@@ -170,12 +170,12 @@ std::string options(const Node& report) {
   HtmlTable table("Software and options", {{"option", Column::text}, {"value", Column::text}});
   table.add({"software",
              "slideway " + html_text(report["version"]) + ", " + html_text(report["schema"])});
-  const Node low = report["low_band"];
-  table.add({"low band", low["level"].number() == 0.0
-                             ? "none, the profiles as they are"
-                             : html_text(low["wavelet"]) + ", level " + html_text(low["level"]) +
-                                   ", ends " + html_text(low["boundary"]) + ", " +
-                                   html_text(low["values"]) + " values"});
+  for (const Node& low : report["low_band"].entries())
+    table.add({"low band of " + html_text(low["profile"]),
+               low["level"].number() == 0.0
+                   ? "none, the profile as it is"
+                   : html_text(low["wavelet"]) + ", level " + html_text(low["level"]) + ", ends " +
+                         html_text(low["boundary"]) + ", " + html_text(low["values"]) + " values"});
   if (report.has("options")) add_options(report, table);
   return table.html();
 }

@@ -17,7 +17,7 @@ std::string budget_heading(const Node& line) {
 
 /// A parameter a row, a source a column; every parameter has the same sources.
 std::string budget(const Node& report) {
-  const std::vector<Node> budgets = report["uncertainty_budget"].entries();
+  const std::vector<Node> budgets = report["final"]["uncertainty_budget"].entries();
   if (budgets.empty()) return "";
   const std::vector<Node> sources = budgets.front()["lines"].entries();
   std::vector<std::pair<std::string, Column>> columns{{"parameter", Column::text},
@@ -63,13 +63,18 @@ std::string noise(const Node& fit) {
 }
 
 std::string correlations(const Node& fit) {
-  std::vector<Correlation> pairs = fit["correlations"].list(correlation);
-  std::ranges::stable_sort(pairs, std::greater(),
-                           [](const Correlation& pair) { return std::abs(std::get<2>(pair)); });
+  std::vector<ParameterCorrelation> pairs = fit["correlations"].list([](const Node& each) {
+    const std::vector<Node> parts = each.entries();
+    if (parts.size() != 3) each.fail("two names and a coefficient");
+    return ParameterCorrelation(parts[0].text(), parts[1].text(), parts[2].number());
+  });
+  std::ranges::stable_sort(pairs, std::greater(), [](const ParameterCorrelation& pair) {
+    return std::abs(std::get<2>(pair));
+  });
   const std::size_t listed = std::min(kLargest, pairs.size());
   HtmlTable table(
-      "Correlation of the estimates (declared model), the " + std::to_string(listed) +
-          " largest of " + std::to_string(pairs.size()) + " above 0.1",
+      "Correlation of the estimates, the " + std::to_string(listed) + " largest of " +
+          std::to_string(pairs.size()) + " above 0.1",
       {{"parameter", Column::text}, {"parameter", Column::text}, {"ρ", Column::number}});
   for (const auto& [a, b, coefficient] : std::span(pairs).first(listed))
     table.add({escaped(a), escaped(b), html_number(coefficient, 4)});
@@ -96,8 +101,8 @@ std::string levelling(const Node& fit) {
 
 std::string uncertainty(const Node& report) {
   std::string out = budget(report);
-  if (report.has("fit")) {
-    const Node fit = report["fit"];
+  if (report.has("final")) {
+    const Node fit = report["final"];
     const std::string notes = html_list(html_texts(fit["notes"]));
     out += noise(fit) + correlations(fit) + levelling(fit) + covered() +
            (notes.empty() ? "" : "<h3>Notes of the fit</h3>\n" + notes);
@@ -118,8 +123,8 @@ std::string in_words(const Node& combination) {
 }
 
 std::string identifiability(const Node& report) {
-  if (!report.has("fit")) return "";
-  const Node what = report["fit"]["identifiability"];
+  if (!report.has("final")) return "";
+  const Node what = report["final"]["identifiability"];
   HtmlTable lost("Directions in which no prediction changes",
                  {{"combination", Column::text}, {"what would determine it", Column::text}});
   for (const Node& direction : what["unidentifiable"].entries())
@@ -134,8 +139,8 @@ std::string identifiability(const Node& report) {
   return html_section(
       "identifiability", "What cannot be determined",
       "<p>" +
-          std::string(lost.empty() ? "All parameters of the declared model are determined: rank "
-                                   : "The declared model has rank ") +
+          std::string(lost.empty() ? "All parameters of the final model are determined: rank "
+                                   : "The final model has rank ") +
           html_text(what["rank"]) + " of " + html_text(what["parameters"]) + ", condition " +
           html_number(what["condition"].number(), 3) + ".</p>\n" + lost.html() + found.html());
 }

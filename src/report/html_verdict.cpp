@@ -25,8 +25,8 @@ bool was_extended(const Node& report) {
 }
 
 std::string overall_change(const Node& report) {
-  if (!was_extended(report) || !report.has("before") || !report.has("after")) return "";
-  return html_change(report["before"], "rms", report["after"], "rms");
+  if (!was_extended(report) || !report.has("declared") || !report.has("final")) return "";
+  return html_change(report["declared"], "rms", report["final"], "rms");
 }
 
 struct Verdict {
@@ -44,9 +44,9 @@ std::string found(const Node& trace) {
 }
 
 Verdict verdict_of(const Node& report) {
-  if (!report.has("fit"))
+  if (!report.has("final"))
     return {"Ranking only", "plain", "The effects were ranked by correlation; nothing was fitted."};
-  if (!report["fit"]["converged"].truth())
+  if (!report["final"]["converged"].truth())
     return {"Not converged", "bad",
             "The fit did not converge: no number of this report can be relied on."};
   if (!report.has("trace"))
@@ -110,9 +110,7 @@ std::string dominant(const Node& report) {
 }
 
 std::vector<Node> final_parameters(const Node& report) {
-  for (const char* part : {"after", "fit"})
-    if (report.has(part)) return report[part]["parameters"].entries();
-  return {};
+  return report.has("final") ? report["final"]["parameters"].entries() : std::vector<Node>{};
 }
 
 struct Known {
@@ -149,8 +147,8 @@ void add_squareness(const Node& report, std::vector<Fact>& facts) {
 }
 
 void add_straightness(const Node& report, std::vector<Fact>& facts) {
-  if (!report.has("straightness")) return;
-  const Node straightness = report["straightness"];
+  if (!report.has("final") || !report["final"].has("straightness")) return;
+  const Node straightness = report["final"]["straightness"];
   const std::vector<Node> errors = straightness["errors"].entries();
   if (errors.empty()) {
     facts.emplace_back("Straightness of the slide", html_text(straightness["reason"]));
@@ -166,7 +164,7 @@ void add_straightness(const Node& report, std::vector<Fact>& facts) {
 
 /// Declared parameters before and after the loop; the largest shift goes into the facts.
 std::string result_table(const Node& report, std::vector<Fact>& facts) {
-  const bool bent = report.has("before") && was_extended(report);
+  const bool bent = report.has("declared") && was_extended(report);
   std::vector<std::pair<std::string, Column>> columns{{"parameter", Column::text},
                                                       {"value ± U", Column::number},
                                                       {"unit", Column::text},
@@ -192,7 +190,7 @@ std::string result_table(const Node& report, std::vector<Fact>& facts) {
         p.has("standard_uncertainty") ? html_number(p["standard_uncertainty"].number(), 2) : ""};
     if (bent) {
       std::string was, shift;
-      for (const Node& before : report["before"]["parameters"].entries()) {
+      for (const Node& before : report["declared"]["parameters"].entries()) {
         if (before["name"].verbatim() != p["name"].verbatim() || !before.has("value")) continue;
         const double value = before["value"].number();
         was = html_number(value, 4);
@@ -267,10 +265,10 @@ std::string html_verdict(const Node& report) {
   if (was_extended(report)) facts.emplace_back("Was missing", found(report["trace"]));
   if (const std::string fall = overall_change(report); !fall.empty())
     facts.emplace_back("Residual rms, before → after", fall);
-  else if (report.has("fit"))
-    facts.emplace_back("Residual rms", html_size(report["fit"], "rms"));
+  else if (report.has("final"))
+    facts.emplace_back("Residual rms", html_size(report["final"], "rms"));
   const std::string table = result_table(report, facts);
-  if (report.has("fit")) add_fit_warnings(report["fit"], warnings, next);
+  if (report.has("final")) add_fit_warnings(report["final"], warnings, next);
   add_input_warnings(report, warnings);
   if (report.has("trace"))
     for (std::string& advice : html_texts(report["trace"]["advice"]))

@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include "slideway/trace/details.hpp"
-#include "slideway/trace/trace.hpp"
+#include "slideway/trace/analysis.hpp"
 
 namespace slideway {
 
@@ -11,17 +10,17 @@ std::string heading(const std::string& text);
 std::string item(const std::string& text);
 std::string note(const std::string& text);
 
-/// @throws std::logic_error if it is not finite
+/// "-" where it is not finite.
 std::string number(double value, int digits);
 std::string probability(double p);
 /// "um" as µm.
 std::string unit_text(const std::string& unit);
 
-/// The `trace` part of the report.
-std::string trace_text(const TraceResult& trace);
+/// The closed loop. REQUIRES that it was run.
+std::string trace_text(const Analysis& analysis);
 
 /// The residual of the profile in which the loop has lowered it most, before and after; "" where it
 /// has not.
-std::string residual_pictures(const Details& details);
+std::string residual_pictures(const Curves& curves);
 
 }  // namespace slideway

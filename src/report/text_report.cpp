@@ -10,6 +10,7 @@
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "slideway/report/report.hpp"
+#include "slideway/trace/analysis_fields.hpp"
 #include "text_parts.hpp"
 
 namespace slideway {
@@ -18,7 +19,9 @@ std::string heading(const std::string& text) { return "\n" + paragraph("", text)
 std::string item(const std::string& text) { return paragraph("  ", text); }
 std::string note(const std::string& text) { return paragraph("  - ", text); }
 
-std::string number(double value, int digits) { return to_digits(value, digits); }
+std::string number(double value, int digits) {
+  return std::isfinite(value) ? to_digits(value, digits) : "-";
+}
 
 std::string unit_text(const std::string& unit) {
   return unit == "um" ? "µm" : unit == "urad" ? "µrad" : unit;
@@ -33,6 +36,7 @@ constexpr std::size_t kLargest = 3;  // correlations listed
 constexpr double kBetter = 0.05;     // a coefficient at a lag worth telling
 
 std::string coefficient(double value) {
+  if (!std::isfinite(value)) return "-";
   return (value < 0.0 ? "-" : "+") + fixed_point(std::abs(value), 4);
 }
 
@@ -61,7 +65,8 @@ std::string inputs(const Result& result) {
                    Column::number, Column::number});
   std::string notes;
   for (const InputSummary& in : result.inputs) {
-    table.add({in.name, in.kind + " " + in.quantity, in.role, std::to_string(in.samples),
+    table.add({in.name, std::string(text_of(in.kind)) + " " + std::string(text_of(in.quantity)),
+               std::string(text_of(in.role)), std::to_string(in.samples),
                number(in.position_min_mm, 5) + " to " + number(in.position_max_mm, 5),
                size_in(in.rms_um, in.rms_urad), size_in(in.pv_um, in.pv_urad)});
     notes += note(in.name + ": " + in.file + ", sha256 " + in.sha256.substr(0, 16) +
@@ -73,17 +78,21 @@ std::string inputs(const Result& result) {
 }
 
 std::string closure(const ClosureSummary& closure) {
-  std::string text = heading("Closure between lines: " + closure.verdict);
+  std::string text = heading("Closure between lines: " + std::string(text_of(closure.verdict)));
   for (const std::string& line : closure.notes) text += note(line);
   return text;
 }
 
 std::string low_band(const Result& result) {
-  const std::string values = counted(result.low_band_values, "value");
-  if (result.level == 0)
-    return heading("Low band: none (level 0), the profiles as they are, " + values);
-  return heading("Low band: " + result.wavelet + ", level " + std::to_string(result.level) +
-                 ", ends " + result.boundary + ", " + values);
+  std::string text;
+  for (const LowBandSummary& band : result.low_band) {
+    const std::string what = band.level == 0
+                                 ? "none (level 0), the profile as it is"
+                                 : band.wavelet + ", level " + std::to_string(band.level) +
+                                       ", ends " + std::string(text_of(band.boundary));
+    text += note(band.profile + ": " + what + ", " + counted(band.values, "value"));
+  }
+  return text.empty() ? "" : heading("Low band") + text;
 }
 
 std::string candidate_correlations(std::vector<CandidateCorrelation> pairs) {
@@ -146,7 +155,7 @@ std::string value_of(const FittedParameter& p) {
 void add_parameter(TextTable& table, const FittedParameter& p) {
   const bool known = p.identifiable && p.value;
   table.add({p.symbol, p.name, value_of(p), unit_text(p.unit),
-             known && p.expanded_uncertainty ? fixed_point(p.coverage_factor, 2) : "",
+             known && p.coverage_factor ? fixed_point(*p.coverage_factor, 2) : "",
              p.at_bound ? "at its bound" : ""});
   const bool is_squareness = motion_error_of(p.name) == MotionError::squareness;
   if (!known || !p.expanded_uncertainty || !is_squareness) return;
@@ -166,7 +175,7 @@ std::string parameters(const std::vector<FittedParameter>& all, const std::strin
   return table.text();
 }
 
-std::string standard_terms(const FitResult& fit) {
+std::string standard_terms(const ModelResult& fit) {
   std::string text;
   std::set<std::pair<std::string, std::string>> seen;
   for (const FittedParameter& p : fit.parameters) {
@@ -177,7 +186,7 @@ std::string standard_terms(const FitResult& fit) {
   return text;
 }
 
-std::string parameter_correlations(const FitResult& fit) {
+std::string parameter_correlations(const ModelResult& fit) {
   auto pairs = fit.correlations;
   std::stable_sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) {
     return std::abs(std::get<2>(a)) > std::abs(std::get<2>(b));
@@ -191,17 +200,18 @@ std::string parameter_correlations(const FitResult& fit) {
   return item(text);
 }
 
-std::string fit_table(const FitResult& fit) {
+std::string fit_table(const ModelResult& fit) {
   std::string head = fit.converged ? "Fit: converged" : "Fit: NOT CONVERGED";
   if (!fit.converged && !fit.message.empty()) head += " (" + fit.message + ")";
   head += ", " + counted(fit.observations, "value") + " (" + number(fit.effective_observations, 4) +
           " effective)";
   if (fit.rms_um) head += ", residual rms " + number(*fit.rms_um, 4) + " µm";
-  const bool declared = std::all_of(fit.noise.begin(), fit.noise.end(),
-                                    [](const auto& n) { return n.scaling == "declared"; });
+  const bool declared = std::all_of(fit.noise.begin(), fit.noise.end(), [](const auto& n) {
+    return n.scaling == NoiseScaling::declared;
+  });
   if (declared)  // where noise is estimated, the two are equal by construction
-    head += ", chi-square " + fixed_point(fit.chi_square, 0) + " at " +
-            fixed_point(fit.degrees_of_freedom, 0) + " degrees of freedom";
+    head += ", chi-square " + number(fit.chi_square, 4) + " at " +
+            number(fit.degrees_of_freedom, 4) + " degrees of freedom";
   std::string text = heading(head) + parameters(fit.parameters, "parameter") +
                      parameters(fit.nuisances, "levelling of the traces") + standard_terms(fit) +
                      parameter_correlations(fit);
@@ -211,7 +221,7 @@ std::string fit_table(const FitResult& fit) {
   return text;
 }
 
-std::string noise(const FitResult& fit) {
+std::string noise(const ModelResult& fit) {
   if (fit.noise.empty()) return "";
   TextTable table(
       {"profile", "uncertainty", "AR", "std. dev.", "corr., mm", "N_eff", "Ljung-Box p"},
@@ -219,12 +229,13 @@ std::string noise(const FitResult& fit) {
        Column::number});
   std::string notes;
   for (const NoiseSummary& n : fit.noise) {
-    const std::size_t colon = n.scaling.find(": ");
-    table.add({n.profile, n.scaling.substr(0, colon), std::to_string(n.order),
+    const std::string scaling(text_of(n.scaling));
+    const std::size_t colon = scaling.find(": ");
+    table.add({n.profile, scaling.substr(0, colon), std::to_string(n.order),
                size_in(n.standard_deviation_um, n.standard_deviation_urad),
                number(n.correlation_mm, 3), number(n.effective_observations, 3),
                probability(n.ljung_box_p)});
-    if (colon != std::string::npos) notes += note(n.profile + ": " + n.scaling.substr(colon + 2));
+    if (colon != std::string::npos) notes += note(n.profile + ": " + scaling.substr(colon + 2));
   }
   return heading(
              "How the uncertainties were scaled: standard deviation of one low-band value, "
@@ -233,7 +244,7 @@ std::string noise(const FitResult& fit) {
 }
 
 /// Names without their effect where that leaves no two alike.
-std::map<std::string, std::string> short_names(const FitResult& fit) {
+std::map<std::string, std::string> short_names(const ModelResult& fit) {
   const auto last = [](const std::string& name) { return name.substr(name.rfind('.') + 1); };
   std::map<std::string, int> count;
   for (const FittedParameter& p : fit.parameters) ++count[last(p.name)];
@@ -258,7 +269,7 @@ std::string in_words(const Combination& terms, const std::map<std::string, std::
   return text;
 }
 
-std::string identifiability(const FitResult& fit) {
+std::string identifiability(const ModelResult& fit) {
   const Identifiability& what = fit.identifiability;
   const std::string rank = "rank " + std::to_string(what.rank) + " of " +
                            counted(what.parameters, "parameter") + ", condition " +
@@ -273,30 +284,29 @@ std::string identifiability(const FitResult& fit) {
   if (!what.determined.empty()) text += heading("What they determine instead");
   for (const DeterminedCombination& sum : what.determined)
     text += item(in_words(sum.combination, names) + " = " +
-                 with_uncertainty(sum.value, sum.expanded_uncertainty) + " " + sum.unit);
+                 (sum.value && sum.expanded_uncertainty
+                      ? with_uncertainty(*sum.value, *sum.expanded_uncertainty)
+                      : std::string("unknown")) +
+                 " " + sum.unit);
   return text;
 }
 
-std::string residuals(const Result& result, const FitResult& fit) {
+std::string residuals(const ModelResult& fit) {
   std::string text;
-  std::map<std::string, std::string> unit;
-  for (const InputSummary& in : result.inputs)
-    unit[in.name] = in.quantity == "slope" ? " µrad" : " µm";
   if (!fit.contributions.empty()) {
     TextTable shares({"effect", "profile", "rms", "share"},
                      {Column::effect, Column::name, Column::number, Column::number});
     for (const Contribution& c : fit.contributions)
-      shares.add({c.effect, c.profile, number(c.rms_um, 3) + unit[c.profile],
-                  fixed_point(100.0 * c.share, 1) + " %"});
+      shares.add(
+          {c.effect, c.profile, size_in(c.rms_um, c.rms_urad), number(100.0 * c.share, 3) + " %"});
     text += heading("Share of each effect in the low band at the fitted values") + shares.text();
   }
   if (!fit.residuals.empty()) {
     TextTable table({"profile", "role", "rms", "p-v"},
                     {Column::name, Column::text, Column::number, Column::number});
     for (const ResidualSummary& r : fit.residuals) {
-      const std::string of = r.unit == "urad" ? " µrad" : " µm";
-      table.add({r.profile, r.role == "holdout" ? "held out" : r.role, number(r.rms_um, 4) + of,
-                 number(r.pv_um, 4) + of});
+      table.add({r.profile, r.role == Role::holdout ? "held out" : "fit",
+                 size_in(r.rms_um, r.rms_urad), size_in(r.pv_um, r.pv_urad)});
     }
     text += heading("Residual in the low band") + table.text();
   }
@@ -316,9 +326,9 @@ std::string crosscheck(const SquarenessCheck& check) {
       "; by the run-out, Eq. (21): " + squareness_of(check.indirect_rad, check.indirect_U_rad) +
       ". ";
   if (check.En) text += "E_n = " + number(*check.En, 2) + ": ";
-  if (check.verdict == "consistent")
+  if (check.verdict == Consistency::consistent)
     text += "consistent (E_n is not above 1). ";
-  else if (check.verdict == "inconsistent")
+  else if (check.verdict == Consistency::inconsistent)
     text += "INCONSISTENT (E_n is above 1). ";
   else
     text += "No cross-check. ";
@@ -326,7 +336,7 @@ std::string crosscheck(const SquarenessCheck& check) {
   const auto amplitude = [](const std::optional<double>& um) {
     return um ? number(*um, 4) + " µm" : std::string("unknown");
   };
-  const bool told = check.verdict == "inconsistent";  // in the reason
+  const bool told = check.verdict == Consistency::inconsistent;  // in the reason
   if (!told && check.travel_mm && (check.fit_amplitude_um || check.indirect_amplitude_um))
     text += "Over the travel of " + number(*check.travel_mm, 5) + " mm that is " +
             amplitude(check.fit_amplitude_um) + " by the fit and " +
@@ -334,7 +344,7 @@ std::string crosscheck(const SquarenessCheck& check) {
   return heading("Cross-check") + item(text);
 }
 
-std::string notes(const FitResult& fit) {
+std::string notes(const ModelResult& fit) {
   std::string text = fit.notes.empty() ? "" : heading("Notes");
   for (const std::string& line : fit.notes) text += note(line);
   return text;
@@ -346,18 +356,18 @@ std::string data_text(const Result& result) {
   return title(result) + inputs(result) + (result.closure ? closure(*result.closure) : "");
 }
 
-std::string text_report(const Result& result, const std::optional<TraceResult>& trace,
-                        const std::optional<Details>& details) {
-  std::string text = data_text(result) + low_band(result);
-  if (result.ranking) text += ranking(*result.ranking);
-  text += dominant(result.dominant);
-  if (result.fit)
-    text += fit_table(*result.fit) + noise(*result.fit) + identifiability(*result.fit) +
-            residuals(result, *result.fit);
-  if (result.squareness) text += crosscheck(*result.squareness);
-  if (trace) text += trace_text(*trace);
-  if (details) text += residual_pictures(*details);
-  if (result.fit) text += notes(*result.fit);
+std::string text_report(const Analysis& analysis) {
+  const Result& result = analysis.result;
+  std::string text =
+      data_text(result) + low_band(result) + ranking(result.ranking) + dominant(result.dominant);
+  if (result.final)
+    text += fit_table(*result.final) + noise(*result.final) + identifiability(*result.final) +
+            residuals(*result.final);
+  if (result.crosscheck.squareness) text += crosscheck(*result.crosscheck.squareness);
+  if (analysis.trace) text += trace_text(analysis);
+  if (analysis.details.curves) text += residual_pictures(*analysis.details.curves);
+  if (result.final) text += notes(*result.final);
+  for (const std::string& line : result.notes) text += note(line);
   return text;
 }
 

@@ -37,13 +37,13 @@ std::string residual_change(const TraceRound& round) {
 }
 
 std::string verdict(const TraceResult& trace) {
-  if (trace.verdict == "nothing_missing")
+  if (trace.verdict == TraceVerdict::nothing_missing)
     return "nothing is missing that these data tell from noise (lack of fit p = " +
            probability(trace.lack_of_fit_p) + "; structure is what is below 0.001).";
-  if (trace.verdict == "explained") return "an effect was missing and is named:";
-  if (trace.verdict == "ambiguous")
+  if (trace.verdict == TraceVerdict::explained) return "an effect was missing and is named:";
+  if (trace.verdict == TraceVerdict::ambiguous)
     return "an effect is missing, and these data cannot tell it from its rivals:";
-  if (trace.verdict == "not_identifiable")
+  if (trace.verdict == TraceVerdict::not_identifiable)
     return "the form is there, but these data cannot tell what makes it:";
   return trace.rounds.empty()
              ? "structure is left that no effect of the catalogue explains: UNNAMED."
@@ -66,15 +66,14 @@ std::string round(const TraceRound& round, std::size_t index) {
 }
 
 /// How far the missing effects had bent the parameters, in units of their final uncertainty.
-std::string bent(const TraceResult& trace) {
+std::string bent(const Result& result) {
   TextTable table({"parameter", "before", "after", "shift / U"},
                   {Column::name, Column::number, Column::number, Column::number});
   bool any = false;
-  for (const FittedParameter& before : trace.before) {
-    const auto after = std::find_if(trace.after.begin(), trace.after.end(),
-                                    [&](const auto& p) { return p.name == before.name; });
-    if (after == trace.after.end() || !before.value || !after->value ||
-        !after->expanded_uncertainty || !(*after->expanded_uncertainty > 0.0))
+  for (const FittedParameter& before : result.declared->parameters) {
+    const FittedParameter* after = result.final->find(before.name);
+    if (!after || !before.value || !after->value || !after->expanded_uncertainty ||
+        !(*after->expanded_uncertainty > 0.0))
       continue;
     any = true;
     const double shift = (*before.value - *after->value) / *after->expanded_uncertainty;
@@ -85,9 +84,12 @@ std::string bent(const TraceResult& trace) {
 }
 
 std::string left_over(const Unnamed& left) {
-  const std::string unit = left.unit == "um" ? " µm" : " µrad";
-  std::string text = "Left without a name: " + number(left.rms, 3) + unit + " rms, " +
-                     number(left.pv, 3) + unit + " peak to valley on " + left.profile +
+  const std::string unit = left.rms_um ? " µm" : " µrad";
+  const auto size = [&](const std::optional<double>& um, const std::optional<double>& urad) {
+    return number(um.value_or(urad.value_or(NAN)), 3) + unit;
+  };
+  std::string text = "Left without a name: " + size(left.rms_um, left.rms_urad) + " rms, " +
+                     size(left.pv_um, left.pv_urad) + " peak to valley on " + left.profile +
                      " (lack of fit p " + (left.p_value < 1e-4 ? "" : "= ") +
                      probability(left.p_value) + "), largest from " + number(left.from_mm, 4) +
                      " to " + number(left.to_mm, 4) + " mm";
@@ -105,15 +107,18 @@ std::string limits(const TraceResult& trace) {
   if (trace.detection_limits.empty()) return "";
   const auto extremes = [](const DetectionLimit& limit) -> std::string {
     if (limit.by_shape.empty()) return "";
-    const auto by_size = [](const auto& a, const auto& b) { return a.second < b.second; };
+    const auto by_size = [](const LimitAtShape& a, const LimitAtShape& b) {
+      return a.value.value_or(HUGE_VAL) < b.value.value_or(HUGE_VAL);
+    };
     const auto [least, most] =
         std::minmax_element(limit.by_shape.begin(), limit.by_shape.end(), by_size);
-    return number(least->second, 2) + " to " + number(most->second, 2);
+    return number(least->value.value_or(NAN), 2) + " to " + number(most->value.value_or(NAN), 2);
   };
   TextTable table({"effect", "found from", "other shapes", "at"},
                   {Column::effect, Column::number, Column::number, Column::name});
   for (const DetectionLimit& limit : trace.detection_limits)
-    table.add({limit.effect, number(limit.value, 2) + " " + limit.unit, extremes(limit), limit.at});
+    table.add({limit.effect, limit.value ? number(*limit.value, 2) + " " + limit.unit : "none",
+               extremes(limit), limit.at});
   return item("Sizes found with 80 % probability:") + table.text();
 }
 
@@ -122,11 +127,11 @@ std::string untestable(const TraceResult& trace) {
   std::vector<std::pair<std::string, std::vector<std::string>>> by_need;
   for (const auto& entry : trace.not_testable) {
     const auto found = std::find_if(by_need.begin(), by_need.end(),
-                                    [&](const auto& known) { return known.first == entry.second; });
+                                    [&](const auto& known) { return known.first == entry.needs; });
     if (found == by_need.end())
-      by_need.push_back({entry.second, {entry.first}});
+      by_need.push_back({entry.needs, {entry.effect}});
     else
-      found->second.push_back(entry.first);
+      found->second.push_back(entry.effect);
   }
   std::string text;
   for (const auto& [needs, effects] : by_need)
@@ -136,18 +141,21 @@ std::string untestable(const TraceResult& trace) {
 
 }  // namespace
 
-std::string trace_text(const TraceResult& trace) {
+std::string trace_text(const Analysis& analysis) {
+  const TraceResult& trace = *analysis.trace;
   std::string text = heading("Closed loop: " + verdict(trace));
   for (std::size_t i = 0; i < trace.rounds.size(); ++i) text += round(trace.rounds[i], i);
-  if (!trace.rounds.empty()) text += bent(trace);
+  if (!trace.rounds.empty() && analysis.result.final) text += bent(analysis.result);
   if (trace.unnamed) text += left_over(*trace.unnamed);
   for (const std::string& line : trace.advice) text += note(line);
   for (const std::string& line : trace.notes) text += note(line);
   for (const auto& [effect, same] : trace.not_separable)
     text += note(effect + " and " + same + " are one column here: not separable");
   for (const TriedEffect& effect : trace.refused)
-    if (!effect.refused.empty() && effect.delta_bic < -10.0)
-      text += note(effect.effect + " was refused: " + effect.refused);
+    if (effect.refused && effect.delta_bic < -10.0)
+      text += note(effect.effect + " was refused: " + *effect.refused);
+  for (const LeftEffect& effect : trace.left)
+    text += note(effect.effect + " has left the model: " + effect.reason);
   text += untestable(trace);
   return text + limits(trace);
 }

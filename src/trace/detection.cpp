@@ -14,6 +14,7 @@
 namespace slideway {
 namespace {
 
+constexpr double kNormal = 1e9;  // degrees of freedom: Student's t is normal
 constexpr int kSpreadShapes = 5;
 constexpr int kMostRounds = 8;          // of a limit that depends on itself
 constexpr double kMostOfRange = 100.0;  // of a profile's range: what is larger would be seen
@@ -159,25 +160,6 @@ std::optional<double> limit_at(const Design& design, const Case& one) {
   return limit;
 }
 
-/// more of them the larger it is.
-std::optional<double> limit_at(const Design& design, const Case& one) {
-  const auto& [fitted, data, joint, least_gain] = design;
-  std::optional<double> limit = limit_in(data, one, least_gain);
-  if (!limit) return limit;
-  if (!is_centred(*one.candidate.term.effect))
-    return std::max(*limit, (kLeastJointSize + kPowerDeviate) *
-                                joint.uncertainty(one.columns * one.amplitudes(1.0)));
-  Eigen::Index lost = 0;
-  for (int round = 0; limit && round < kMostRounds; ++round) {
-    const Eigen::MatrixXd loose =
-        loose_values(fitted.model, fitted.fit, data.noise(), one.columns * one.amplitudes(*limit));
-    if (loose.cols() <= lost) break;
-    lost = loose.cols();
-    limit = limit_in({fitted.fit.linear, data.noise(), loose}, one, least_gain);
-  }
-  return limit;
-}
-
 /// Whether no profile would hold more of this signal than a hundred times its own range.
 bool is_flatness(const Linearisation& linear, const Eigen::VectorXd& signal) {
   Eigen::Index first = 0;
@@ -194,7 +176,7 @@ bool is_flatness(const Linearisation& linear, const Eigen::VectorXd& signal) {
 std::optional<DetectionLimit> detection_limit(const Design& design, const Candidate& candidate) {
   if (!candidate.term.effect->has_one_size()) return std::nullopt;
   const Parameter& first = candidate.term.effect->parameters()[0];
-  DetectionLimit out{candidate.name(), first.name, first.unit, 0.0, "", {}};
+  DetectionLimit out{candidate.name(), first.name, first.unit, std::nullopt, "", {}};
   const std::vector<std::vector<double>> shapes = spread_shapes(candidate);
   const auto middle = std::ssize(shapes) / 2;
   std::ptrdiff_t nearest = std::ssize(shapes);  // places from the middle
@@ -208,13 +190,13 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
     if (!limit || !(*limit > 0.0) || !std::isfinite(*limit) ||
         !is_flatness(design.fitted.fit.linear, one.columns * one.amplitudes(*limit)))
       continue;
-    if (!shape.empty()) out.by_shape.emplace_back(shape[0], *limit);
+    if (!shape.empty()) out.by_shape.push_back({shape[0], *limit});
     if (std::abs(s - middle) >= nearest) continue;
     nearest = std::abs(s - middle);
     out.value = *limit;
     out.at = shape_text(candidate, shape);
   }
-  if (out.value == 0.0) return std::nullopt;
+  if (!out.value) return std::nullopt;
   return out;
 }
 
@@ -226,7 +208,7 @@ std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Wh
   const Gates& gates = fitted.model.gates;
   const Design design{fitted, data,
                       std::max(gates.delta_bic, calibration.threshold(gates.significance)),
-                      normal_limit(1.0 - gates.detection_power)};
+                      student_limit(kNormal, 1.0 - gates.detection_power)};
   std::vector<std::optional<DetectionLimit>> limits(candidates.size());
   parallel_for(candidates.size(),
                [&](std::size_t c) { limits[c] = detection_limit(design, *candidates[c]); });
@@ -236,16 +218,14 @@ std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Wh
   return out;
 }
 
-std::vector<std::pair<std::string, std::string>> inseparable(const Model& model,
-                                                             const Solution& fit,
-                                                             const Whitened& data,
-                                                             const Candidates& candidates) {
-  std::vector<std::pair<std::string, std::string>> out;
+std::vector<NotSeparable> inseparable(const Model& model, const Solution& fit, const Whitened& data,
+                                      const Candidates& candidates) {
+  std::vector<NotSeparable> out;
   for (const Candidate* candidate : candidates) {
     const Eigen::MatrixXd columns = stacked_columns(
         model, candidate->term, candidate->grid.middle(), data.rows() - data.values());
     if (project(data, columns).rank > 0 || columns.isZero(0.0)) continue;
-    out.emplace_back(candidate->name(), made_by(model, fit, data, columns.col(0)));
+    out.push_back({candidate->name(), made_by(model, fit, data, columns.col(0))});
   }
   return out;
 }

@@ -54,7 +54,7 @@ const FittedModel& ModelExtender::extended(const std::vector<AcceptedEffect>& ef
   return found->second;
 }
 
-const FitResult& ModelExtender::summary(const std::vector<AcceptedEffect>& effects) {
+const ModelResult& ModelExtender::summary(const std::vector<AcceptedEffect>& effects) {
   const Key key = key_of(effects);
   auto found = summaries_.find(key);
   if (found != summaries_.end()) return found->second;

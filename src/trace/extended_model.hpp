@@ -35,7 +35,7 @@ class ModelExtender {
   const FittedModel& extended(const std::vector<AcceptedEffect>& effects);
 
   /// Its numbers for the report, in the declared low band.
-  const FitResult& summary(const std::vector<AcceptedEffect>& effects);
+  const ModelResult& summary(const std::vector<AcceptedEffect>& effects);
 
   /// Its residual searched for every candidate whose name is not among the effects.
   const SearchRound& search(const std::vector<AcceptedEffect>& effects);
@@ -65,7 +65,7 @@ class ModelExtender {
   Dictionary dictionary_;
   std::optional<Calibration> calibration_;
   std::map<Key, FittedModel> models_;
-  std::map<Key, FitResult> summaries_;
+  std::map<Key, ModelResult> summaries_;
   std::map<Key, SearchRound> rounds_;
 };
 

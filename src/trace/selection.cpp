@@ -14,7 +14,7 @@ namespace {
 using Effects = std::vector<AcceptedEffect>;
 
 /// "" if the residuals, in the units of the report, fall; else why the effect does not help.
-std::string worsens(const FitResult& without, const FitResult& with) {
+std::string worsens(const ModelResult& without, const ModelResult& with) {
   const auto rises = [](const std::optional<double>& before, const std::optional<double>& after) {
     return before && after && *after > *before;
   };

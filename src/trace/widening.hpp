@@ -19,8 +19,4 @@ struct Widening {
 Widening widening(const Model& model, const Solution& fit, const Structure& structure,
                   const SearchRound& last);
 
-/// Widens the uncertainties of the fitted parameters.
-void widen(const Model& model, const Solution& fit, const Widening& by,
-           std::vector<FittedParameter>& parameters);
-
 }  // namespace slideway

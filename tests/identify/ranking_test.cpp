@@ -55,7 +55,7 @@ TEST_F(ColumnFile, NamesAColumnThatIsNotThere) {
 
 /// A cone of 20 µrad with 1 nm of curvature under it, without feed marks or noise.
 struct ConeCase {
-  FitResult summary;
+  ModelResult summary;
   RankingResult ranking;
   std::optional<LeadByFit> lead;
 

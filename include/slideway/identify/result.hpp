@@ -1,34 +1,55 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-/// What an identification finds: plain values, the report's raw material. Lengths in the unit the
-/// name says; a number that could not be determined is std::nullopt, never NaN.
+#include "slideway/base/record.hpp"
+#include "slideway/identify/assumption.hpp"
+#include "slideway/identify/model_result.hpp"
+#include "slideway/machine/machine.hpp"
+#include "slideway/profile/profile.hpp"
+#include "slideway/signal/dwt.hpp"
+
+/// What an identification finds, as plain values: the raw material of every report. The unit of a
+/// length stands in its name; of a pair such as rms_um and rms_urad the first is set for heights,
+/// the second for slopes. A number that could not be determined is std::nullopt.
 namespace slideway {
 
-/// A sample that its neighbours contradict, by its data row from 1.
+/// A sample that its neighbours contradict.
 struct OutlierSummary {
-  std::size_t row = 0;
+  std::size_t row = 0;  // of the data, from 1
   double value = 0.0, expected = 0.0;
-  std::string unit, kind;  // um or urad; "spike", "lost minus sign"
+  MicroUnit unit = MicroUnit::um;
+  OutlierKind kind = OutlierKind::spike;
 };
 
 struct InputSummary {
-  std::string name, file, format, sha256, kind, quantity, role;
+  std::string name, file, format, sha256;
+  Kind kind = Kind::face;
+  Quantity quantity = Quantity::height;
+  Role role = Role::fit;
   std::size_t samples = 0;
   std::size_t missing = 0;
   std::size_t left_out = 0;
   std::size_t outlier_count = 0;
   std::vector<OutlierSummary> outliers;  // the 20 largest at most, by row
   double position_min_mm = 0.0, position_max_mm = 0.0;
-  std::optional<double> rms_um, pv_um;      // heights: about the mean; none for slopes
-  std::optional<double> rms_urad, pv_urad;  // slopes
+  std::optional<double> rms_um, pv_um;  // about the mean
+  std::optional<double> rms_urad, pv_urad;
   std::vector<std::string> notes;
 };
+
+enum class ClosureVerdict { closes, does_not_close, not_judged };
+template <>
+inline constexpr std::array<std::string_view, 3> kTexts<ClosureVerdict>{"closes", "does not close",
+                                                                        "not judged"};
+enum class RepeatVerdict { agree, do_not_agree };
+template <>
+inline constexpr std::array<std::string_view, 2> kTexts<RepeatVerdict>{"agree", "do not agree"};
 
 /// What one line reads where it meets others, against what they say (close_lines()).
 struct MisclosureSummary {
@@ -45,13 +66,13 @@ struct RepeatSummary {
   std::size_t stations = 0;
   double x_mm = 0.0, y_mm = 0.0;
   double difference_um = 0.0, standard_uncertainty_um = 0.0;
-  double limit = 0.0;   // of their ratio
-  std::string verdict;  // "agree", "do not agree"
+  double limit = 0.0;  // of their ratio
+  RepeatVerdict verdict = RepeatVerdict::agree;
 };
 
 struct ClosureSummary {
   std::size_t lines = 0, places = 0, redundancy = 0;
-  std::string verdict;  // "closes", "does not close", "not judged"
+  ClosureVerdict verdict = ClosureVerdict::not_judged;
   double false_alarm = 0.0;
   std::optional<double> limit;  // of a closure, in standard uncertainties
   bool tied = false;            // heights that a reduction has made agree
@@ -61,12 +82,21 @@ struct ClosureSummary {
   std::vector<std::string> notes;     // what that means, in words
 };
 
-/// Pearson's coefficient over the first part of a trace, which grows (Figs. 8 and 9): over its
-/// samples up to position_mm, over its low band up to low_band_position_mm.
+/// The low band of one profile.
+struct LowBandSummary {
+  std::string profile, wavelet;
+  int level = 0;  // 0: the profile as it is
+  Boundary boundary = Boundary::symmetric;
+  std::size_t values = 0;
+};
+
+/// Coefficients over a growing part of the trace, Figs. 8 and 9.
 struct RunningSeries {
-  std::vector<std::size_t> samples;
-  std::vector<double> raw, low_band;
-  std::vector<double> position_mm, low_band_position_mm;
+  std::vector<std::size_t> samples;  // the first so many
+  std::vector<double> position_mm;   // of the last of them
+  std::vector<double> raw;
+  std::vector<double> low_band_position_mm;
+  std::vector<double> low_band;
 };
 
 /// Pearson's coefficient of one effect and one profile, Eqs. (6), (19), (20).
@@ -92,126 +122,89 @@ struct RankingResult {
   std::vector<std::string> notes;
 };
 
-struct FittedParameter {
-  std::string name, symbol, unit, standard_name;
-  std::optional<double> value, standard_uncertainty, expanded_uncertainty;
-  double coverage_factor = 2.0;
-  std::optional<double> degrees_of_freedom;  // effective, for coverage_factor; none: infinite
-  bool identifiable = true;
-  bool at_bound = false;
-};
-
-/// A direction in parameter space: name -> coefficient.
-using Combination = std::vector<std::pair<std::string, double>>;
-
-struct UndeterminedDirection {
-  Combination combination;  // unit length; moving along it changes no prediction
-  std::string advice;       // which measurement would determine it
-};
-
-/// What the data do say of parameters they cannot tell apart: Σ coefficient * parameter.
-struct DeterminedCombination {
-  Combination combination;
-  double value = 0.0, standard_uncertainty = 0.0, expanded_uncertainty = 0.0;
-  std::string unit;
-};
-
-struct Identifiability {
-  std::size_t parameters = 0;
-  std::size_t rank = 0;
-  double condition = 1.0;  // of the scaled columns within the rank
-  std::vector<UndeterminedDirection> unidentifiable;
-  std::vector<DeterminedCombination> determined;
-};
-
-/// The noise of one profile as the fit has it.
-struct NoiseSummary {
-  std::string profile;
-  std::string
-      scaling;    // "declared" | "estimated" | "estimated: the declared uncertainty is too small"
-  int order = 0;  // p of AR(p)
-  std::optional<double> standard_deviation_um,
-      standard_deviation_urad;          // of one low-band value, as height
-  double correlation_mm = 0.0;          // integral correlation length, at most that of the trace
-  double effective_observations = 0.0;  // at least 1
-  double ljung_box_p = 1.0;             // of the whitened residual
-};
-
-/// One effect's share of the low band at the fitted values.
-struct Contribution {
-  std::string effect, profile;
-  double rms_um = 0.0;  // about its mean (slopes: µrad)
-  double share = 0.0;   // of the sum of mean squares of all effects on that profile
-};
-
-/// Residual of one profile in the low band.
-struct ResidualSummary {
-  std::string profile, role;
-  double rms_um = 0.0;  // µm, slopes: µrad
-  double pv_um = 0.0;
-  std::string unit;  // "um" or "urad"
-};
-
-struct FitResult {
-  bool converged = false;
-  std::string message;             // the solver's, where it did not converge
-  std::optional<double> rms_um;    // residual of the fitted height profiles
-  std::optional<double> rms_urad;  // and of the fitted slope profiles
-  std::size_t observations = 0;
-  double effective_observations = 0.0;
-  std::vector<FittedParameter> parameters;
-  std::vector<FittedParameter> nuisances;  // "feed2.offset", "feed2.tilt"
-  std::vector<std::tuple<std::string, std::string, double>> correlations;  // |ρ| >= 0.1
-  Identifiability identifiability;
-  std::vector<NoiseSummary> noise;
-  std::vector<Contribution> contributions;
-  std::vector<ResidualSummary> residuals;  // fitted and held-out profiles
-  double chi_square = 0.0;                 // of the whitened residual
-  double degrees_of_freedom = 0.0;
-  std::optional<double>
-      neglected_um;                // largest |exact - first order| of Eq. (5) at the fitted values
-  std::string implausible;         // why no slide makes the fitted straightness; "": one might
-  std::vector<std::string> notes;  // how uncertainties were scaled, plausibility, what was done
-
-  [[nodiscard]] const FittedParameter* find(const std::string& name) const;
-};
-
-/// None where there is one candidate only, or where none leads.
+/// None where there is one candidate only or none correlates significantly.
 struct Dominant {
   std::optional<std::string> by_correlation, by_fit;
   std::optional<bool> agree;  // none unless both name one
   std::string doubt;          // why the fit names none, in words; "" if it does
 };
 
+enum class Consistency { consistent, inconsistent, not_available };
+template <>
+inline constexpr std::array<std::string_view, 3> kTexts<Consistency>{"consistent", "inconsistent",
+                                                                     "not_available"};
+
 struct SquarenessCheck {
   std::optional<double> fit_rad, fit_U_rad, indirect_rad, indirect_U_rad, En;
-  std::string verdict = "not_available";  // "consistent" | "inconsistent" | "not_available"
+  Consistency verdict = Consistency::not_available;
   std::string reason;
   std::optional<double> travel_mm;  // over which the squareness acts in these data
   std::optional<double> fit_amplitude_um, indirect_amplitude_um;  // squareness times travel
 };
 
+/// One quantity from each of several profiles or surfaces that should agree.
+struct ProfileCheck {
+  std::vector<std::string> profiles;
+  std::string what;
+  std::optional<double> En;
+  Consistency verdict = Consistency::not_available;
+};
+
+enum class HeldOutVerdict { fits, does_not_fit };
+template <>
+inline constexpr std::array<std::string_view, 2> kTexts<HeldOutVerdict>{"fits", "does not fit"};
+
+/// Whether a held-out profile lies where the model predicts it, within the uncertainty.
+struct HeldOutCheck {
+  std::string profile;
+  double chi2 = 0.0, p_value = 1.0;
+  std::optional<double> largest_um, largest_urad;
+  double at_mm = 0.0;
+  HeldOutVerdict verdict = HeldOutVerdict::fits;
+};
+
+struct Crosscheck {
+  std::optional<SquarenessCheck> squareness;  // none: nothing was fitted
+  std::vector<ProfileCheck> profiles;
+  std::vector<HeldOutCheck> held_out;
+};
+
+enum class ConformityVerdict { conforms, does_not_conform, undecided };
+template <>
+inline constexpr std::array<std::string_view, 3> kTexts<ConformityVerdict>{
+    "conforms", "does not conform", "can not be decided"};
+
+/// ISO 14253-1: a value held against its limit, with U as guard band.
+struct Conformity {
+  std::string what;  // "flatness"
+  std::optional<double> value_um, U_um, limit_um;
+  std::optional<double> value_um_per_m, U_um_per_m, limit_um_per_m;
+  ConformityVerdict verdict = ConformityVerdict::undecided;
+};
+
 /// Where the slide went while the fitted profiles were made, and what its errors acted on.
 struct TravelSummary {
-  std::string lever;  // "paper" | "split"
+  Lever lever = Lever::paper;
   double slide_min_mm = 0.0, slide_max_mm = 0.0;
   std::optional<double> spindle_position_mm;  // none without a face
   std::optional<double> overhang_mm;          // none without a face, or where faces differ
 };
 
 struct Result {
-  std::string title;
-  std::string version;
+  std::string version, title;
+  std::map<std::string, std::string> about;
+  std::vector<Assumption> assumed;
   std::vector<InputSummary> inputs;
   std::optional<ClosureSummary> closure;  // none where no two profiles say where they lie
-  std::string wavelet, boundary;
-  int level = 0;
-  std::size_t low_band_values = 0;
-  std::optional<RankingResult> ranking;  // `fit` has none
+  std::optional<TravelSummary> travel;
+  std::vector<LowBandSummary> low_band;  // one for each profile
+  RankingResult ranking;                 // empty: `fit` makes none
   Dominant dominant;
-  std::optional<FitResult> fit;  // `rank` prints none
-  std::optional<SquarenessCheck> squareness;
-  std::optional<TravelSummary> travel;  // none in a report of an older program
+  std::optional<ModelResult> declared;  // the problem as given; `rank` has none
+  std::optional<ModelResult> final;     // with the effects that were missing; the same without loop
+  Crosscheck crosscheck;                // of the final model
+  std::vector<Conformity> conformity;
+  std::vector<std::string> notes;
 };
 
 /// True if the verdict is negative for `--strict`: inconsistent, not converged, or a parameter

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "slideway/identify/evidence.hpp"
@@ -17,18 +19,25 @@ struct AnalysisOptions {
   bool with_evidence = false;
 };
 
-/// All that is found in one problem.
+inline constexpr std::string_view kReportSchema = "slideway.report/2";
+
+/// All that is found in one problem: what a report holds.
 struct Analysis {
   Result result;
   std::optional<TraceResult> trace;  // none where the loop was not asked for
-  std::optional<Details> details;    // the same
-  std::optional<Evidence> evidence;  // the same; of the declared model
+  Details details;                   // empty where they were not asked for
+  std::optional<Evidence> evidence;  // the same; of the declared model; no part of the report
+  std::string schema{kReportSchema};
 };
 
 /// Identifies the declared model and closes the loop: the whole way from profiles to verdict.
 /// @throws UsageError, DataError  with the problem's path in front, where it has one
 Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
                  const AnalysisOptions& options = {}, const Progress& progress = {});
+
+/// Takes the numbers that are not finite out of an analysis: a value that may be absent becomes
+/// absent, any other NaN, and the notes of the part it belongs to name it.
+void leave_out_non_finite(Analysis& analysis);
 
 /// True if either part is negative for `--strict`.
 bool is_negative(const Analysis& analysis);
