@@ -16,20 +16,20 @@ double mean_square(const std::vector<double>& values) {
 
 /// By how much the loop has lowered the mean square of a fitted profile's residual.
 double fall(const ProfileCurves& curves) {
-  if (curves.role != "fit" || curves.residual_after.empty()) return 0.0;
+  if (curves.role != Role::fit || curves.residual_after.empty()) return 0.0;
   return mean_square(curves.residual_before) - mean_square(curves.residual_after);
 }
 
 }  // namespace
 
-std::string residual_pictures(const Details& details) {
+std::string residual_pictures(const Curves& curves) {
   const auto most =
-      std::ranges::max_element(details.profiles, {}, [](const auto& p) { return fall(p); });
-  if (most == details.profiles.end() || !(fall(*most) > 0.0)) return "";
+      std::ranges::max_element(curves.profiles, {}, [](const auto& p) { return fall(p); });
+  if (most == curves.profiles.end() || !(fall(*most) > 0.0)) return "";
   const auto [low, high] = std::ranges::minmax(most->residual_before);
   const PictureFrame frame{4, low, high};
   return heading("Residual of " + most->profile + " in the low band, " +
-                 (most->unit == "urad" ? "µrad" : "µm") + ", over the trace in mm, before") +
+                 (most->unit == MicroUnit::urad ? "µrad" : "µm") + ", over the trace in mm, before") +
          picture(most->position_mm, most->residual_before, frame) +
          "and after, on the same scale\n" + picture(most->position_mm, most->residual_after, frame);
 }
