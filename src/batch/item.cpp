@@ -69,11 +69,13 @@ std::string identified(const ManifestItem& item, const ItemOptions& options, Fin
   std::string inputs;
   for (const Profile& profile : profiles) inputs += profile.sha256 + "\n";
   print.input_sha256 = sha256(inputs);
-  const Analysis analysis =
+  Analysis analysis =
       analyse(problem, profiles, {.closes_loop = options.closes_loop, .with_evidence = true});
+  for (std::optional<ModelResult>* model : {&analysis.result.declared, &analysis.result.final})
+    if (*model && (*model)->straightness) (*model)->straightness->curve = {};
   return head(item.id, status::kOk, "", print) +
          ",\"evidence\":" + evidence_text(*analysis.evidence) +
-         ",\"report\":" + json_line(analysis.result, analysis.trace) + "}\n";
+         ",\"report\":" + json_line(analysis) + "}\n";
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kRegion = 0.954499736103642;  // of two standard deviations
+constexpr double kCoverage = 2.0;               // of kRegion, the uncertainties known
 constexpr double kFalseAlarm = 0.05;           // of any item of a machine whose items all fit
 constexpr std::size_t kKnowsScatter = 5;       // items that tell a scatter from an outlier
 constexpr std::size_t kKnowsDrift = 6;         // items, all with a time, that tell a drift from one
@@ -206,12 +207,15 @@ std::vector<FittedParameter> fitted(const CarriageParameters& parameters, const 
   const std::vector<bool> determined = solution.determined(scale_of(rows));
   std::vector<FittedParameter> out;
   for (std::size_t p = 0; p < parameters.names.size(); ++p) {
-    FittedParameter parameter{parameters.names[p], "", parameters.units[p], ""};
+    FittedParameter parameter;
+    parameter.name = parameters.names[p];
+    parameter.unit = parameters.units[p];
     parameter.identifiable = determined[p];
     if (parameter.identifiable) {
       parameter.value = solution.values[p];
       parameter.standard_uncertainty = scatter * std::sqrt(solution.covariance(p, p));
-      parameter.expanded_uncertainty = parameter.coverage_factor * *parameter.standard_uncertainty;
+      parameter.coverage_factor = kCoverage;
+      parameter.expanded_uncertainty = kCoverage * *parameter.standard_uncertainty;
     }
     out.push_back(std::move(parameter));
   }

@@ -19,7 +19,7 @@ Json parameter_json(const FittedParameter& p) {
           {"unit", p.unit},
           {"standard_uncertainty", or_null(p.standard_uncertainty)},
           {"expanded_uncertainty", or_null(p.expanded_uncertainty)},
-          {"coverage_factor", p.coverage_factor},
+          {"coverage_factor", or_null(p.coverage_factor)},
           {"identifiable", p.identifiable}};
 }
 
@@ -50,7 +50,7 @@ std::string parameters_text(const PooledMachine& machine) {
   for (const FittedParameter& p : machine.parameters) {
     std::string shown = "not determined";
     if (p.identifiable) shown = with_uncertainty(*p.value, *p.expanded_uncertainty);
-    table.add({p.name, shown, p.unit, p.identifiable ? fixed_point(p.coverage_factor, 2) : "-"});
+    table.add({p.name, shown, p.unit, p.coverage_factor ? fixed_point(*p.coverage_factor, 2) : "-"});
   }
   return table.text();
 }

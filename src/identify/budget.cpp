@@ -8,7 +8,7 @@ namespace {
 
 struct Source {
   std::string name;
-  char type;
+  EvaluationType type;
   Eigen::MatrixXd covariance;  // of w
 };
 
@@ -31,18 +31,19 @@ std::vector<Source> sources_of(const Solution& fit) {
     const bool declared = fit.noise[i].declared;
     out.push_back({"noise of " + fit.linear.observations[i]->profile->name +
                        (declared ? ", as declared" : ", estimated from the residual"),
-                   declared ? 'B' : 'A', with_noise_of(fit, i) - priors});
+                   declared ? EvaluationType::B : EvaluationType::A, with_noise_of(fit, i) - priors});
     rest -= out.back().covariance;
   }
-  if (fit.linear.prior_rows.rows() > 0) out.push_back({"priors of the problem file", 'B', priors});
+  if (fit.linear.prior_rows.rows() > 0) out.push_back({"priors of the problem file", EvaluationType::B, priors});
   if (std::any_of(fit.noise.begin(), fit.noise.end(), [](const Noise& n) { return !n.declared; }))
-    out.push_back({"weights that come from the same data", 'A', rest});
+    out.push_back({"weights that come from the same data", EvaluationType::A, rest});
   return out;
 }
 
 }  // namespace
 
-std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit) {
+std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit,
+                                       const MoreVariance& more) {
   const std::vector<Source> sources = sources_of(fit);
   std::vector<Budget> out;
   for (const ModelTerm& term : model.terms)
@@ -56,6 +57,9 @@ std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit) 
         const double variance = (row * source.covariance * row.transpose()).value();
         budget.lines.push_back({source.name, source.type, std::sqrt(std::max(variance, 0.0))});
       }
+      if (more)
+        budget.lines.push_back({"structure without a name", EvaluationType::A,
+                                std::sqrt(more(fit.parameters.jacobian.row(index)))});
       out.push_back(std::move(budget));
     }
   return out;

@@ -90,7 +90,7 @@ double straightness_error(const Polynomial& curve, double low, double high) {
 }
 
 /// Whether a curvature of the straightness is told from zero.
-bool is_curved(const FitResult& out) {
+bool is_curved(const ModelResult& out) {
   return std::any_of(out.parameters.begin(), out.parameters.end(), [](const FittedParameter& p) {
     const bool curvature =
         p.name.starts_with("straightness") && !p.name.ends_with(".b0") && !p.name.ends_with(".b1");
@@ -99,7 +99,7 @@ bool is_curved(const FitResult& out) {
   });
 }
 
-void check_plausibility(const Model& model, const Solution& fit, FitResult& out) {
+void check_plausibility(const Model& model, const Solution& fit, ModelResult& out) {
   const ModelTerm* term = find_term(model, "straightness");
   const double travel = model.range.slide_max - model.range.slide_min;
   if (!term || !(travel > 0.0)) return;
@@ -118,7 +118,7 @@ void check_plausibility(const Model& model, const Solution& fit, FitResult& out)
   out.notes.push_back(out.implausible + ": look for another cause before blaming the slide");
 }
 
-void explain_scaling(const Solution& fit, FitResult& out) {
+void explain_scaling(const Solution& fit, ModelResult& out) {
   const bool estimated = std::any_of(fit.noise.begin(), fit.noise.end(),
                                      [](const Noise& noise) { return !noise.declared; });
   const bool correlated = std::any_of(fit.noise.begin(), fit.noise.end(), [](const Noise& noise) {
@@ -135,7 +135,7 @@ void explain_scaling(const Solution& fit, FitResult& out) {
             "from Student's t for 95.45 %");
 }
 
-void explain_long_correlation(const Solution& fit, FitResult& out) {
+void explain_long_correlation(const Solution& fit, ModelResult& out) {
   for (std::size_t i = 0; i < fit.noise.size(); ++i) {
     const Profile& profile = *fit.linear.observations[i]->profile;
     const auto n = static_cast<double>(fit.linear.observations[i]->values.size());
@@ -149,7 +149,7 @@ void explain_long_correlation(const Solution& fit, FitResult& out) {
 
 }  // namespace
 
-void add_checks(const Model& model, const Solution& fit, FitResult& out) {
+void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   if (const std::optional<double> gap = neglected_height(model, fit))
     out.neglected_um = *gap / kMicrometre;
   explain_scaling(fit, out);

@@ -67,7 +67,7 @@ RepeatSummary summarise(const Repeat& repeat, const std::vector<Profile>& profil
           repeat.difference / kMicrometre,
           repeat.standard_uncertainty / kMicrometre,
           repeat.limit,
-          repeat.is_beyond() ? "do not agree" : "agree"};
+          repeat.is_beyond() ? RepeatVerdict::do_not_agree : RepeatVerdict::agree};
 }
 
 std::string in_words(const Repeat& repeat, const RepeatSummary& summary) {
@@ -93,7 +93,9 @@ std::optional<ClosureSummary> summarise_closure(const std::vector<Profile>& prof
   out.lines = closure->lines;
   out.places = closure->places;
   out.redundancy = closure->redundancy;
-  out.verdict = closure->worst ? "does not close" : closure->limit ? "closes" : "not judged";
+  out.verdict = closure->worst   ? ClosureVerdict::does_not_close
+                : closure->limit ? ClosureVerdict::closes
+                                 : ClosureVerdict::not_judged;
   out.false_alarm = kClosureFalseAlarm;
   out.limit = closure->limit;
   out.tied = closure->tied;

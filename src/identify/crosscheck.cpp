@@ -11,7 +11,7 @@ namespace {
 constexpr double kCoverage = 2.0;
 constexpr double kConsistent = 1.0;  // E_n up to here is consistent
 
-const FittedParameter* squareness_of(const FitResult& fit) {
+const FittedParameter* squareness_of(const ModelResult& fit) {
   for (const FittedParameter& parameter : fit.parameters)
     if (parameter.name.starts_with("squareness")) return &parameter;
   return nullptr;
@@ -46,7 +46,7 @@ std::string disagreement(const SquarenessCheck& check) {
 }  // namespace
 
 SquarenessCheck check_squareness(const Model& model, const std::optional<Runout>& runout,
-                                 const FitResult& fit) {
+                                 const ModelResult& fit) {
   SquarenessCheck out;
   out.travel_mm = travel(model);
   const FittedParameter* parameter = squareness_of(fit);
@@ -67,11 +67,11 @@ SquarenessCheck check_squareness(const Model& model, const std::optional<Runout>
     out.reason = "these data do not determine the squareness";
   } else if (!runout) {
     out.reason = "the problem has no [runout]";
-  } else {
+  } else if (out.fit_rad && out.fit_U_rad) {
     out.En = std::abs(std::abs(*out.fit_rad) - std::abs(*out.indirect_rad)) /
              std::hypot(*out.fit_U_rad, *out.indirect_U_rad);
     const bool consistent = *out.En <= kConsistent;
-    out.verdict = consistent ? "consistent" : "inconsistent";
+    out.verdict = consistent ? Consistency::consistent : Consistency::inconsistent;
     out.reason = consistent ? "a run-out has no sign: magnitudes are compared" : disagreement(out);
   }
   return out;

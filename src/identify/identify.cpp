@@ -25,8 +25,8 @@ std::vector<OutlierSummary> largest_outliers(const Profile& profile) {
   const double unit = height ? kMicrometre : 1e-6;
   std::vector<OutlierSummary> out;
   for (const OutlierRow& each : outliers)
-    out.push_back({each.row, each.value / unit, each.expected / unit, height ? "um" : "urad",
-                   std::string(name(each.kind))});
+    out.push_back({each.row, each.value / unit, each.expected / unit,
+                   height ? MicroUnit::um : MicroUnit::urad, each.kind});
   return out;
 }
 
@@ -35,9 +35,9 @@ InputSummary summarise_input(const Profile& profile) {
                    profile.file,
                    profile.format,
                    profile.sha256,
-                   profile.setup.kind == Kind::face ? "face" : "slide",
-                   profile.setup.quantity == Quantity::height ? "height" : "slope",
-                   profile.role == Role::fit ? "fit" : "holdout"};
+                   profile.setup.kind,
+                   profile.setup.quantity,
+                   profile.role};
   out.samples = profile.values.size();
   out.missing = profile.missing;
   out.left_out = profile.left_out;
@@ -58,18 +58,12 @@ InputSummary summarise_input(const Profile& profile) {
   return out;
 }
 
-TravelSummary summarise_travel(Lever lever, const std::vector<const Observation*>& fitted,
-                               const Machine& machine) {
-  TravelSummary out;
-  out.lever = lever == Lever::paper ? "paper" : "split";
-  out.slide_min_mm = std::numeric_limits<double>::infinity();
-  out.slide_max_mm = -out.slide_min_mm;
+TravelSummary summarise_travel(Lever lever, const Model& model) {
+  const SlideRange travel = measured_travel(model);
+  TravelSummary out{lever, travel.least, travel.greatest, {}, {}};
   bool one_overhang = true;
-  for (const Observation* observation : fitted) {
+  for (const Observation* observation : fitted_observations(model)) {
     const Setup& setup = observation->profile->setup;
-    const SlideRange range = slide_range(*observation->profile, machine);
-    out.slide_min_mm = std::min(out.slide_min_mm, range.least);
-    out.slide_max_mm = std::max(out.slide_max_mm, range.greatest);
     if (setup.kind != Kind::face) continue;
     one_overhang = one_overhang && out.overhang_mm.value_or(setup.overhang_mm) == setup.overhang_mm;
     out.overhang_mm = setup.overhang_mm;
@@ -77,6 +71,12 @@ TravelSummary summarise_travel(Lever lever, const std::vector<const Observation*
   }
   if (!one_overhang) out.overhang_mm.reset();
   return out;
+}
+
+LowBandSummary summarise_low_band(const Observation& observation) {
+  const LowBandOptions& options = observation.low_band.options();
+  return {observation.profile->name, options.wavelet, options.level, options.boundary,
+          static_cast<std::size_t>(observation.values.size())};
 }
 
 }  // namespace
@@ -95,37 +95,46 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles, Sc
 }
 
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
-                const FittedModel& declared, Scope scope) {
+                const FittedModel& declared, Scope scope, bool with_budget) {
   Result result = summarise_data(problem, profiles);
-  result.wavelet = problem.low_band.wavelet;
-  result.level = problem.low_band.level;
-  result.boundary = name(problem.low_band.boundary);
-
   const auto& [model, fit] = declared;
-  FitResult summary = summarise(model, fit);
-  result.travel = summarise_travel(problem.lever, fitted_observations(model), model.machine);
-  for (const Observation* observation : fitted_observations(model))
-    result.low_band_values += static_cast<std::size_t>(observation->values.size());
+  for (const Observation& observation : model.observations)
+    result.low_band.push_back(summarise_low_band(observation));
+  ModelResult summary = summarise(model, fit, {}, with_budget);
+  result.travel = summarise_travel(problem.lever, model);
   if (scope != Scope::fit) {
     result.ranking = rank_effects(model, fit);
-    result.dominant = dominant_effects(*result.ranking, summary);
+    result.dominant = dominant_effects(result.ranking, summary);
   }
-  if (scope == Scope::identify)
-    result.squareness = check_squareness(model, problem.runout, summary);
-  if (scope != Scope::rank) result.fit = std::move(summary);
+  if (scope == Scope::rank) return result;
+  result.declared = summary;
+  set_final(problem, model, std::move(summary), scope, result);
   return result;
 }
 
+void set_final(const Problem& problem, const Model& model, ModelResult summary, Scope scope,
+               Result& result) {
+  if (scope == Scope::identify) {
+    result.crosscheck.squareness = check_squareness(model, problem.runout, summary);
+  } else {
+    result.crosscheck.squareness.emplace();
+    result.crosscheck.squareness->reason = "this command makes no cross-check";
+  }
+  result.final = std::move(summary);
+}
+
 bool is_negative(const Result& result) {
+  if (result.crosscheck.squareness &&
+      result.crosscheck.squareness->verdict == Consistency::inconsistent)
+    return true;
+  if (!result.final) return false;
   const auto matters = [](const UndeterminedDirection& direction) {
     return std::any_of(direction.combination.begin(), direction.combination.end(),
                        [](const auto& part) { return !fixed_by_convention(part.first); });
   };
-  const bool undetermined =
-      result.fit && std::any_of(result.fit->identifiability.unidentifiable.begin(),
-                                result.fit->identifiability.unidentifiable.end(), matters);
-  const bool inconsistent = result.squareness && result.squareness->verdict == "inconsistent";
-  return undetermined || inconsistent || (result.fit && !result.fit->converged);
+  const auto& undetermined = result.final->identifiability.unidentifiable;
+  return !result.final->converged ||
+         std::any_of(undetermined.begin(), undetermined.end(), matters);
 }
 
 }  // namespace slideway

@@ -90,7 +90,17 @@ Ranking rank_one(Signal& signal, const Observation& observation) {
   out.raw = raw.coefficient.back();
   // The low band has fewer values: its coefficient stands at the same share of the trace.
   const RunningCoefficient low = running_pearson(measured, modelled, kRunningPoints);
-  out.running = {std::move(raw.samples), std::move(raw.coefficient), low.coefficient};
+  const auto reached = [](const RunningCoefficient& running, std::span<const double> positions) {
+    std::vector<double> out;
+    for (const std::size_t samples : running.samples) out.push_back(positions[samples - 1]);
+    return out;
+  };
+  out.running.position_mm = reached(raw, profile.positions);
+  out.running.low_band_position_mm =
+      reached(low, observation.low_band.positions(profile.positions));
+  out.running.samples = std::move(raw.samples);
+  out.running.raw = std::move(raw.coefficient);
+  out.running.low_band = low.coefficient;
   return out;
 }
 
@@ -184,7 +194,7 @@ RankingResult rank_effects(const Model& model, const Solution& fit) {
   return out;
 }
 
-Dominant dominant_effects(const RankingResult& ranking, const FitResult& fit) {
+Dominant dominant_effects(const RankingResult& ranking, const ModelResult& fit) {
   std::map<std::string, double> coefficients, shares;
   std::set<std::string> profiles, fitted, significant_effects;
   for (const Ranking& entry : ranking.entries) {

@@ -2,8 +2,10 @@
 #include <cmath>
 
 #include "checks.hpp"
+#include "reported.hpp"
 #include "residual.hpp"
-#include "slideway/identify/fit.hpp"
+#include "slideway/identify/budget.hpp"
+#include "slideway/identify/straightness.hpp"
 #include "slideway/signal/autoregression.hpp"
 
 namespace slideway {
@@ -25,30 +27,37 @@ double per_sample(const Observation& observation) {
   return std::sqrt(static_cast<double>(observation.low_band.samples()));
 }
 
-ResidualSummary residual_summary(const Observation& observation, const Eigen::VectorXd& residual) {
-  const double scale = std::sqrt(static_cast<double>(residual.size())) / per_sample(observation);
-  return {observation.profile->name, observation.profile->role == Role::fit ? "fit" : "holdout",
-          in_micro(observation, residual.norm() / per_sample(observation)),
-          in_micro(observation, (residual.maxCoeff() - residual.minCoeff()) * scale),
-          is_slope(observation) ? "urad" : "um"};
+/// A size in the member of its unit.
+void set_size(const Observation& observation, double size, std::optional<double>& um,
+              std::optional<double>& urad) {
+  (is_slope(observation) ? urad : um) = in_micro(observation, size);
 }
 
-void add_parameters(const Model& model, const Solution& fit, FitResult& out) {
+ResidualSummary residual_summary(const Observation& observation, const Eigen::VectorXd& residual) {
+  const double scale = std::sqrt(static_cast<double>(residual.size())) / per_sample(observation);
+  ResidualSummary out{observation.profile->name, observation.profile->role};
+  set_size(observation, residual.norm() / per_sample(observation), out.rms_um, out.rms_urad);
+  set_size(observation, (residual.maxCoeff() - residual.minCoeff()) * scale, out.pv_um,
+           out.pv_urad);
+  return out;
+}
+
+void add_parameters(const Model& model, const Reported& reported, ModelResult& out) {
+  const Solution& fit = reported.solution();
   for (const ModelTerm& term : model.terms) {
+    out.effects.push_back(term.name);
     const std::vector<Parameter>& parameters = term.effect->parameters();
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const Eigen::Index index = term.first_parameter + static_cast<Eigen::Index>(p);
-      FittedParameter parameter{term.name + "." + parameters[p].name, parameters[p].symbol,
-                                parameters[p].unit, term.effect->description().standard_name};
+      FittedParameter parameter;
+      parameter.name = term.name + "." + parameters[p].name;
+      parameter.symbol = parameters[p].symbol;
+      parameter.unit = parameters[p].unit;
+      parameter.standard_name = term.effect->description().standard_name;
       parameter.identifiable = fit.null.identifiable[index];
-      if (parameter.identifiable) {
-        const Spread spread = fit.uncertainty.of(fit.parameters.jacobian.row(index));
-        parameter.value = fit.parameters.values[index];
-        parameter.standard_uncertainty = spread.standard_uncertainty;
-        parameter.degrees_of_freedom = spread.degrees_of_freedom;
-        parameter.coverage_factor = coverage_factor(spread.degrees_of_freedom);
-        parameter.expanded_uncertainty = parameter.coverage_factor * spread.standard_uncertainty;
-      }
+      if (parameter.identifiable)
+        reported.set(fit.parameters.values[index], fit.parameters.jacobian.row(index), 1.0,
+                     parameter);
       for (std::size_t s = 0; s < term.effect->shapes().size(); ++s)
         if (term.effect->shapes()[s].parameter == static_cast<int>(p))
           parameter.at_bound = fit.shape_at_bound[term.first_shape + s];
@@ -57,7 +66,7 @@ void add_parameters(const Model& model, const Solution& fit, FitResult& out) {
   }
 }
 
-void add_correlations(const Model& model, const Solution& fit, FitResult& out) {
+void add_correlations(const Model& model, const Solution& fit, ModelResult& out) {
   const Eigen::MatrixXd rows = fit.parameters.jacobian * fit.uncertainty.basis;
   const Eigen::MatrixXd covariance = rows * fit.uncertainty.covariance * rows.transpose();
   const std::vector<std::string> names = model.parameter_names();
@@ -71,7 +80,8 @@ void add_correlations(const Model& model, const Solution& fit, FitResult& out) {
     }
 }
 
-void add_identifiability(const Model& model, const Solution& fit, Identifiability& out) {
+void add_identifiability(const Model& model, const Reported& reported, Identifiability& out) {
+  const Solution& fit = reported.solution();
   const std::vector<std::string> names = model.parameter_names();
   out.parameters = names.size();
   out.rank = names.size() - fit.null.own.size();
@@ -88,32 +98,27 @@ void add_identifiability(const Model& model, const Solution& fit, Identifiabilit
       combination.combination.emplace_back(names[p], rows(i, p));
       if (rows(i, p) == 1.0 && combination.unit.empty()) combination.unit = units[p];
     }
-    const Spread spread = fit.uncertainty.of(rows.row(i) * fit.parameters.jacobian);
-    combination.value = rows.row(i).dot(fit.parameters.values);
-    combination.standard_uncertainty = spread.standard_uncertainty;
-    combination.expanded_uncertainty =
-        coverage_factor(spread.degrees_of_freedom) * spread.standard_uncertainty;
+    reported.set(rows.row(i).dot(fit.parameters.values), rows.row(i) * fit.parameters.jacobian, 1.0,
+                 combination);
     out.determined.push_back(std::move(combination));
   }
 }
 
-void add_noise(const Solution& fit, FitResult& out) {
+void add_noise(const Solution& fit, ModelResult& out) {
   for (std::size_t i = 0; i < fit.noise.size(); ++i) {
     const Noise& noise = fit.noise[i];
     const Observation& observation = *fit.linear.observations[i];
     const auto n = static_cast<double>(observation.values.size());
     const double ratio = std::min(noise.correlation.long_run_ratio(), n);  // the trace has no more
-    const double deviation =
-        in_micro(observation, noise.standard_deviation() * std::sqrt(n) / per_sample(observation));
     const double step =
         (observation.profile->setup.last_mm - observation.profile->setup.first_mm) / n;
     NoiseSummary summary{observation.profile->name,
-                         noise.declared    ? "declared"
-                         : noise.overruled ? "estimated: the declared uncertainty is too small"
-                                           : "estimated",
+                         noise.declared    ? NoiseScaling::declared
+                         : noise.overruled ? NoiseScaling::refuted
+                                           : NoiseScaling::estimated,
                          noise.correlation.order()};
-    (is_slope(observation) ? summary.standard_deviation_urad : summary.standard_deviation_um) =
-        deviation;
+    set_size(observation, noise.standard_deviation() * std::sqrt(n) / per_sample(observation),
+             summary.standard_deviation_um, summary.standard_deviation_urad);
     summary.correlation_mm = noise.correlation.order() > 0 ? ratio * step : 0.0;
     summary.effective_observations = n / ratio;
     Eigen::MatrixXd whitened = fit.linear.residuals[i];
@@ -133,7 +138,7 @@ void add_noise(const Solution& fit, FitResult& out) {
       static_cast<double>(fit.linear.prior_rows.rows() - fit.rank.basis.cols());
 }
 
-void add_residuals(const Model& model, const Solution& fit, FitResult& out) {
+void add_residuals(const Model& model, const Solution& fit, ModelResult& out) {
   struct Sum {
     double squares = 0.0, samples = 0.0;
     [[nodiscard]] std::optional<double> rms(double unit) const {
@@ -162,7 +167,7 @@ void add_residuals(const Model& model, const Solution& fit, FitResult& out) {
   out.rms_urad = slopes.rms(kMicroradian);
 }
 
-void add_contributions(const Model& model, const Solution& fit, FitResult& out) {
+void add_contributions(const Model& model, const Solution& fit, ModelResult& out) {
   for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
     const Observation& observation = *fit.linear.observations[i];
     const std::size_t first = out.contributions.size();
@@ -172,29 +177,33 @@ void add_contributions(const Model& model, const Solution& fit, FitResult& out) 
       Eigen::VectorXd signal = fit.linear.columns[i].middleCols(from, count) *
                                fit.estimate.amplitudes.segment(from, count);
       signal.array() -= signal.mean();
-      const double size = in_micro(observation, signal.norm() / per_sample(observation));
+      const double size = signal.norm() / per_sample(observation);
       total += size * size;
-      out.contributions.push_back({term.name, observation.profile->name, size, 0.0});
+      Contribution& contribution = out.contributions.emplace_back();
+      contribution.effect = term.name;
+      contribution.profile = observation.profile->name;
+      contribution.share = size * size;
+      set_size(observation, size, contribution.rms_um, contribution.rms_urad);
     }
     for (std::size_t c = first; c < out.contributions.size(); ++c) {
-      Contribution& contribution = out.contributions[c];
-      contribution.share = total > 0.0 ? contribution.rms_um * contribution.rms_um / total : 0.0;
+      double& share = out.contributions[c].share;
+      share = total > 0.0 ? share / total : 0.0;
     }
   }
 }
 
-void add_nuisances(const Solution& fit, FitResult& out) {
+void add_nuisances(const Solution& fit, ModelResult& out) {
   for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
     const Observation& observation = *fit.linear.observations[i];
     for (std::size_t j = 0; j < observation.nuisance_names.size(); ++j) {
       const bool offset = observation.nuisance_names[j] == "offset";
-      const double scale = offset ? 1.0 / kMicrometre : 1.0;
-      const double u = std::sqrt(std::max(fit.uncertainty.nuisance_covariances[i](j, j), 0.0));
-      FittedParameter nuisance{observation.profile->name + "." + observation.nuisance_names[j],
-                               observation.nuisance_names[j], offset ? "um" : "rad", ""};
-      nuisance.value = fit.estimate.nuisances[i][j] * scale;
-      nuisance.standard_uncertainty = u * scale;
-      nuisance.expanded_uncertainty = 2.0 * u * scale;
+      FittedParameter nuisance;
+      nuisance.name = observation.profile->name + "." + observation.nuisance_names[j];
+      nuisance.symbol = observation.nuisance_names[j];
+      nuisance.unit = offset ? "um" : "rad";
+      const double variance = fit.uncertainty.nuisance_covariances[i](j, j);
+      Reported::set(fit.estimate.nuisances[i][j], {std::sqrt(std::max(variance, 0.0)), {}},
+                    offset ? kMicrometre : 1.0, nuisance);
       out.nuisances.push_back(std::move(nuisance));
     }
   }
@@ -202,22 +211,26 @@ void add_nuisances(const Solution& fit, FitResult& out) {
 
 }  // namespace
 
-FitResult summarise(const Model& model, const Solution& fit) {
-  FitResult out;
+ModelResult summarise(const Model& model, const Solution& fit, const MoreVariance& more,
+                      bool with_budget) {
+  const Reported reported(fit, more);
+  ModelResult out;
   out.converged = fit.converged;
   if (!fit.converged) out.message = fit.message;
-  add_parameters(model, fit, out);
+  add_parameters(model, reported, out);
   add_nuisances(fit, out);
   add_correlations(model, fit, out);
-  add_identifiability(model, fit, out.identifiability);
+  add_identifiability(model, reported, out.identifiability);
   add_noise(fit, out);
   add_residuals(model, fit, out);
   add_contributions(model, fit, out);
+  out.straightness = identified_straightness(model, fit, more);
+  if (with_budget) out.budget = uncertainty_budget(model, fit, more);
   add_checks(model, fit, out);
   return out;
 }
 
-const FittedParameter* FitResult::find(const std::string& name) const {
+const FittedParameter* ModelResult::find(const std::string& name) const {
   for (const FittedParameter& parameter : parameters)
     if (parameter.name == name) return &parameter;
   return nullptr;

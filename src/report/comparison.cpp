@@ -6,9 +6,9 @@
 #include "json_parts.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/report/document.hpp"
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
+#include "slideway/trace/analysis_fields.hpp"
 #include "text_parts.hpp"
 
 namespace slideway {
@@ -27,6 +27,11 @@ struct Pair {
 struct Change {
   std::string what, a, b;  // "" where a report does not have it
 };
+
+const Parameters& parameters_of(const Analysis& analysis) {
+  static const Parameters kNone;
+  return analysis.result.final ? analysis.result.final->parameters : kNone;
+}
 
 const FittedParameter* find(const Parameters& all, const std::string& name) {
   const auto found = std::ranges::find(all, name, &FittedParameter::name);
@@ -51,7 +56,7 @@ Pair pair_of(const FittedParameter* a, const FittedParameter* b) {
 }
 
 std::vector<Pair> pairs_of(const NamedReport& a, const NamedReport& b) {
-  const Parameters &in_a = final_parameters(a.analysis), &in_b = final_parameters(b.analysis);
+  const Parameters &in_a = parameters_of(a.analysis), &in_b = parameters_of(b.analysis);
   std::vector<Pair> out;
   for (const FittedParameter& p : in_a) {
     const FittedParameter* other = find(in_b, p.name);
@@ -69,35 +74,45 @@ std::string in_short(const std::optional<double>& value) {
   return value ? significant(*value, 4) : "";
 }
 
+std::string in_words(const LowBandSummary& band) {
+  if (band.level == 0) return "none";
+  return band.wavelet + ", level " + std::to_string(band.level) + ", ends " +
+         std::string(text_of(band.boundary));
+}
+
+std::string in_words(const InputSummary& in) {
+  return std::string(text_of(in.kind)) + " " + std::string(text_of(in.quantity)) + ", " +
+         std::string(text_of(in.role));
+}
+
 Facts facts_of(const Analysis& analysis) {
   const Result& result = analysis.result;
   Facts facts{{"title", result.title}, {"version", result.version}};
   for (const InputSummary& in : result.inputs) {
     const std::string input = "input " + in.name;
     facts.emplace_back(input + ", sha256", in.sha256.substr(0, 16));
-    facts.emplace_back(input + ", kind", in.kind + " " + in.quantity + ", " + in.role);
+    facts.emplace_back(input + ", kind", in_words(in));
     facts.emplace_back(input + ", samples", std::to_string(in.samples));
     facts.emplace_back(input + ", left out", std::to_string(in.left_out));
   }
-  facts.emplace_back("low band", result.level == 0
-                                     ? "none"
-                                     : result.wavelet + ", level " + std::to_string(result.level) +
-                                           ", ends " + result.boundary);
-  if (result.travel) facts.emplace_back("lever", result.travel->lever);
+  for (const LowBandSummary& band : result.low_band)
+    facts.emplace_back("low band of " + band.profile, in_words(band));
+  if (result.travel) facts.emplace_back("lever", text_of(result.travel->lever));
   facts.emplace_back("dominant by correlation", result.dominant.by_correlation.value_or("none"));
   facts.emplace_back("dominant by fit", result.dominant.by_fit.value_or("none"));
-  if (result.fit) {
-    facts.emplace_back("fit", result.fit->converged ? "converged" : "not converged");
-    facts.emplace_back("residual rms of the declared model, um", in_short(result.fit->rms_um));
+  if (result.declared)
+    facts.emplace_back("residual rms of the declared model, um", in_short(result.declared->rms_um));
+  if (result.final) {
+    facts.emplace_back("fit", result.final->converged ? "converged" : "not converged");
+    facts.emplace_back("residual rms of the final model, um", in_short(result.final->rms_um));
   }
-  if (result.squareness)
-    facts.emplace_back("cross-check of squareness", result.squareness->verdict);
+  if (result.crosscheck.squareness)
+    facts.emplace_back("cross-check of squareness", text_of(result.crosscheck.squareness->verdict));
   if (!analysis.trace) return facts;
-  facts.emplace_back("closed loop", analysis.trace->verdict);
+  facts.emplace_back("closed loop", text_of(analysis.trace->verdict));
   std::vector<std::string> accepted;
   for (const TraceRound& round : analysis.trace->rounds) accepted.push_back(round.accepted);
   facts.emplace_back("effects found", accepted.empty() ? "none" : joined(accepted));
-  facts.emplace_back("residual rms after the loop, um", in_short(analysis.trace->after_rms_um));
   return facts;
 }
 

@@ -9,7 +9,6 @@
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
-#include "slideway/report/document.hpp"
 #include "slideway/report/number.hpp"
 
 namespace slideway {
@@ -58,7 +57,7 @@ class TipLocus {
  private:
   [[nodiscard]] double lever(double x) const {
     if (!travel_->spindle_position_mm) return 0.0;  // read along the slide itself
-    return travel_->lever == "paper" ? x - *travel_->spindle_position_mm
+    return travel_->lever == Lever::paper ? x - *travel_->spindle_position_mm
                                      : travel_->overhang_mm.value_or(0.0);
   }
 
@@ -94,7 +93,8 @@ std::string drowned(const Analysis& analysis, const Compensation& table,
                     const std::vector<double>& form) {
   if (!analysis.trace || !analysis.trace->unnamed) return "";
   const Unnamed& left = *analysis.trace->unnamed;
-  const bool slope = left.unit == "urad";
+  const bool slope = !left.rms_um;
+  const double rms = left.rms_um.value_or(left.rms_urad.value_or(0.0));
   std::vector<double> seen = form;
   if (slope) {
     const double step = table.positions_mm[1] - table.positions_mm[0];
@@ -102,22 +102,22 @@ std::string drowned(const Analysis& analysis, const Compensation& table,
     seen.pop_back();
   }
   const double size = rms_about_mean(seen) / (slope ? kMicroradian : kMicrometre);
-  if (left.rms < size) return "";
+  if (rms < size) return "";
   const std::string unit = slope ? " µrad" : " µm";
-  return "the loop leaves " + significant(left.rms, 3) + unit +
+  return "the loop leaves " + significant(rms, 3) + unit +
          " rms without a name, no less than its own " + significant(size, 3) + unit;
 }
 
 void refuse_whole(const Analysis& analysis) {
   const auto refuse = [](const std::string& why) { throw DataError("no table: " + why); };
-  if (!analysis.result.fit) refuse("the report holds no fit; accepted: one of identify or fit");
-  if (!analysis.result.fit->converged) refuse("the fit did not converge");
+  if (!analysis.result.final) refuse("the report holds no fit; accepted: one of identify or fit");
+  if (!analysis.result.final->converged) refuse("the fit did not converge");
   if (!analysis.result.travel)
     refuse("the report says no travel, being of an older slideway; identify the problem again");
-  for (const FittedParameter& p : final_parameters(analysis))
+  for (const FittedParameter& p : analysis.result.final->parameters)
     if (p.name.starts_with("straightness[") || p.name.starts_with("squareness["))
       refuse("several carriages move along X; accepted: a machine with one");
-  if (analysis.trace && analysis.trace->verdict == "not_identifiable")
+  if (analysis.trace && analysis.trace->verdict == TraceVerdict::not_identifiable)
     refuse(
         "the closed loop's verdict is not_identifiable: the data cannot tell what made the form");
 }
@@ -132,9 +132,9 @@ double add_straightness(const Analysis& analysis, const TipLocus& locus, Compens
   if (!locus.is_declared()) return leave_out("the model has no straightness");
   if (const auto names = locus.undetermined(2); !names.empty())
     return leave_out("the data do not determine " + joined(names));
-  if (travel.spindle_position_mm && travel.lever == "split" && !travel.overhang_mm)
+  if (travel.spindle_position_mm && travel.lever == Lever::split && !travel.overhang_mm)
     return leave_out("the faces were cut at several overhangs, and its pitch acts on each");
-  const std::string& implausible = analysis.result.fit->implausible;
+  const std::string& implausible = analysis.result.final->implausible;
   if (!implausible.empty() && (!analysis.trace || analysis.trace->rounds.empty()))
     return leave_out(implausible);
 
@@ -152,7 +152,7 @@ double add_straightness(const Analysis& analysis, const TipLocus& locus, Compens
   if (const std::string why = drowned(analysis, out, form); !why.empty()) return leave_out(why);
   out.straightness_mm = std::move(form);
   const std::string lever = !travel.spindle_position_mm ? ", of the carriage"
-                            : travel.lever == "paper"
+                            : travel.lever == Lever::paper
                                 ? ", at the tool tip, with the pitch on the lever p_x = r"
                                 : ", at the tool tip, with the pitch on the overhang of " +
                                       significant(*travel.overhang_mm, 6) + " mm";
@@ -166,16 +166,16 @@ void add_squareness(const Analysis& analysis, const TipLocus& locus, double slop
   const auto leave_out = [&](const std::string& why) {
     out.left_out.push_back("B0X is left out: " + why);
   };
-  const Parameters& parameters = final_parameters(analysis);
+  const Parameters& parameters = analysis.result.final->parameters;
   const auto found = std::ranges::find(parameters, "squareness.dbeta_xz", &FittedParameter::name);
   if (found == parameters.end()) return leave_out("the model has no squareness");
   if (!is_determined(*found)) return leave_out("the data do not determine " + found->symbol);
-  const bool needs_b1 = analysis.result.travel->lever == "split" && !out.straightness_mm.empty();
+  const bool needs_b1 = analysis.result.travel->lever == Lever::split && !out.straightness_mm.empty();
   if (needs_b1)
     if (const auto names = locus.undetermined(1); !names.empty())
       return leave_out("the data do not determine " + joined(names));
-  const auto& check = analysis.result.squareness;
-  if (check && check->verdict == "inconsistent")
+  const auto& check = analysis.result.crosscheck.squareness;
+  if (check && check->verdict == Consistency::inconsistent)
     return leave_out("the cross-check with the run-out is inconsistent (E_n " +
                      (check->En ? significant(*check->En, 3) : "unknown") + ")");
   const double angle = *found->value - slope;
@@ -186,7 +186,7 @@ void add_squareness(const Analysis& analysis, const TipLocus& locus, double slop
   out.basis.push_back(
       "B0X: squareness of X to the spindle axis average line, E_B(0C)X, rad: Δβxz = " +
       (found->expanded_uncertainty ? with_uncertainty(*found->value, *found->expanded_uncertainty) +
-                                         " (U, k = " + fixed_point(found->coverage_factor, 2) + ")"
+                                         " (U, k = " + fixed_point(found->coverage_factor.value_or(2.0), 2) + ")"
                                    : significant(*found->value, 6)) +
       (out.straightness_mm.empty()
            ? ""
@@ -200,7 +200,7 @@ Compensation compensation(const Analysis& analysis, double step_mm) {
   Compensation out;
   const TravelSummary& travel = *analysis.result.travel;
   out.positions_mm = evenly(travel, step_mm);
-  const TipLocus locus(final_parameters(analysis), travel);
+  const TipLocus locus(analysis.result.final->parameters, travel);
   const double slope = add_straightness(analysis, locus, out);
   add_squareness(analysis, locus, slope, out);
   if (out.straightness_mm.empty() && !out.squareness_rad)
@@ -208,14 +208,14 @@ Compensation compensation(const Analysis& analysis, double step_mm) {
   if (!analysis.trace)
     out.left_out.emplace_back(
         "in doubt: the closed loop was not run, so what the model lacks is in these numbers");
-  else if (analysis.trace->verdict == "ambiguous")
+  else if (analysis.trace->verdict == TraceVerdict::ambiguous)
     out.left_out.emplace_back(
         "in doubt: the closed loop's verdict is ambiguous, and its rivals would leave other "
         "numbers");
   const auto is_pitch_of_z = [](const FittedParameter& p) {
     return p.name.starts_with("vertical_straightness.");
   };
-  if (std::ranges::any_of(final_parameters(analysis), is_pitch_of_z))
+  if (std::ranges::any_of(analysis.result.final->parameters, is_pitch_of_z))
     out.left_out.emplace_back("not in this table: vertical_straightness of the report (E_BZ)");
   return out;
 }

@@ -10,6 +10,7 @@
 #include "json_parts.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/trace/analysis.hpp"
 
 namespace slideway {
 
@@ -21,13 +22,13 @@ class Node {
       : json_(&json), place_(std::move(place)) {}
 
   [[nodiscard]] bool is_null() const { return json_->is_null(); }
+  [[nodiscard]] bool is_missing() const { return json_ == &kMissing; }
 
   /// The value of a key; null where the key is missing.
   [[nodiscard]] Node operator[](const std::string& key) const {
-    static const Json kNull;
     if (!json_->is_object()) fail("an object");
     const auto found = json_->find(key);
-    return Node(found == json_->end() ? kNull : *found, place_.empty() ? key : place_ + "." + key);
+    return Node(found == json_->end() ? kMissing : *found, place_.empty() ? key : place_ + "." + key);
   }
   /// Whether a key is there and not null.
   [[nodiscard]] bool has(const std::string& key) const { return !(*this)[key].is_null(); }
@@ -101,6 +102,18 @@ class Node {
     return out;
   }
 
+  [[nodiscard]] std::vector<std::string> keys() const {
+    if (!json_->is_object()) fail("an object");
+    std::vector<std::string> out;
+    for (const auto& [key, value] : json_->items()) out.push_back(key);
+    return out;
+  }
+  /// The value as JSON, in ASCII.
+  [[nodiscard]] std::string json_text() const {
+    if (is_missing()) fail("any value");
+    return json_->dump(-1, ' ', true, Json::error_handler_t::replace);
+  }
+
   [[noreturn]] void fail(const std::string& accepted) const {
     const std::string what = is_null() ? "is missing" : std::string("is ") + json_->type_name();
     throw DataError((place_.empty() ? "" : printable(place_, 80) + ": ") + what +
@@ -112,11 +125,12 @@ class Node {
     return Node((*json_)[i], place_ + "[" + std::to_string(i) + "]");
   }
 
+  inline static const Json kMissing;
+
   const Json* json_;
   std::string place_;
 };
 
-inline constexpr std::string_view kReportSchema = "slideway.report/1";
 inline constexpr std::string_view kColumnsSchema = "slideway.columns/1";
 
 /// A document that --json wrote: brackets at most 32 deep, one of these schemas. @throws DataError
@@ -134,13 +148,5 @@ auto read_document(std::string_view text, const std::string& name,
     throw DataError(name + ": " + error.what());
   }
 }
-
-FittedParameter fitted_parameter(const Node& node);
-
-using Correlation = std::tuple<std::string, std::string, double>;
-Correlation correlation(const Node& node);
-
-/// The `trace` part of a report, with `before` and `after`.
-TraceResult trace_result(const Node& report);
 
 }  // namespace slideway

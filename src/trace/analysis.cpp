@@ -1,9 +1,8 @@
 #include "slideway/trace/analysis.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 
+#include "fit_numbers.hpp"
 #include "loop.hpp"
 #include "slideway/base/error.hpp"
 
@@ -16,16 +15,33 @@ template <typename Error>
   throw Error(problem.path.string() + ": " + error.what());
 }
 
-/// What the structure without a name adds to the uncertainty of the parameters (widening.hpp).
-void add_widening(const TraceResult& trace, std::vector<Budget>& budgets) {
-  for (Budget& budget : budgets) {
-    double rest = 0.0;
-    for (const FittedParameter& parameter : trace.after)
-      if (parameter.name == budget.parameter && parameter.standard_uncertainty)
-        rest = std::pow(*parameter.standard_uncertainty, 2);
-    for (const BudgetLine& line : budget.lines) rest -= std::pow(line.standard_uncertainty, 2);
-    budget.lines.push_back({"structure without a name", 'A', std::sqrt(std::max(rest, 0.0))});
+Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
+                  const AnalysisOptions& options, const Progress& progress) {
+  const FittedModel declared = fit_declared(problem, profiles);
+  Analysis out;
+  out.result = identify(problem, profiles, declared, options.scope, options.with_details);
+  if (options.with_evidence) out.evidence = evidence(declared.model, declared.fit);
+  const FittedModel* last = &declared;
+  ClosedLoop loop;
+  if (options.closes_loop) {
+    loop = close_loop(problem, profiles, declared, progress);
+    if (loop.extended) last = &*loop.extended;
+    MoreVariance unnamed;
+    if (loop.widening)
+      unnamed = [&](const Eigen::RowVectorXd& row) { return loop.widening->variance(row); };
+    set_final(problem, last->model,
+              summarise(last->model, last->fit, unnamed, options.with_details), options.scope,
+              out.result);
+    out.trace = std::move(loop.trace);
+    for (TraceRound& round : out.trace->rounds)
+      round.parameters = parameters_of(*out.result.final, round.accepted);
   }
+  if (options.with_details)
+    out.details = make_details(problem, declared, last == &declared ? nullptr : last,
+                               options.with_curves);
+  leave_out_non_finite(out);
+  round_drawn(out);
+  return out;
 }
 
 }  // namespace
@@ -33,24 +49,7 @@ void add_widening(const TraceResult& trace, std::vector<Budget>& budgets) {
 Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
                  const AnalysisOptions& options, const Progress& progress) {
   try {
-    const FittedModel declared = fit_declared(problem, profiles);
-    Analysis analysis{identify(problem, profiles, declared, options.scope), {}, {}, {}};
-    if (options.with_evidence) analysis.evidence = evidence(declared.model, declared.fit);
-    ClosedLoop loop;
-    if (options.closes_loop) {
-      loop = close_loop(problem, profiles, declared, progress);
-      analysis.trace = std::move(loop.trace);
-    }
-    if (options.with_details) {
-      MoreVariance unnamed;
-      if (loop.widening)
-        unnamed = [&](const Eigen::RowVectorXd& row) { return loop.widening->variance(row); };
-      analysis.details =
-          make_details(problem, declared, loop.extended ? &*loop.extended : nullptr, unnamed);
-      if (analysis.trace && analysis.trace->unnamed)
-        add_widening(*analysis.trace, analysis.details->budget);
-    }
-    return analysis;
+    return analysed(problem, profiles, options, progress);
   } catch (const UsageError& error) {
     rethrow(problem, error);
   } catch (const DataError& error) {

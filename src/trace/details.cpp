@@ -132,20 +132,30 @@ void add_effects(const FittedModel& fitted, const View& last, double unit, Profi
     std::vector<double>& row = out.correlation.emplace_back();
     for (const Eigen::VectorXd& b : low) row.push_back(pearson(view(a), view(b)));
   }
+}
 
+/// Flatness of a profile as measured, with each effect of the model taken out, and with all.
+void predict_flatness(const FittedModel& fitted, const View& last,
+                      std::vector<PredictedFlatness>& out) {
   const Observation& observation = last.observation();
+  const bool slope = last.profile().setup.quantity == Quantity::slope;
+  const double unit = slope ? kMicroradian : kMicrometre;
   const auto n = static_cast<double>(observation.values.size());
   const double per_sample = std::sqrt(static_cast<double>(observation.low_band.samples()));
   const auto predict = [&](const std::string& corrected, const Eigen::VectorXd& values) {
     const Eigen::VectorXd left = last.levelled(values) / per_sample;
-    out.flatness.push_back({corrected, (left.maxCoeff() - left.minCoeff()) * std::sqrt(n) / unit,
-                            (left.array() - left.mean()).matrix().norm() / unit});
+    PredictedFlatness each{last.profile().name, corrected};
+    (slope ? each.pv_urad : each.pv_um) = (left.maxCoeff() - left.minCoeff()) * std::sqrt(n) / unit;
+    (slope ? each.rms_urad : each.rms_um) = (left.array() - left.mean()).matrix().norm() / unit;
+    out.push_back(std::move(each));
   };
+  if (fitted.model.terms.empty()) return;
   predict("", observation.values);
   Eigen::VectorXd all = observation.values;
-  for (std::size_t i = 0; i < low.size(); ++i) {
-    predict(out.effects[i], observation.values - low[i]);
-    all -= low[i];
+  for (const ModelTerm& term : fitted.model.terms) {
+    const Eigen::VectorXd low = last.low_band_contribution(term);
+    predict(term.name, observation.values - low);
+    all -= low;
   }
   predict("all", all);
 }
@@ -189,36 +199,63 @@ void add_bands(const Observation& observation, double unit, ProfileCurves& out) 
   for (const Band& band : bands.details) out.details.push_back(envelope(band, kStretches));
 }
 
+ProfileCurves curves_of(const FittedModel& last, const View& declared,
+                        const std::optional<View>& extended) {
+  const Profile& profile = declared.profile();
+  const bool slope = profile.setup.quantity == Quantity::slope;
+  const double unit = slope ? kMicroradian : kMicrometre;
+  ProfileCurves out;
+  out.profile = profile.name;
+  out.role = profile.role;
+  out.unit = slope ? MicroUnit::urad : MicroUnit::um;
+  out.first_mm = profile.setup.first_mm;
+  out.last_mm = profile.setup.last_mm;
+  add_series(declared, extended, unit, out);
+  add_effects(last, extended ? *extended : declared, unit, out);
+  add_residuals(declared, extended, unit, out);
+  add_bands(declared.observation(), unit, out);
+  return out;
+}
+
+EffectInModel in_model(const ModelTerm& term, const Model& declared) {
+  const Description& what = term.effect->description();
+  const bool added = std::none_of(declared.terms.begin(), declared.terms.end(),
+                                  [&](const ModelTerm& each) { return each.name == term.name; });
+  return {what.name,  what.standard_name,        what.formula,         what.source,
+          what.cause, std::string(symbol(what.clock)), what.confounded_with, what.separated_by,
+          added};
+}
+
+OptionsSummary options_of(const Problem& problem) {
+  OptionsSummary out{problem.lever, problem.bodies};
+  for (const DeclaredEffect& declared : problem.effects)
+    for (const Prior& prior : declared.priors)
+      out.priors.push_back(
+          {declared.name + "." + prior.parameter, prior.value, prior.standard_uncertainty});
+  out.runout = problem.runout;
+  out.candidates = problem.trace.candidates;
+  out.max_effects = problem.trace.max_effects;
+  out.significance = problem.trace.significance;
+  return out;
+}
+
 }  // namespace
 
 Details make_details(const Problem& problem, const FittedModel& before, const FittedModel* after,
-                     const MoreVariance& more) {
+                     bool with_curves) {
   const FittedModel& last = after ? *after : before;
   Details out;
-  out.problem = problem;
+  if (with_curves) out.curves.emplace();
   for (std::size_t i = 0; i < before.model.observations.size(); ++i) {
     const View declared(before, i);
     const std::optional<View> extended = after ? std::optional(View(*after, i)) : std::nullopt;
-    const Profile& profile = declared.profile();
-    const bool slope = profile.setup.quantity == Quantity::slope;
-    const double unit = slope ? kMicroradian : kMicrometre;
-    ProfileCurves& curves = out.profiles.emplace_back();
-    curves.profile = profile.name;
-    curves.role = profile.role == Role::fit ? "fit" : "holdout";
-    curves.unit = slope ? "urad" : "um";
-    curves.setup = profile.setup;
-    add_series(declared, extended, unit, curves);
-    add_effects(last, extended ? *extended : declared, unit, curves);
-    add_residuals(declared, extended, unit, curves);
-    add_bands(declared.observation(), unit, curves);
+    out.setups.push_back({declared.profile().name, declared.profile().setup});
+    predict_flatness(last, extended ? *extended : declared, out.what_if);
+    if (out.curves) out.curves->profiles.push_back(curves_of(last, declared, extended));
   }
   for (const ModelTerm& term : last.model.terms)
-    out.effects.push_back(
-        {term.effect->description(),
-         std::none_of(before.model.terms.begin(), before.model.terms.end(),
-                      [&](const ModelTerm& each) { return each.name == term.name; })});
-  out.straightness = identified_straightness(last.model, last.fit, more);
-  out.budget = uncertainty_budget(last.model, last.fit);
+    out.effects.push_back(in_model(term, before.model));
+  out.options = options_of(problem);
   return out;
 }
 

@@ -194,7 +194,7 @@ std::optional<double> limit_at(const Design& design, const Case& one) {
 std::optional<DetectionLimit> detection_limit(const Design& design, const Candidate& candidate) {
   if (!candidate.term.effect->has_one_size()) return std::nullopt;
   const Parameter& first = candidate.term.effect->parameters()[0];
-  DetectionLimit out{candidate.name(), first.name, first.unit, 0.0, "", {}};
+  DetectionLimit out{candidate.name(), first.name, first.unit, std::nullopt, "", {}};
   const std::vector<std::vector<double>> shapes = spread_shapes(candidate);
   const auto middle = std::ssize(shapes) / 2;
   std::ptrdiff_t nearest = std::ssize(shapes);  // places from the middle
@@ -207,13 +207,13 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
     const std::optional<double> limit = limit_at(design, one);
     if (!limit || !((one.columns * one.amplitudes(*limit)).cwiseAbs().maxCoeff() < kMostVisible))
       continue;
-    if (!shape.empty()) out.by_shape.emplace_back(shape[0], *limit);
+    if (!shape.empty()) out.by_shape.push_back({shape[0], *limit});
     if (std::abs(s - middle) >= nearest) continue;
     nearest = std::abs(s - middle);
     out.value = *limit;
     out.at = shape_text(candidate, shape);
   }
-  if (out.value == 0.0) return std::nullopt;
+  if (!out.value) return std::nullopt;
   return out;
 }
 
@@ -234,16 +234,16 @@ std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Wh
   return out;
 }
 
-std::vector<std::pair<std::string, std::string>> inseparable(const Model& model,
+std::vector<NotSeparable> inseparable(const Model& model,
                                                              const Solution& fit,
                                                              const Whitened& data,
                                                              const Candidates& candidates) {
-  std::vector<std::pair<std::string, std::string>> out;
+  std::vector<NotSeparable> out;
   for (const Candidate* candidate : candidates) {
     const Eigen::MatrixXd columns = stacked_columns(
         model, candidate->term, middle_shape(*candidate), data.rows() - data.values());
     if (project(data, columns).rank > 0 || columns.isZero(0.0)) continue;
-    out.emplace_back(candidate->name(), made_by(model, fit, data, columns.col(0)));
+    out.push_back({candidate->name(), made_by(model, fit, data, columns.col(0))});
   }
   return out;
 }

@@ -51,12 +51,12 @@ Extended Extender::extend(std::vector<Added> added) const {
   return out;
 }
 
-const FitResult& Extender::summary(const Extended& extended) const {
+const ModelResult& Extender::summary(const Extended& extended) const {
   if (!extended.numbers) extended.numbers = summarised(extended);
   return *extended.numbers;
 }
 
-FitResult Extender::summarised(const Extended& extended) const {
+ModelResult Extender::summarised(const Extended& extended) const {
   if (!coarser_) return summarise(extended.model, extended.fit);
   const auto& [model, fit] = refitted(extended);
   return summarise(model, fit);

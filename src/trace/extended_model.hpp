@@ -24,7 +24,7 @@ struct Extended : FittedModel {
 
   std::vector<Added> added;
   double lost_centre_mm = 0.0;               // values within this radius are left out of the fit
-  mutable std::optional<FitResult> numbers;  // Extender::summary(), made once
+  mutable std::optional<ModelResult> numbers;  // Extender::summary(), made once
 };
 
 /// Makes Extended models of one problem, in the low band effects are searched in: the declared one,
@@ -40,13 +40,13 @@ class Extender {
   [[nodiscard]] Extended extend(std::vector<Added> added) const;
 
   /// The report's numbers, in the declared low band. They live as long as `extended`.
-  [[nodiscard]] const FitResult& summary(const Extended& extended) const;
+  [[nodiscard]] const ModelResult& summary(const Extended& extended) const;
 
   /// The same model, fitted in the declared low band.
   [[nodiscard]] FittedModel in_declared_band(Extended extended) const;
 
  private:
-  [[nodiscard]] FitResult summarised(const Extended& extended) const;
+  [[nodiscard]] ModelResult summarised(const Extended& extended) const;
   [[nodiscard]] FittedModel refitted(const Extended& extended) const;
   [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<Added>& added) const;
 

@@ -4,17 +4,17 @@
 
 namespace slideway {
 
-std::optional<double> holdout_rms_um(const FitResult& fit) {
+std::optional<double> holdout_rms_um(const ModelResult& fit) {
   double squares = 0.0;
   int count = 0;
   for (const ResidualSummary& residual : fit.residuals)
-    if (residual.role == "holdout" && residual.unit == "um")
-      squares += residual.rms_um * residual.rms_um, ++count;
+    if (residual.role == Role::holdout && residual.rms_um)
+      squares += *residual.rms_um * *residual.rms_um, ++count;
   if (count == 0) return std::nullopt;
   return std::sqrt(squares / count);
 }
 
-std::vector<FittedParameter> parameters_of(const FitResult& fit, const std::string& effect) {
+std::vector<FittedParameter> parameters_of(const ModelResult& fit, const std::string& effect) {
   std::vector<FittedParameter> out;
   for (const FittedParameter& parameter : fit.parameters)
     if (parameter.name.starts_with(effect + ".")) out.push_back(parameter);

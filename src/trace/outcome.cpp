@@ -15,13 +15,16 @@ std::vector<TriedEffect> tried(const Look& seen, const Seen* except,
     if (&each == except) continue;
     const Refined& refined = each.refined;
     TriedEffect entry{each.name(), refined.delta_bic, each.p_value};
-    entry.refused = each.refused;
+    if (!each.refused.empty()) entry.refused = each.refused;
     if (before_rms_um)
       entry.rms_um =
           *before_rms_um * std::sqrt(std::max(0.0, 1.0 - refined.projection.gain / square));
     const std::vector<Parameter>& known = refined.candidate->term.effect->parameters();
     for (std::size_t p = 0; p < known.size(); ++p) {
-      FittedParameter parameter{entry.effect + "." + known[p].name, known[p].symbol, known[p].unit};
+      FittedParameter parameter;
+      parameter.name = entry.effect + "." + known[p].name;
+      parameter.symbol = known[p].symbol;
+      parameter.unit = known[p].unit;
       parameter.value = refined.values[static_cast<Eigen::Index>(p)];
       parameter.standard_uncertainty = refined.uncertainties[static_cast<Eigen::Index>(p)];
       entry.parameters.push_back(std::move(parameter));
@@ -32,10 +35,10 @@ std::vector<TriedEffect> tried(const Look& seen, const Seen* except,
 }
 
 std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,
-                                  const FitResult& fit) {
+                                  const ModelResult& fit) {
   if (out.not_separable.empty()) return "";
   const bool too_large =
-      check.verdict == "inconsistent" && std::abs(*check.fit_rad) > std::abs(*check.indirect_rad);
+      check.verdict == Consistency::inconsistent && std::abs(*check.fit_rad) > std::abs(*check.indirect_rad);
   if (!too_large && fit.implausible.empty()) return "";
   std::vector<std::string> others;
   for (const auto& [effect, same] : out.not_separable) others.push_back(effect);
@@ -46,12 +49,12 @@ std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck&
          "(autocollimator), or cut and trace otherwise";
 }
 
-std::string verdict(const TraceResult& out, bool other_cause) {
-  if (out.unnamed) return "unnamed";
-  if (other_cause) return "not_identifiable";
+TraceVerdict verdict(const TraceResult& out, bool other_cause) {
+  if (out.unnamed) return TraceVerdict::unnamed;
+  if (other_cause) return TraceVerdict::not_identifiable;
   for (const TraceRound& round : out.rounds)
-    if (!round.ambiguous_with.empty()) return "ambiguous";
-  return out.rounds.empty() ? "nothing_missing" : "explained";
+    if (!round.ambiguous_with.empty()) return TraceVerdict::ambiguous;
+  return out.rounds.empty() ? TraceVerdict::nothing_missing : TraceVerdict::explained;
 }
 
 }  // namespace slideway

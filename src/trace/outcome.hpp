@@ -13,8 +13,8 @@ std::vector<TriedEffect> tried(const Look& seen, const Seen* except,
 /// Why the form that the fit puts into the carriages cannot be theirs, or "": the run-out or a
 /// good slide speak against it, and other effects make the same columns.
 std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,
-                                  const FitResult& fit);
+                                  const ModelResult& fit);
 
-std::string verdict(const TraceResult& out, bool other_cause);
+TraceVerdict verdict(const TraceResult& out, bool other_cause);
 
 }  // namespace slideway

@@ -255,9 +255,12 @@ Unnamed describe(const Structure& found, const Whitened& data, const Linearisati
     largest = standing_out;
     const bool slope = observation.profile->setup.quantity == Quantity::slope;
     values *= per_sample(observation) / (slope ? kMicroradian : kMicrometre);
-    out.unit = slope ? "urad" : "um";
-    out.rms = values.norm() / std::sqrt(static_cast<double>(values.size()));
-    out.pv = values.maxCoeff() - values.minCoeff();
+    const double rms = values.norm() / std::sqrt(static_cast<double>(values.size()));
+    const double pv = values.maxCoeff() - values.minCoeff();
+    out.rms_um = slope ? std::nullopt : std::optional(rms);
+    out.pv_um = slope ? std::nullopt : std::optional(pv);
+    out.rms_urad = slope ? std::optional(rms) : std::nullopt;
+    out.pv_urad = slope ? std::optional(pv) : std::nullopt;
     locate(*observation.profile, observation.low_band.positions(observation.profile->positions),
            values, out);
   }

@@ -123,7 +123,7 @@ class Loop {
   }
 
   /// Profiles held out by the problem stand before those left out in turn.
-  static void set_residuals(const FitResult& before, const FitResult& after, TraceRound& round) {
+  static void set_residuals(const ModelResult& before, const ModelResult& after, TraceRound& round) {
     round.before_rms_um = before.rms_um;
     round.after_rms_um = after.rms_um;
     round.before_rms_urad = before.rms_urad;
@@ -137,11 +137,11 @@ class Loop {
   /// The rounds as if what is in the model at the end had been added one after the other: effects
   /// have been exchanged, and have left.
   void retell(Extended& state) const {
-    FitResult before = *before_;
+    ModelResult before = *before_;
     const auto first = state.added.begin(), end = state.added.end();
     for (auto effect = first; effect != end; ++effect) {
       const auto next = std::next(effect);
-      FitResult after = next == end ? extender_.summary(state)
+      ModelResult after = next == end ? extender_.summary(state)
                                     : extender_.summary(extender_.extend({first, next}));
       set_residuals(before, after, effect->round);
       before = std::move(after);
@@ -149,11 +149,11 @@ class Loop {
   }
 
   bool try_adding(Extended& state, const Look& look, const Seen& choice) {
-    const FitResult& before = extender_.summary(state);
+    const ModelResult& before = extender_.summary(state);
     std::vector<Added> added = state.added;
     record(look, choice, added.emplace_back());
     Extended extended = extender_.extend(std::move(added));
-    const FitResult& after = extender_.summary(extended);
+    const ModelResult& after = extender_.summary(extended);
     set_residuals(before, after, extended.added.back().round);
     if (const auto held_out = holdout_rms_um(before);
         held_out && !(*holdout_rms_um(after) < *held_out)) {
@@ -284,13 +284,7 @@ class Loop {
   ClosedLoop report(const Extended& state, const Look& last, bool retracted) {
     ClosedLoop closed;
     TraceResult& out = closed.trace;
-    const FitResult& after = extender_.summary(state);
-    out.before = before_->parameters;
-    out.after = after.parameters;
-    out.before_rms_um = before_->rms_um;
-    out.after_rms_um = after.rms_um;
-    out.before_rms_urad = before_->rms_urad;
-    out.after_rms_urad = after.rms_urad;
+    const ModelResult& after = extender_.summary(state);
     for (const Added& effect : state.added) {
       out.rounds.push_back(effect.round);
       out.rounds.back().parameters = parameters_of(after, effect.name());
@@ -304,7 +298,7 @@ class Loop {
                        "(2 mm assumed) does not follow");
     out.refused = tried(last, nullptr, before_->rms_um);
     for (TriedEffect& effect : out.refused)
-      if (effect.refused.empty())
+      if (!effect.refused)
         effect.refused = retracted        ? "a process without a name fits as well"
                          : is_full(state) ? "max_effects effects are in the model"
                                           : "the joint fit does not bear it out";
@@ -315,10 +309,9 @@ class Loop {
       out.unnamed = describe(structure, last.data, state.fit.linear);
       out.unnamed->p_value = left.p_value;
       closed.widening = widening(state.fit, structure, last);
-      widen(state.model, state.fit, *closed.widening, out.after);
     }
     for (const Untestable& effect : dictionary_.not_testable)
-      out.not_testable.emplace_back(effect.effect, effect.needs);
+      out.not_testable.push_back({effect.effect, effect.needs});
     out.not_separable =
         inseparable(state.model, state.fit, last.data, candidates_without(taken(state.added)));
     if (calibration_)
@@ -343,7 +336,7 @@ class Loop {
   Dictionary dictionary_;
   std::optional<Calibration> calibration_;
   std::optional<Look> first_look_;  // at the declared model alone
-  std::optional<FitResult> before_;
+  std::optional<ModelResult> before_;
   std::vector<std::string> ruled_out_, advice_, notes_;
 };
 
@@ -360,7 +353,8 @@ ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profil
 }
 
 bool is_negative(const TraceResult& trace) {
-  return trace.verdict == "unnamed" || trace.verdict == "not_identifiable";
+  return trace.verdict == TraceVerdict::unnamed ||
+         trace.verdict == TraceVerdict::not_identifiable;
 }
 
 }  // namespace slideway

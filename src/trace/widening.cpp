@@ -58,18 +58,4 @@ Widening widening(const Solution& fit, const Structure& structure, const Look& l
   return out;
 }
 
-void widen(const Model& model, const Solution& fit, const Widening& by,
-           std::vector<FittedParameter>& parameters) {
-  const std::vector<std::string> names = model.parameter_names();
-  for (std::size_t p = 0; p < names.size(); ++p) {
-    const auto fitted = std::find_if(parameters.begin(), parameters.end(),
-                                     [&](const FittedParameter& f) { return f.name == names[p]; });
-    if (fitted == parameters.end() || !fitted->standard_uncertainty) continue;
-    const double variance = by.variance(fit.parameters.jacobian.row(static_cast<Eigen::Index>(p)));
-    fitted->standard_uncertainty = std::hypot(*fitted->standard_uncertainty, std::sqrt(variance));
-    if (fitted->expanded_uncertainty)
-      fitted->expanded_uncertainty = fitted->coverage_factor * *fitted->standard_uncertainty;
-  }
-}
-
 }  // namespace slideway

@@ -18,8 +18,4 @@ struct Widening {
 
 Widening widening(const Solution& fit, const Structure& structure, const Look& last);
 
-/// Widens the uncertainties of the fitted parameters.
-void widen(const Model& model, const Solution& fit, const Widening& by,
-           std::vector<FittedParameter>& parameters);
-
 }  // namespace slideway

@@ -24,8 +24,8 @@ Model model() {
   return build_model(cases::problem(Lever::paper, 0, {cases::effect("squareness")}), one_face());
 }
 
-FitResult fit_with(double squareness, double expanded) {
-  FitResult fit;
+ModelResult fit_with(double squareness, double expanded) {
+  ModelResult fit;
   FittedParameter parameter{.name = "squareness.dbeta_xz"};
   parameter.value = squareness;
   parameter.expanded_uncertainty = expanded;
@@ -69,7 +69,7 @@ TEST(SquarenessCheck, SaysWhyItIsNotAvailable) {
 
   EXPECT_THAT(check_squareness(model(), kRunout, {}).reason, HasSubstr("declares no squareness"));
 
-  FitResult undetermined = fit_with(0.0, 0.0);
+  ModelResult undetermined = fit_with(0.0, 0.0);
   undetermined.parameters[0].identifiable = false;
   undetermined.parameters[0].value.reset();
   const SquarenessCheck unknown = check_squareness(model(), kRunout, undetermined);

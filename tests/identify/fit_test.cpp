@@ -108,15 +108,15 @@ Problem joint_problem() {
                         {cases::effect("straightness", 3), cases::effect("squareness")});
 }
 
-FitResult fitted(const Problem& problem, const std::vector<Profile>& profiles) {
+ModelResult fitted(const Problem& problem, const std::vector<Profile>& profiles) {
   const Model model = build_model(problem, profiles);
   return summarise(model, fit(model));
 }
 
-double value(const FitResult& result, const std::string& name) {
+double value(const ModelResult& result, const std::string& name) {
   return result.find(name)->value.value();
 }
-double uncertainty(const FitResult& result, const std::string& name) {
+double uncertainty(const ModelResult& result, const std::string& name) {
   return result.find(name)->standard_uncertainty.value();
 }
 
@@ -125,7 +125,7 @@ const std::vector<std::string> kDetermined{"straightness.b1", "straightness.b2",
 
 TEST(Fit, OfFourKindsOfReadingsAgreesWithTheDirectSolution) {
   const std::vector<Profile> profiles = readings();
-  const FitResult result = fitted(joint_problem(), profiles);
+  const ModelResult result = fitted(joint_problem(), profiles);
   const Eigen::VectorXd direct = direct_solution(profiles);
   ASSERT_TRUE(result.converged);
   for (std::size_t p = 0; p < kDetermined.size(); ++p) {
@@ -136,7 +136,7 @@ TEST(Fit, OfFourKindsOfReadingsAgreesWithTheDirectSolution) {
 }
 
 TEST(Fit, OfFourKindsOfReadingsFindsTheMachine) {
-  const FitResult result = fitted(joint_problem(), readings());
+  const ModelResult result = fitted(joint_problem(), readings());
   const std::vector<double> truth{3e-6, 2e-8, -1e-10, 2e-5};
   for (std::size_t p = 0; p < kDetermined.size(); ++p) {
     // Four standard uncertainties: 1 in 16000 each, and the seed is fixed.
@@ -146,7 +146,7 @@ TEST(Fit, OfFourKindsOfReadingsFindsTheMachine) {
   for (const NoiseSummary& noise : result.noise) EXPECT_EQ(noise.scaling, "declared");
 }
 
-void expect_same(const FitResult& a, const FitResult& b, double factor = 1.0) {
+void expect_same(const ModelResult& a, const ModelResult& b, double factor = 1.0) {
   for (const std::string& name : kDetermined) {
     // Roundings of the data, which a millionth of the uncertainty is far above.
     EXPECT_NEAR(factor * value(a, name), value(b, name), 1e-6 * uncertainty(b, name)) << name;
@@ -157,9 +157,9 @@ void expect_same(const FitResult& a, const FitResult& b, double factor = 1.0) {
 
 TEST(Fit, OfAShiftedTraceDiffersInItsOffsetOnly) {
   std::vector<Profile> profiles = readings();
-  const FitResult before = fitted(joint_problem(), profiles);
+  const ModelResult before = fitted(joint_problem(), profiles);
   for (double& z : profiles[0].values) z += 0.5;
-  const FitResult after = fitted(joint_problem(), profiles);
+  const ModelResult after = fitted(joint_problem(), profiles);
   expect_same(before, after);
   ASSERT_EQ(after.nuisances[0].name, "face.offset");
   // The offset is 500 µm; its doubles end at 1e-13 of that.
@@ -170,10 +170,10 @@ TEST(Fit, OfATiltedTraceDiffersInItsTiltOnly) {
   std::vector<Profile> profiles = readings();
   profiles[1].free_tilt = true;  // the bridge's zero is free: b_1 goes with the tilt
   const std::vector<std::string> curved{"straightness.b2", "straightness.b3"};
-  const FitResult before = fitted(joint_problem(), profiles);
+  const ModelResult before = fitted(joint_problem(), profiles);
   for (std::size_t i = 0; i < profiles[1].values.size(); ++i)
     profiles[1].values[i] += 1e-3 * profiles[1].positions[i];
-  const FitResult after = fitted(joint_problem(), profiles);
+  const ModelResult after = fitted(joint_problem(), profiles);
   for (const std::string& name : curved)
     EXPECT_NEAR(value(after, name), value(before, name), 1e-6 * uncertainty(before, name)) << name;
   ASSERT_EQ(after.nuisances[2].name, "height.tilt");
@@ -182,7 +182,7 @@ TEST(Fit, OfATiltedTraceDiffersInItsTiltOnly) {
 
 TEST(Fit, ScalesWithTheData) {
   std::vector<Profile> profiles = readings();
-  const FitResult before = fitted(joint_problem(), profiles);
+  const ModelResult before = fitted(joint_problem(), profiles);
   for (Profile& profile : profiles) {
     for (double& z : profile.values) z *= 3.0;
     *profile.standard_uncertainty *= 3.0;
@@ -192,13 +192,13 @@ TEST(Fit, ScalesWithTheData) {
 
 TEST(Fit, OfEveryProfileTwiceHasHalfTheVariance) {
   std::vector<Profile> profiles = readings();
-  const FitResult once = fitted(joint_problem(), profiles);
+  const ModelResult once = fitted(joint_problem(), profiles);
   const std::size_t count = profiles.size();
   for (std::size_t i = 0; i < count; ++i) {
     profiles.push_back(profiles[i]);
     profiles.back().name += " again";
   }
-  const FitResult twice = fitted(joint_problem(), profiles);
+  const ModelResult twice = fitted(joint_problem(), profiles);
   for (const std::string& name : kDetermined) {
     EXPECT_NEAR(value(once, name), value(twice, name), 1e-6 * uncertainty(once, name)) << name;
     EXPECT_NEAR(uncertainty(once, name) / uncertainty(twice, name), std::sqrt(2.0), 1e-9) << name;
@@ -225,8 +225,8 @@ TEST(Fit, DoesNotMindTheOrderOfAFileNorItsUnits) {
     read_profile(source, read[0]);
     return fitted(joint_problem(), read);
   };
-  const FitResult forwards = from_file("forwards.csv", false, 1.0, "mm");
-  const FitResult backwards = from_file("backwards.csv", true, 1.0, "mm");
+  const ModelResult forwards = from_file("forwards.csv", false, 1.0, "mm");
+  const ModelResult backwards = from_file("backwards.csv", true, 1.0, "mm");
   for (const std::string& name : kDetermined)
     EXPECT_EQ(value(forwards, name), value(backwards, name)) << name;
   expect_same(forwards, from_file("micrometres.csv", false, 1e3, "um"));
@@ -240,7 +240,7 @@ TEST(Fit, OfPositionsThatAreNotUniformIsUnbiased) {
   for (const double x : positions) heights.push_back(turning::polynomial(kCarriage.b, x));
   Profile slide = cases::profile("slide", Kind::slide, positions, heights);
   slide.free_offset = slide.free_tilt = false;
-  const FitResult result =
+  const ModelResult result =
       fitted(cases::problem(Lever::paper, 5, {cases::effect("straightness", 3)}), {slide});
   // Data and columns are interpolated alike: what is left is rounding, 1e-10 of b_1's and b_3's
   // size.
@@ -259,7 +259,7 @@ TEST(Fit, OfWhatAPriorAloneTellsHasNoDegreesOfFreedom) {
   face.free_tilt = true;
   DeclaredEffect straightness = cases::effect("straightness", 2);
   straightness.priors = {{"b0", 2.41e-4, 2.9e-7}, {"b1", -5.19e-7, 2.9e-10}};
-  const FitResult result = fitted(cases::problem(Lever::split, 0, {straightness}), {face});
+  const ModelResult result = fitted(cases::problem(Lever::split, 0, {straightness}), {face});
   for (const char* name : {"straightness.b0", "straightness.b1"}) {
     EXPECT_EQ(result.find(name)->degrees_of_freedom, std::nullopt) << name;
     EXPECT_EQ(result.find(name)->coverage_factor, 2.0) << name;
@@ -289,7 +289,7 @@ TEST(Fit, FindsTheTimeConstantOfADriftFromTwoFeeds) {
                     turning::trace(turning::Face(cut, error), radii, stylus, random)));
     profiles.back().setup.spindle_rpm = 500.0;
   }
-  const FitResult result =
+  const ModelResult result =
       fitted(cases::problem(Lever::paper, 5,
                             {cases::effect("straightness", 3), cases::effect("squareness"),
                              cases::effect("thermal_drift")}),

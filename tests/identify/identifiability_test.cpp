@@ -44,7 +44,7 @@ Profile face(double z_mm, double first_mm = 0.0) {
 }
 
 struct Found {
-  FitResult result;
+  ModelResult result;
   std::set<std::string> undetermined;
   double largest_shift = 0.0;  // relative_shift() of all null directions
 

@@ -95,7 +95,7 @@ TEST_P(NistLinear, CoefficientsAndTheirUncertaintiesAreTheCertifiedOnes) {
     for (Profile& profile : data) profile.standard_uncertainty = answer.residual_deviation;
   const Model model =
       build_model(cases::problem(Lever::paper, 0, {cases::effect("straightness", degree)}), data);
-  const FitResult result = summarise(model, fit(model));
+  const ModelResult result = summarise(model, fit(model));
   for (int k = 0; k <= degree; ++k) {
     const FittedParameter& parameter = result.parameters[k];
     ASSERT_TRUE(parameter.value) << parameter.name;

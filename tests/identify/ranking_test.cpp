@@ -53,7 +53,7 @@ TEST_F(ColumnFile, NamesAColumnThatIsNotThere) {
 
 /// A cone of 20 µrad with 1 nm of curvature under it, without feed marks or noise.
 struct ConeCase {
-  FitResult summary;
+  ModelResult summary;
   RankingResult ranking;
 
   /// @param curvature  of the straightness's amplitudes in the ranking, against those of the fit
@@ -121,7 +121,7 @@ TEST(Dominant, IsNoneWithoutEntriesAndDisagreesWhereTheTwoDo) {
   ranking.entries[2].effect = "squareness";
   ranking.entries[2].low_band = 0.9;
   for (Ranking& entry : ranking.entries) entry.profile = "a", entry.p_value = 0.01;
-  FitResult fit;
+  ModelResult fit;
   fit.contributions = {{"cup", "a", 1.0, 0.3}, {"squareness", "a", 2.0, 0.7}};
   const Dominant dominant = dominant_effects(ranking, fit);
   EXPECT_EQ(dominant.by_correlation, "cup");
@@ -134,7 +134,7 @@ TEST(Dominant, IsNoneWithoutEntriesAndDisagreesWhereTheTwoDo) {
 Dominant dominant_of(std::array<double, 2> coefficients, std::array<double, 2> shares,
                      double p_value = 0.01, const Combination& untold = {}) {
   RankingResult ranking;
-  FitResult fit;
+  ModelResult fit;
   const std::array<const char*, 2> names{"cup", "squareness"};
   for (std::size_t i = 0; i < 2; ++i) {
     ranking.entries.push_back({names[i], "a"});
@@ -174,7 +174,7 @@ TEST(Dominant, IsNoneWithoutASignificantCorrelationOrARival) {
   one.entries.push_back({"cup", "a"});
   one.entries.back().low_band = 1.0;
   one.entries.back().p_value = 0.0;
-  FitResult fit;
+  ModelResult fit;
   fit.contributions = {{"cup", "a", 1.0, 1.0}};
   EXPECT_FALSE(dominant_effects(one, fit).by_correlation);
 }

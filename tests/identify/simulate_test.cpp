@@ -102,7 +102,7 @@ TEST(Simulate, AndFitFindTheTruthAgain) {
       {"squareness.dbeta_xz", 2e-5}, {"straightness.b2", 1e-5}, {"straightness.b3", -5e-7}};
   const std::vector<Profile> profiles = simulate(problem);
   const Model model = build_model(problem, profiles);
-  const FitResult result = summarise(model, fit(model));
+  const ModelResult result = summarise(model, fit(model));
   for (const auto& [name, truth] : problem.truth->parameters) {
     const FittedParameter* parameter = result.find(name);
     ASSERT_TRUE(parameter->value) << name;

@@ -119,7 +119,7 @@ TEST(UncertaintyBudget, AddsUpToTheUncertaintyOfEachParameter) {
   straightness.priors = {{"b2", 1e-7, 1e-9}};
   const Model model = build_model(cases::problem(Lever::paper, 0, {straightness}), runs);
   const Solution fitted = fit(model);
-  const FitResult numbers = summarise(model, fitted);
+  const ModelResult numbers = summarise(model, fitted);
   const std::vector<Budget> budgets = uncertainty_budget(model, fitted);
   ASSERT_FALSE(budgets.empty());
   for (const Budget& budget : budgets) {

@@ -26,7 +26,7 @@ constexpr double kWritten = 1e-12;  // mm: half a digit of each of two numbers
 
 Analysis analysis(const std::string& lever, double overhang = 0.0) {
   Analysis out;
-  FitResult fit;
+  ModelResult fit;
   fit.converged = true;
   for (std::size_t k = 0; k < kB.size(); ++k)
     fit.parameters.push_back(fitted("straightness.b" + std::to_string(k), "b_" + std::to_string(k),

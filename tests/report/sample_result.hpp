@@ -95,8 +95,8 @@ inline Identifiability sample_identifiability() {
   return what;
 }
 
-inline FitResult sample_fit() {
-  FitResult fit;
+inline ModelResult sample_fit() {
+  ModelResult fit;
   fit.converged = true;
   fit.rms_um = 0.1;
   fit.observations = 1250;

@@ -10,6 +10,6 @@ namespace slideway {
 ///
 /// A run-out tells the size of the angle, not its sign: the magnitudes are compared.
 SquarenessCheck check_squareness(const Model& model, const std::optional<Runout>& runout,
-                                 const FitResult& fit);
+                                 const ModelResult& fit);
 
 }  // namespace slideway

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -52,7 +53,13 @@ FittedModel fitted(Model model, const std::optional<Eigen::VectorXd>& shapes = s
 /// The declared model, built and fitted. @throws UsageError, DataError  as build_model(), fit()
 FittedModel fit_declared(const Problem& problem, const std::vector<Profile>& profiles);
 
-/// The fit for the report.
-FitResult summarise(const Model& model, const Solution& fit);
+/// Variance that row * (amplitudes, shapes) has beside what the fit knows of.
+using MoreVariance = std::function<double(const Eigen::RowVectorXd& row)>;
+
+/// A solution as reports have it. Parameters, what is determined instead of them, straightness and
+/// budget: every uncertainty is widened by `more`.
+/// @param with_budget  make ModelResult::budget, too
+ModelResult summarise(const Model& model, const Solution& fit, const MoreVariance& more = {},
+                      bool with_budget = false);
 
 }  // namespace slideway

@@ -65,6 +65,9 @@ struct Model {
   [[nodiscard]] std::vector<std::string> parameter_names() const;
 };
 
+/// What the fitted profiles measured of the slide, a bridge from foot to foot. REQUIRES one.
+SlideRange measured_travel(const Model& model);
+
 /// Builds effects (with an inner basis for the travel of the profiles) and the low bands. The
 /// profiles must outlive the model.
 /// @throws UsageError  an effect lacks the metadata of its clock, named by profile and key

@@ -20,7 +20,7 @@ RankingResult rank_effects(const Model& model, const Solution& fit);
 /// The effect whose |low-band coefficient|, averaged over the profiles, is largest, and the one
 /// with the largest share of the fitted low band, with a doubt where the lead is small or where the
 /// data do not tell the effect from another.
-Dominant dominant_effects(const RankingResult& ranking, const FitResult& fit);
+Dominant dominant_effects(const RankingResult& ranking, const ModelResult& fit);
 
 /// One column held against the signal's column.
 struct ColumnRanking {

@@ -12,7 +12,7 @@ struct NamedReport {
   Analysis analysis;
 };
 
-/// Two reports held against each other: final parameters (those of the loop where it was closed),
+/// Two reports held against each other: final parameters,
 /// their difference B - A in units of its expanded uncertainty, E_n = |B - A| / sqrt(U_A² + U_B²)
 /// with the two taken as independent; and what else is not the same in inputs, options, verdicts.
 /// @throws DataError  a parameter has one unit in A and another in B

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "slideway/trace/analysis.hpp"
 
@@ -8,13 +10,13 @@ namespace slideway {
 
 /// Reads a report back that json_report() wrote; json_report() of it makes the same bytes. Keys it
 /// does not know are passed over.
-/// @throws DataError  the file cannot be read or is no JSON; a schema other than
-///                    slideway.report/1; a key that is missing or of the wrong type, named by its
-///                    place: "result.json: fit.parameters[0].unit: ..."
-Analysis read_report(const std::filesystem::path& path);
+/// @param name  what the text goes by in messages
+/// @throws DataError  it is no JSON; a schema other than slideway.report/2; a key that is missing
+///                    or of the wrong type, named by its place:
+///                    "result.json: final.parameters[0].unit: ..."
+Analysis parse_report(std::string_view text, const std::string& name);
 
-/// The parameters an analysis ends with: those of the loop where it was closed, else of the fit,
-/// else none.
-const std::vector<FittedParameter>& final_parameters(const Analysis& analysis);
+/// The same of a file. @throws DataError  it cannot be read, too
+Analysis read_report(const std::filesystem::path& path);
 
 }  // namespace slideway

@@ -19,7 +19,7 @@ struct TriedEffect {
   double p_value = 1.0;    // chance that the search finds as much in noise, over all candidates
   std::optional<double> rms_um;  // residual of the height profiles with it
   std::vector<FittedParameter> parameters;
-  std::string refused;  // why it was not accepted; empty: it was, or is a rival of the accepted
+  std::optional<std::string> refused;  // why it was not accepted; none: it was, or is a rival
 };
 
 /// One effect that entered the model.
@@ -39,8 +39,8 @@ struct TraceRound {
 
 /// What is left and has no name.
 struct Unnamed {
-  double rms = 0.0, pv = 0.0;         // of the smooth part, in the profile where it stands out most
-  std::string unit;                   // "um" or, of a slope profile, "urad"
+  /// Of the smooth part, in the profile where it stands out most.
+  std::optional<double> rms_um, pv_um, rms_urad, pv_urad;
   double p_value = 1.0;               // lack of fit against the noise
   std::string profile;                // where it is largest
   double from_mm = 0.0, to_mm = 0.0;  // trace positions between which it is above half its peak
@@ -52,27 +52,63 @@ struct Unnamed {
   std::optional<double> odd_share;  // of its square on a diameter, 0: even, 1: odd
 };
 
+/// An effect the data cannot be asked for.
+struct NotTestable {
+  std::string effect, needs;
+};
+
+/// An effect whose columns are those of another here.
+struct NotSeparable {
+  std::string effect, same_as;
+};
+
+/// An effect that was accepted and has left the model again.
+struct LeftEffect {
+  std::string effect, reason;
+};
+
+/// A size found with 80 % probability, at one shape.
+struct LimitAtShape {
+  double shape = 0.0;
+  std::optional<double> value;
+};
+
 /// The size an effect must have to be found with 80 % probability.
 struct DetectionLimit {
   std::string effect, parameter, unit;
+  std::optional<double> value;  // none: it would not be found at any size a workpiece has
+  std::string at;               // shape it holds for: "time_constant_s = 120"; "": it has none
+  std::vector<LimitAtShape> by_shape;  // from end to end of the search
+};
+
+enum class TraceVerdict {
+  nothing_missing,   // the residual is no more than noise
+  explained,         // one or more named effects, each without a rival
+  ambiguous,         // an effect is missing that the data cannot tell from a rival
+  unnamed,           // structure is left that no effect of the catalogue explains
+  not_identifiable,  // a form is there of which the data cannot tell what makes it
+};
+
+/// The smallest change of one gate within its range that would have changed the verdict.
+struct Fragile {
+  std::string gate;
   double value = 0.0;
-  std::string at;  // shape it holds for: "time_constant_s = 120"; empty: the effect has none
-  std::vector<std::pair<double, double>> by_shape;  // shape and size, from end to end of the search
+  TraceVerdict verdict = TraceVerdict::nothing_missing;  // there
 };
 
 struct TraceResult {
-  /// "nothing_missing" | "explained" | "ambiguous" | "unnamed" | "not_identifiable"
-  std::string verdict;
+  TraceVerdict verdict = TraceVerdict::nothing_missing;
+  std::vector<std::pair<std::string, double>> gates;  // the values that were used
+  std::optional<Fragile> fragile;                     // none: no such change does
   std::vector<TraceRound> rounds;
   std::optional<Unnamed> unnamed;
   std::vector<std::string> advice;
-  std::vector<std::pair<std::string, std::string>> not_testable;   // effect, what it needs
-  std::vector<std::pair<std::string, std::string>> not_separable;  // effect, what it is one with
-  std::vector<TriedEffect> refused;                                // of the last search, best first
+  std::vector<NotTestable> not_testable;
+  std::vector<NotSeparable> not_separable;
+  std::vector<TriedEffect> refused;  // of the last search, best first
+  std::vector<LeftEffect> left;
   std::vector<DetectionLimit> detection_limits;
   double lack_of_fit_p = 1.0;  // of the final residual
-  std::optional<double> before_rms_um, after_rms_um, before_rms_urad, after_rms_urad;
-  std::vector<FittedParameter> before, after;
   std::vector<std::string> notes;
 };
 

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "slideway/base/record.hpp"
+
+namespace slideway {
+
+/// Writes records as JSON: keys in the order of the lists, doubles in their shortest form that
+/// reads back (with as many digits as the field says), numbers of a list on one line, null for what
+/// is absent or not finite. Bytes that are no UTF-8 are replaced.
+class JsonWriter {
+ public:
+  enum class Layout { one_line, indented };
+  explicit JsonWriter(Layout layout) : indented_(layout == Layout::indented) {}
+
+  template <Recorded T>
+  void write(const T& object) {
+    open('{');
+    for_each_field<T>([&](const auto& field) {
+      key(field.key);
+      digits_ = field.digits;
+      write(std::invoke(field.access, object));
+    });
+    close('}');
+  }
+
+  [[nodiscard]] std::string take() { return std::move(text_); }
+
+ private:
+  void write(double number);
+  void write(const std::string& text);
+  void write(bool truth) { text_ += truth ? "true" : "false"; }
+  void write(std::integral auto number) { text_ += std::to_string(number); }
+  void write(Named auto value) { text_.append("\"").append(text_of(value)).append("\""); }
+
+  template <typename T>
+  void write(const std::optional<T>& value) {
+    if (value)
+      write(*value);
+    else
+      text_ += "null";
+  }
+
+  template <typename T>
+  void write(const std::vector<T>& values) {
+    const bool was_indented = indented_;
+    const int digits = digits_;
+    if constexpr (std::is_arithmetic_v<T>) indented_ = false;
+    open('[');
+    for (const T& value : values) {
+      next();
+      digits_ = digits;
+      write(value);
+    }
+    close(']');
+    indented_ = was_indented;
+  }
+
+  template <typename T>
+  void write(const std::vector<std::pair<std::string, T>>& values) {
+    write_object(values);
+  }
+  template <typename T>
+  void write(const std::map<std::string, T>& values) {
+    write_object(values);
+  }
+  void write_object(const auto& values) {
+    open('{');
+    for (const auto& [name, value] : values) {
+      next();
+      quote(name);
+      text_ += indented_ ? ": " : ":";
+      write(value);
+    }
+    close('}');
+  }
+
+  template <typename... T>
+  void write(const std::tuple<T...>& values) {
+    const bool was_indented = std::exchange(indented_, false);
+    open('[');
+    std::apply([&](const T&... value) { ((next(), write(value)), ...); }, values);
+    close(']');
+    indented_ = was_indented;
+  }
+
+  void open(char bracket);
+  void close(char bracket);
+  /// Goes on to the next value of what is open.
+  void next();
+  void key(std::string_view name);
+  void quote(std::string_view text);
+
+  std::string text_;
+  bool indented_, is_first_ = true;
+  std::size_t depth_ = 0;
+  int digits_ = 0;
+};
+
+}  // namespace slideway
