@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "slideway/base/text.hpp"
-#include "slideway/trace/trace.hpp"
+#include "slideway/trace/analysis.hpp"
 #include "support/hidden_effect.hpp"
 
 namespace {
@@ -54,11 +54,12 @@ std::optional<double> limit_of(const TraceResult& result, const Hidden& hidden) 
     const auto& listed = limit.by_shape;
     if (listed.size() < 2) return limit.value;
     auto above = std::find_if(listed.begin() + 1, listed.end() - 1,
-                              [&](const auto& each) { return each.first > hidden.shape; });
+                              [&](const LimitAtShape& each) { return each.shape > hidden.shape; });
     const auto [s0, v0] = *std::prev(above);
     const auto [s1, v1] = *above;
     const double at = std::log(hidden.shape / s0) / std::log(s1 / s0);
-    return v0 * std::pow(v1 / v0, std::clamp(at, 0.0, 1.0));
+    return v0 && v1 ? std::optional(*v0 * std::pow(*v1 / *v0, std::clamp(at, 0.0, 1.0)))
+                    : std::nullopt;
   }
   return std::nullopt;
 }
@@ -70,14 +71,15 @@ Json run_case(const std::string& name, int cuts, double size, bool at_limit, dou
   const Hidden hidden = make_hidden(name, amplitude, random);
   const std::vector<Profile> faces = make_faces(hidden, cuts, nose_radius_mm, seed);
   const Problem problem = face_problem();
-  const TraceResult result = close_loop(problem, faces);
+  const Analysis analysis = analyse(problem, faces);
+  const TraceResult& result = *analysis.trace;
   Json json{{"truth", name},
             {"cuts", cuts},
             {"at_limit", at_limit},
             {"size", size},
             {"seed", seed},
             {"shape", hidden.shape},
-            {"verdict", result.verdict},
+            {"verdict", text_of(result.verdict)},
             {"lack_of_fit_p", result.lack_of_fit_p}};
   json["accepted"] = Json::array();
   json["rivals"] = Json::array();
@@ -88,11 +90,11 @@ Json run_case(const std::string& name, int cuts, double size, bool at_limit, dou
   if (const auto limit = limit_of(result, hidden)) json["limit"] = *limit;
   if (result.unnamed) {
     json["clock"] = result.unnamed->clock;
-    json["unnamed_um"] = result.unnamed->rms;
+    json["unnamed_um"] = result.unnamed->rms_um.value_or(0.0);
   }
   double u_before = 0.0, u_after = 0.0;
-  json["bias_before"] = squareness_of(result.before, &u_before) - kFaceSquareness;
-  json["bias_after"] = squareness_of(result.after, &u_after) - kFaceSquareness;
+  json["bias_before"] = squareness_of(analysis.result.declared->parameters, &u_before) - kFaceSquareness;
+  json["bias_after"] = squareness_of(analysis.result.final->parameters, &u_after) - kFaceSquareness;
   json["u_before"] = u_before;
   json["u_after"] = u_after;
   json["amplitude_um"] = amplitude / kMicrometre;
@@ -105,13 +107,13 @@ Json run_case(const std::string& name, int cuts, double size, bool at_limit, dou
   for (const TraceRound& round : result.rounds) {
     json["tried"].push_back({round.accepted, round.delta_bic, "ACCEPTED"});
     for (const TriedEffect& tried : round.candidates)
-      json["tried"].push_back({tried.effect, tried.delta_bic, tried.refused});
+      json["tried"].push_back({tried.effect, tried.delta_bic, tried.refused.value_or("")});
   }
   json["notes"] = result.notes;
   json["refused"] = Json::array();
   for (const TriedEffect& tried : result.refused)
     if (tried.delta_bic < -10.0)
-      json["refused"].push_back({tried.effect, tried.delta_bic, tried.refused});
+      json["refused"].push_back({tried.effect, tried.delta_bic, tried.refused.value_or("")});
   json["not_separable"] = Json::array();
   for (const auto& [effect, same] : result.not_separable) json["not_separable"].push_back(effect);
   return json;

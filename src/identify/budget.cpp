@@ -31,10 +31,12 @@ std::vector<Source> sources_of(const Solution& fit) {
     const bool declared = fit.noise[i].declared;
     out.push_back({"noise of " + fit.linear.observations[i]->profile->name +
                        (declared ? ", as declared" : ", estimated from the residual"),
-                   declared ? EvaluationType::B : EvaluationType::A, with_noise_of(fit, i) - priors});
+                   declared ? EvaluationType::B : EvaluationType::A,
+                   with_noise_of(fit, i) - priors});
     rest -= out.back().covariance;
   }
-  if (fit.linear.prior_rows.rows() > 0) out.push_back({"priors of the problem file", EvaluationType::B, priors});
+  if (fit.linear.prior_rows.rows() > 0)
+    out.push_back({"priors of the problem file", EvaluationType::B, priors});
   if (std::any_of(fit.noise.begin(), fit.noise.end(), [](const Noise& n) { return !n.declared; }))
     out.push_back({"weights that come from the same data", EvaluationType::A, rest});
   return out;

@@ -31,13 +31,8 @@ std::vector<OutlierSummary> largest_outliers(const Profile& profile) {
 }
 
 InputSummary summarise_input(const Profile& profile) {
-  InputSummary out{profile.name,
-                   profile.file,
-                   profile.format,
-                   profile.sha256,
-                   profile.setup.kind,
-                   profile.setup.quantity,
-                   profile.role};
+  InputSummary out{profile.name,       profile.file,           profile.format, profile.sha256,
+                   profile.setup.kind, profile.setup.quantity, profile.role};
   out.samples = profile.values.size();
   out.missing = profile.missing;
   out.left_out = profile.left_out;
@@ -133,8 +128,7 @@ bool is_negative(const Result& result) {
                        [](const auto& part) { return !fixed_by_convention(part.first); });
   };
   const auto& undetermined = result.final->identifiability.unidentifiable;
-  return !result.final->converged ||
-         std::any_of(undetermined.begin(), undetermined.end(), matters);
+  return !result.final->converged || std::any_of(undetermined.begin(), undetermined.end(), matters);
 }
 
 }  // namespace slideway

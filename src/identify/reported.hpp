@@ -11,13 +11,13 @@ namespace slideway {
 /// that what widens one widens all.
 class Reported {
  public:
-  Reported(const Solution& solution, const MoreVariance& more)
-      : solution_(solution), more_(more) {}
+  Reported(const Solution& solution, const MoreVariance& more) : solution_(solution), more_(more) {}
 
   /// Standard uncertainty of row * (amplitudes, shapes), widened, and its degrees of freedom.
   [[nodiscard]] Spread spread(const Eigen::RowVectorXd& row) const {
     Spread out = solution_.uncertainty.of(row);
-    if (more_) out.standard_uncertainty = std::hypot(out.standard_uncertainty, std::sqrt(more_(row)));
+    if (more_)
+      out.standard_uncertainty = std::hypot(out.standard_uncertainty, std::sqrt(more_(row)));
     return out;
   }
 

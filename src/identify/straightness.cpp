@@ -83,7 +83,8 @@ ReferenceLine minimum_zone(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
   for (const double sign : {1.0, -1.0}) {
     const std::vector<Eigen::Index> corners = hull(x, z, sign);
     for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
-      ReferenceLine line = through(ReferenceLineKind::minimum_zone, x, z, corners[i], corners[i + 1]);
+      ReferenceLine line =
+          through(ReferenceLineKind::minimum_zone, x, z, corners[i], corners[i + 1]);
       if (!best || line.error < best->error) best = std::move(line);
     }
   }

@@ -58,7 +58,7 @@ class TipLocus {
   [[nodiscard]] double lever(double x) const {
     if (!travel_->spindle_position_mm) return 0.0;  // read along the slide itself
     return travel_->lever == Lever::paper ? x - *travel_->spindle_position_mm
-                                     : travel_->overhang_mm.value_or(0.0);
+                                          : travel_->overhang_mm.value_or(0.0);
   }
 
   const TravelSummary* travel_;
@@ -170,7 +170,8 @@ void add_squareness(const Analysis& analysis, const TipLocus& locus, double slop
   const auto found = std::ranges::find(parameters, "squareness.dbeta_xz", &FittedParameter::name);
   if (found == parameters.end()) return leave_out("the model has no squareness");
   if (!is_determined(*found)) return leave_out("the data do not determine " + found->symbol);
-  const bool needs_b1 = analysis.result.travel->lever == Lever::split && !out.straightness_mm.empty();
+  const bool needs_b1 =
+      analysis.result.travel->lever == Lever::split && !out.straightness_mm.empty();
   if (needs_b1)
     if (const auto names = locus.undetermined(1); !names.empty())
       return leave_out("the data do not determine " + joined(names));
@@ -185,9 +186,10 @@ void add_squareness(const Analysis& analysis, const TipLocus& locus, double slop
   out.squareness_rad = angle;
   out.basis.push_back(
       "B0X: squareness of X to the spindle axis average line, E_B(0C)X, rad: Δβxz = " +
-      (found->expanded_uncertainty ? with_uncertainty(*found->value, *found->expanded_uncertainty) +
-                                         " (U, k = " + fixed_point(found->coverage_factor.value_or(2.0), 2) + ")"
-                                   : significant(*found->value, 6)) +
+      (found->expanded_uncertainty
+           ? with_uncertainty(*found->value, *found->expanded_uncertainty) +
+                 " (U, k = " + fixed_point(found->coverage_factor.value_or(2.0), 2) + ")"
+           : significant(*found->value, 6)) +
       (out.straightness_mm.empty()
            ? ""
            : " minus " + significant(slope, 6) + ", the slope of EZX's reference line"));

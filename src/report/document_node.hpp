@@ -28,7 +28,8 @@ class Node {
   [[nodiscard]] Node operator[](const std::string& key) const {
     if (!json_->is_object()) fail("an object");
     const auto found = json_->find(key);
-    return Node(found == json_->end() ? kMissing : *found, place_.empty() ? key : place_ + "." + key);
+    return Node(found == json_->end() ? kMissing : *found,
+                place_.empty() ? key : place_ + "." + key);
   }
   /// Whether a key is there and not null.
   [[nodiscard]] bool has(const std::string& key) const { return !(*this)[key].is_null(); }

@@ -12,7 +12,9 @@ struct DataReport {
 };
 
 template <auto member>
-inline constexpr auto kOfData = [](auto& data) -> auto& { return data.result->*member; };
+inline constexpr auto kOfData = [](auto& data) -> auto& {
+  return data.result->*member;
+};
 
 template <>
 inline constexpr auto kRecord<DataReport> =

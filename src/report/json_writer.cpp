@@ -21,9 +21,9 @@ void JsonWriter::write(double number) {
   }
   char buffer[32];
   char* const end = buffer + sizeof buffer;
-  const auto [stop, error] = digits_ > 0 ? std::to_chars(buffer, end, number,
-                                                         std::chars_format::general, digits_)
-                                         : std::to_chars(buffer, end, number);
+  const auto [stop, error] =
+      digits_ > 0 ? std::to_chars(buffer, end, number, std::chars_format::general, digits_)
+                  : std::to_chars(buffer, end, number);
   const std::string_view text(buffer, static_cast<std::size_t>(stop - buffer));
   text_ += text;
   if (digits_ == 0 && text.find_first_of(".e") == std::string_view::npos) text_ += ".0";

@@ -221,8 +221,14 @@ EffectInModel in_model(const ModelTerm& term, const Model& declared) {
   const Description& what = term.effect->description();
   const bool added = std::none_of(declared.terms.begin(), declared.terms.end(),
                                   [&](const ModelTerm& each) { return each.name == term.name; });
-  return {what.name,  what.standard_name,        what.formula,         what.source,
-          what.cause, std::string(symbol(what.clock)), what.confounded_with, what.separated_by,
+  return {what.name,
+          what.standard_name,
+          what.formula,
+          what.source,
+          what.cause,
+          std::string(symbol(what.clock)),
+          what.confounded_with,
+          what.separated_by,
           added};
 }
 

@@ -234,10 +234,8 @@ std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Wh
   return out;
 }
 
-std::vector<NotSeparable> inseparable(const Model& model,
-                                                             const Solution& fit,
-                                                             const Whitened& data,
-                                                             const Candidates& candidates) {
+std::vector<NotSeparable> inseparable(const Model& model, const Solution& fit, const Whitened& data,
+                                      const Candidates& candidates) {
   std::vector<NotSeparable> out;
   for (const Candidate* candidate : candidates) {
     const Eigen::MatrixXd columns = stacked_columns(

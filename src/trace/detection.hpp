@@ -18,9 +18,7 @@ std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Wh
 
 /// Candidates whose columns the model makes itself, with the parameters that make them: (cup,
 /// "straightness.b2").
-std::vector<NotSeparable> inseparable(const Model& model,
-                                                             const Solution& fit,
-                                                             const Whitened& data,
-                                                             const Candidates& candidates);
+std::vector<NotSeparable> inseparable(const Model& model, const Solution& fit, const Whitened& data,
+                                      const Candidates& candidates);
 
 }  // namespace slideway

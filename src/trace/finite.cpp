@@ -67,8 +67,7 @@ class NonFinite {
         inside("[" + std::to_string(i) + "]", [&] { leave_out(values[i]); });
   }
   template <typename T>
-    requires(!Recorded<T>)
-  void leave_out(T& /*no number*/) {}
+  requires(!Recorded<T>) void leave_out(T& /*no number*/) {}
 
   template <typename Visit>
   void inside(const std::string& place, Visit&& visit) {

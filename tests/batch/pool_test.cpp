@@ -145,7 +145,7 @@ TEST(PooledFaces, AreAJointFitOfAllProfiles) {
   const PooledMachine pooled = pool("M", items, no_times(items.size()));
   const Result joint = identify(faces::problem_of(), all, Scope::fit);
   for (const FittedParameter& p : pooled.parameters) {
-    const FittedParameter* const q = joint.fit->find(p.name);
+    const FittedParameter* const q = joint.final->find(p.name);
     ASSERT_EQ(p.identifiable, q->identifiable) << p.name;
     if (!p.identifiable) continue;
     // The noise of each profile is estimated anew in the joint fit: weights differ a little.

@@ -62,9 +62,13 @@ class Batch : public ProgramTest {
   /// The report of identify, without what is there for its page alone.
   [[nodiscard]] std::string alone() const {
     Json report = Json::parse(contents(path("alone.json")));
-    for (const char* key :
-         {"model", "setups", "options", "straightness", "uncertainty_budget", "what_if", "curves"})
-      EXPECT_EQ(report.erase(key), 1) << key;
+    for (const char* key : {"model", "setups", "what_if"}) report[key] = Json::array();
+    for (const char* key : {"options", "curves"}) report[key] = nullptr;
+    for (const char* model : {"declared", "final"}) {
+      report[model]["uncertainty_budget"] = Json::array();
+      if (report[model]["straightness"].is_null()) continue;
+      for (Json& series : report[model]["straightness"]["curve"]) series = Json::array();
+    }
     return report.dump();
   }
 };
@@ -148,7 +152,7 @@ TEST_F(Batch, AnOverrideIsCheckedAndItsRowNamed) {
   EXPECT_THAT(result("out.jsonl", "a")["reason"].get<std::string>(),
               HasSubstr("line 2 of the manifest: problem.toml: profile.feed_mm_pr_min: unknown key "
                         "(did you mean 'feed_mm_per_min'?)"));
-  EXPECT_EQ(result("out.jsonl", "b")["report"]["low_band"]["level"], 1);
+  EXPECT_EQ(result("out.jsonl", "b")["report"]["low_band"][0]["level"], 1);
 }
 
 // sha256sum FILES | cut -c1-64 | sha256sum

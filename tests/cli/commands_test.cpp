@@ -59,7 +59,7 @@ TEST_F(Program, HelpOfACommandListsTheOptionsOfTheInterface) {
 TEST_F(Program, SaysItsVersion) {
   const ProgramRun version = run({"--version"});
   EXPECT_EQ(version.exit_code, 0);
-  EXPECT_EQ(version.out, "slideway 0.1.0\n");
+  EXPECT_EQ(version.out, "slideway 0.2.0\n");
   EXPECT_EQ(version.err, "");
 }
 

@@ -41,8 +41,8 @@ TEST_F(Html, IsMadeOfARankingToo) {
 TEST_F(Html, WhatIsNoReportIsRefused) {
   for (const std::string text :
        {"", "{", "[1, 2]", "{\"schema\": \"slideway.report/9\"}",
-        "{\"schema\": \"slideway.report/1\"}",
-        "{\"schema\": \"slideway.report/1\", \"title\": 1e999}", "\xff\xfe"}) {
+        "{\"schema\": \"slideway.report/2\"}",
+        "{\"schema\": \"slideway.report/2\", \"title\": 1e999}", "\xff\xfe"}) {
     folder_.file("r.json", text);
     const ProgramRun refused = run({"report", "r.json", "--html", "r.html"});
     EXPECT_TRUE(is_refused(refused, 3)) << text;

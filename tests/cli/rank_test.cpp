@@ -89,7 +89,8 @@ TEST_F(Rank, OfAProblemListsEveryEffectOnEveryProfile) {
   EXPECT_THAT(pairs, testing::UnorderedElementsAre("straightness feed2", "squareness feed2",
                                                    "straightness feed8", "squareness feed8"));
   EXPECT_EQ(report["dominant"]["by_correlation"], "squareness");
-  EXPECT_TRUE(report["fit"].is_null());
+  EXPECT_TRUE(report["declared"].is_null());
+  EXPECT_TRUE(report["final"].is_null());
 }
 
 TEST_F(Rank, GivesTheSameBytesASecondTime) {

@@ -39,7 +39,7 @@ TEST(SquarenessCheck, TakesTheAngleFromTheRunout) {
   EXPECT_NEAR(*check.indirect_rad, 2.8e-6, 1e-20);
   EXPECT_NEAR(*check.indirect_U_rad, 2e-7, 1e-21);
   EXPECT_NEAR(*check.En, 0.0, 1e-12);
-  EXPECT_EQ(check.verdict, "consistent");
+  EXPECT_EQ(check.verdict, Consistency::consistent);
   // Over the 10 mm that were cut: 28 nm.
   EXPECT_EQ(check.travel_mm, 10.0);
   EXPECT_NEAR(*check.indirect_amplitude_um, 0.028, 1e-15);
@@ -49,7 +49,7 @@ TEST(SquarenessCheck, DividesTheDifferenceByBothUncertainties) {
   // |3.3e-6 - 2.8e-6| / sqrt((1.5e-7)² + (2e-7)²) = 5e-7 / 2.5e-7 = 2.
   const SquarenessCheck check = check_squareness(model(), kRunout, fit_with(3.3e-6, 1.5e-7));
   EXPECT_NEAR(*check.En, 2.0, 1e-12);
-  EXPECT_EQ(check.verdict, "inconsistent");
+  EXPECT_EQ(check.verdict, Consistency::inconsistent);
   EXPECT_THAT(check.reason, HasSubstr("look for another cause"));
   // 3.0e-6: E_n = 0.8.
   EXPECT_NEAR(*check_squareness(model(), kRunout, fit_with(3.0e-6, 1.5e-7)).En, 0.8, 1e-12);
@@ -63,7 +63,7 @@ TEST(SquarenessCheck, ComparesMagnitudesAsARunoutHasNoSign) {
 
 TEST(SquarenessCheck, SaysWhyItIsNotAvailable) {
   const SquarenessCheck no_runout = check_squareness(model(), std::nullopt, fit_with(2.8e-6, 1e-7));
-  EXPECT_EQ(no_runout.verdict, "not_available");
+  EXPECT_EQ(no_runout.verdict, Consistency::not_available);
   EXPECT_THAT(no_runout.reason, HasSubstr("[runout]"));
   EXPECT_FALSE(no_runout.En || no_runout.indirect_rad);
 
@@ -73,7 +73,7 @@ TEST(SquarenessCheck, SaysWhyItIsNotAvailable) {
   undetermined.parameters[0].identifiable = false;
   undetermined.parameters[0].value.reset();
   const SquarenessCheck unknown = check_squareness(model(), kRunout, undetermined);
-  EXPECT_EQ(unknown.verdict, "not_available");
+  EXPECT_EQ(unknown.verdict, Consistency::not_available);
   EXPECT_THAT(unknown.reason, HasSubstr("do not determine"));
   EXPECT_FALSE(unknown.fit_rad || unknown.En);
   EXPECT_TRUE(unknown.indirect_rad);  // what the run-out says is told all the same

@@ -143,7 +143,7 @@ TEST(Fit, OfFourKindsOfReadingsFindsTheMachine) {
     EXPECT_NEAR(value(result, kDetermined[p]), truth[p], 4.0 * uncertainty(result, kDetermined[p]))
         << kDetermined[p];
   }
-  for (const NoiseSummary& noise : result.noise) EXPECT_EQ(noise.scaling, "declared");
+  for (const NoiseSummary& noise : result.noise) EXPECT_EQ(noise.scaling, NoiseScaling::declared);
 }
 
 void expect_same(const ModelResult& a, const ModelResult& b, double factor = 1.0) {

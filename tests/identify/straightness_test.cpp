@@ -24,15 +24,15 @@ class Parabola : public testing::Test {
 
 TEST_F(Parabola, HasTheErrorsOfItsThreeLines) {
   ASSERT_EQ(lines_.size(), 3U);
-  EXPECT_EQ(lines_[0].name, "end-point");
+  EXPECT_EQ(lines_[0].kind, ReferenceLineKind::end_point);
   EXPECT_NEAR(lines_[0].error, 0.25, 1e-12);
   EXPECT_NEAR(lines_[0].highest, 0.0, 1e-12);
   EXPECT_NEAR(lines_[0].lowest, -0.25, 1e-12);
   EXPECT_EQ(lines_[0].lowest_at, 500U);
-  EXPECT_EQ(lines_[1].name, "least squares");
+  EXPECT_EQ(lines_[1].kind, ReferenceLineKind::least_squares);
   EXPECT_NEAR(lines_[1].slope, 1.0, 1e-9);
   EXPECT_NEAR(lines_[1].at_zero, -1.0 / 6.0, 1e-3);  // of 1001 points, not of the integral
-  EXPECT_EQ(lines_[2].name, "minimum zone");
+  EXPECT_EQ(lines_[2].kind, ReferenceLineKind::minimum_zone);
   EXPECT_NEAR(lines_[2].error, 0.25, 1e-12);
   EXPECT_NEAR(lines_[2].highest, 0.125, 1e-12);
   EXPECT_NEAR(lines_[2].lowest, -0.125, 1e-12);
@@ -46,14 +46,14 @@ TEST(ReferenceLines, SensitivityIsTheDerivativeOfTheError) {
   const std::vector<ReferenceLine> lines = reference_lines(x, z), moved = reference_lines(x, bent);
   for (std::size_t l = 0; l < lines.size(); ++l)
     EXPECT_NEAR(lines[l].sensitivity.dot(bent - z), moved[l].error - lines[l].error, 1e-14)
-        << lines[l].name;
+        << text_of(lines[l].kind);
 }
 
 TEST(ReferenceLines, OfAStraightLineLeaveNothing) {
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(11, -5.0, 5.0);
   for (const ReferenceLine& line : reference_lines(x, 2.0 * x.array() + 1.0)) {
-    EXPECT_NEAR(line.error, 0.0, 1e-12) << line.name;
-    EXPECT_NEAR(line.slope, 2.0, 1e-12) << line.name;
+    EXPECT_NEAR(line.error, 0.0, 1e-12) << text_of(line.kind);
+    EXPECT_NEAR(line.slope, 2.0, 1e-12) << text_of(line.kind);
   }
 }
 
@@ -92,10 +92,10 @@ TEST(IdentifiedStraightness, IsThatOfTheSlideWithinItsUncertainty) {
   ASSERT_TRUE(found);
   ASSERT_EQ(found->errors.size(), 3U) << found->reason;
   for (const auto& error : found->errors) {
-    if (error.line == "least squares") continue;
-    EXPECT_NEAR(error.error_um, 1.0, 2.0 * error.expanded_uncertainty_um) << error.line;
-    EXPECT_LT(error.expanded_uncertainty_um, 0.02) << error.line;
-    EXPECT_GT(error.expanded_uncertainty_um, 0.0) << error.line;
+    if (error.line == ReferenceLineKind::least_squares) continue;
+    EXPECT_NEAR(*error.value, 1.0, 2.0 * *error.expanded_uncertainty) << text_of(error.line);
+    EXPECT_LT(*error.expanded_uncertainty, 0.02) << text_of(error.line);
+    EXPECT_GT(*error.expanded_uncertainty, 0.0) << text_of(error.line);
   }
   EXPECT_NEAR(found->errors[0].lowest_at_mm, 100.0, 5.0);
 }

@@ -31,7 +31,7 @@ inside python3 -c '
 import json, slideway
 report = slideway.identify("/usr/share/doc/slideway/examples/problems/three-levels/problem.toml")
 program = json.load(open("/tmp/report.json"))
-for ours, theirs in zip(report.fit.parameters, program["fit"]["parameters"], strict=True):
+for ours, theirs in zip(report.final.parameters, program["final"]["parameters"], strict=True):
     assert (ours.name, ours.value) == (theirs["name"], theirs["value"])
 print(slideway.__version__, report.trace.verdict)'
 

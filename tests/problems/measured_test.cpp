@@ -56,8 +56,8 @@ TEST(MillingMachineWay, FitLiesUnderTheLineThroughItsEndsByThePublishedError) {
   // -24.2112.
   EXPECT_NEAR(error, -24.17, 0.01);
   EXPECT_NEAR(error, -24.2112, 1.1);
-  EXPECT_FALSE(result.fit->find("straightness.b0")->identifiable);
-  EXPECT_FALSE(result.fit->find("straightness.b1")->identifiable);
+  EXPECT_FALSE(result.final->find("straightness.b0")->identifiable);
+  EXPECT_FALSE(result.final->find("straightness.b1")->identifiable);
 }
 
 /// A problem of problems/real; skipped where its data are not there.
@@ -93,9 +93,9 @@ TEST_F(Real, GratingSubstrateHasTheDatabasesSlopeError) {
 
 TEST_F(Real, GratingSubstrateIsCorrelatedOverTheWholeTrace) {
   const Result result = identify_shipped("real/mirror.toml");
-  EXPECT_EQ(result.fit->noise.front().effective_observations, 1.0);
-  EXPECT_LE(result.fit->noise.front().correlation_mm, 200.0);
-  EXPECT_THAT(result.fit->notes, ::testing::Contains(::testing::HasSubstr("whole trace")));
+  EXPECT_EQ(result.final->noise.front().effective_observations, 1.0);
+  EXPECT_LE(result.final->noise.front().correlation_mm, 200.0);
+  EXPECT_THAT(result.final->notes, ::testing::Contains(::testing::HasSubstr("whole trace")));
   EXPECT_FALSE(result.dominant.by_correlation);  // one candidate, and r = 0.0007
 }
 
@@ -109,7 +109,7 @@ TEST_F(Real, TestBarKeepsItsRunOutUnderACubic) {
   // numpy.polyfit on the same samples: 9.4593 µm. The fit weighs its correlated noise.
   EXPECT_NEAR(residual_rms(result, "bar"), 9.459, 0.005);
   // Run-out repeats every turn, so its standard deviation is that of the residual.
-  EXPECT_NEAR(*result.fit->noise.front().standard_deviation_um, 9.459, 0.1);
+  EXPECT_NEAR(*result.final->noise.front().standard_deviation_um, 9.459, 0.1);
   // 17799 values: Student's factor for many degrees of freedom.
   EXPECT_NEAR(determined(result, "straightness.b2").coverage_factor, 2.0, 0.05);
 }

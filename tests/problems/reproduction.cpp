@@ -135,15 +135,15 @@ void add_full_travel(Numbers& out) {
   out["ratio_low"] = fixed(curve.low_band / line.low_band, 2);
   out["neff"] = fixed(line.effective_observations, 1);
   out["p_value"] = fixed(line.p_value, 3);
-  out["values"] = std::to_string(split.low_band_values / split.inputs.size());
+  out["values"] = std::to_string(split.low_band[0].values);
   out["split_rms2"] = fixed(*split.inputs[0].rms_um, 2);
   out["split_rms8"] = fixed(*split.inputs[1].rms_um, 2);
   out["split_res2"] = fixed(residual_rms(split, "feed2"), 3);
   out["split_res8"] = fixed(residual_rms(split, "feed8"), 3);
-  const SquarenessCheck& check = *split.squareness;
+  const SquarenessCheck& check = *split.crosscheck.squareness;
   out["indirect"] = microradians(*check.indirect_rad, *check.indirect_U_rad);
   out["En"] = fixed(*check.En, 2);
-  out["split_verdict"] = check.verdict;
+  out["split_verdict"] = text_of(check.verdict);
   out["split_amplitude"] = fixed(*check.fit_amplitude_um, 2);
 
   Problem level1 = shipped_problem("paper-600mm/problem.toml");
@@ -168,12 +168,12 @@ void add_face(Numbers& out) {
     out["turns" + feed] = fixed(*setup.cut_radius_mm / groove, 1);
     out["face_pv" + feed] = fixed(*face.inputs[i].pv_um, 1);
   }
-  const SquarenessCheck& check = *face.squareness;
+  const SquarenessCheck& check = *face.crosscheck.squareness;
   out["face_cone"] = fixed(*check.fit_amplitude_um, 1);
   out["face_indirect_um"] = fixed(*check.indirect_amplitude_um, 3);
   out["face_ratio"] = fixed(*check.fit_rad / *check.indirect_rad, 0);
   out["face_dbeta"] = squareness_of(face);
-  out["face_verdict"] = check.verdict;
+  out["face_verdict"] = text_of(check.verdict);
   out["face_En"] = fixed(*check.En, 0);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -27,7 +28,7 @@ inline Result identify_shipped(const std::string& name) {
 
 inline const Ranking& ranked(const Result& result, const std::string& effect,
                              const std::string& profile) {
-  for (const Ranking& entry : result.ranking->entries)
+  for (const Ranking& entry : result.ranking.entries)
     if (entry.effect == effect && entry.profile == profile) return entry;
   throw std::logic_error("no ranking of " + effect + " on " + profile);
 }
@@ -36,21 +37,21 @@ inline const Ranking& ranked(const Result& result, const std::string& effect,
 inline double mean_share(const Result& result, const std::string& effect) {
   double sum = 0.0;
   int count = 0;
-  for (const Contribution& contribution : result.fit->contributions)
+  for (const Contribution& contribution : result.final->contributions)
     if (contribution.effect == effect) sum += contribution.share, ++count;
   if (count == 0) throw std::logic_error("no contribution of " + effect);
   return sum / count;
 }
 
 inline double residual_rms(const Result& result, const std::string& profile) {
-  for (const ResidualSummary& residual : result.fit->residuals)
-    if (residual.profile == profile) return residual.rms_um;
+  for (const ResidualSummary& residual : result.final->residuals)
+    if (residual.profile == profile) return residual.rms_um.value_or(residual.rms_urad.value_or(NAN));
   throw std::logic_error("no residual of " + profile);
 }
 
 /// A fitted parameter that the data determine.
 inline const FittedParameter& determined(const Result& result, const std::string& name) {
-  const FittedParameter* parameter = result.fit->find(name);
+  const FittedParameter* parameter = result.final->find(name);
   if (parameter == nullptr || !parameter->identifiable || !parameter->value)
     throw std::logic_error(name + " is not determined");
   return *parameter;

@@ -58,9 +58,9 @@ TEST(Paper600mm, NamesTheSquarenessAndAgreesWithTheRunOutWhenThePitchIsLeftOut) 
   // differ.
   EXPECT_NEAR(*determined(result, "squareness.dbeta_xz").value, 2.795e-6, 0.003e-6);
   EXPECT_NEAR(*determined(result, "squareness.dbeta_xz").standard_uncertainty, 0.017e-6, 0.002e-6);
-  ASSERT_TRUE(result.squareness);
-  EXPECT_EQ(result.squareness->verdict, "consistent");
-  EXPECT_NEAR(*result.squareness->indirect_rad, 2.8e-6, 1e-12);  // (0.3 + 2.5) µm / 1000 mm
+  ASSERT_TRUE(result.crosscheck.squareness);
+  EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::consistent);
+  EXPECT_NEAR(*result.crosscheck.squareness->indirect_rad, 2.8e-6, 1e-12);  // (0.3 + 2.5) µm / 1000 mm
 }
 
 TEST(Paper600mm, HasNoMainErrorWhenEquation16IsTakenAtItsWord) {
@@ -82,30 +82,30 @@ TEST(Paper600mm, HasNoMainErrorWhenEquation16IsTakenAtItsWord) {
   EXPECT_THAT(result.dominant.doubt, HasSubstr("no clear lead"));
   // The fit tells them apart all the same.
   expect_recovered(result, "squareness.dbeta_xz", 2.8e-6);
-  EXPECT_EQ(result.squareness->verdict, "consistent");
-  EXPECT_FALSE(result.fit->find("straightness.b1")->identifiable);
+  EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::consistent);
+  EXPECT_FALSE(result.final->find("straightness.b1")->identifiable);
 }
 
 TEST(PaperFace10mm, FindsAConeThatTheRunOutCanNotHaveMade) {
   const Result result = identify_shipped("paper-face-10mm/problem.toml");
   expect_recovered(result, "squareness.dbeta_xz", 2.0e-4);
-  ASSERT_TRUE(result.squareness);
-  EXPECT_EQ(result.squareness->verdict, "inconsistent");
+  ASSERT_TRUE(result.crosscheck.squareness);
+  EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::inconsistent);
   // Ordinary least squares in numpy: a factor of 72.5; the two feeds' weights move it by 1.
-  EXPECT_NEAR(*result.squareness->fit_rad / *result.squareness->indirect_rad, 72.0, 1.5);
-  EXPECT_NEAR(*result.squareness->indirect_amplitude_um, 0.028, 1e-9);  // 2.8e-6 rad x 10 mm
-  EXPECT_THAT(result.squareness->reason, HasSubstr("a factor of 72"));
-  EXPECT_THAT(result.squareness->reason, HasSubstr("0.028 µm"));
+  EXPECT_NEAR(*result.crosscheck.squareness->fit_rad / *result.crosscheck.squareness->indirect_rad, 72.0, 1.5);
+  EXPECT_NEAR(*result.crosscheck.squareness->indirect_amplitude_um, 0.028, 1e-9);  // 2.8e-6 rad x 10 mm
+  EXPECT_THAT(result.crosscheck.squareness->reason, HasSubstr("a factor of 72"));
+  EXPECT_THAT(result.crosscheck.squareness->reason, HasSubstr("0.028 µm"));
 }
 
 /// Value of the determined combination a + b, and whether each of the two alone is undetermined.
 void expect_one_combination(const Result& result, const std::string& a, const std::string& b,
                             double sum) {
-  EXPECT_FALSE(result.fit->find(a)->identifiable);
-  EXPECT_FALSE(result.fit->find(b)->identifiable);
-  EXPECT_FALSE(result.fit->find(a)->value);
-  ASSERT_EQ(result.fit->identifiability.determined.size(), 1U);
-  const DeterminedCombination& only = result.fit->identifiability.determined.front();
+  EXPECT_FALSE(result.final->find(a)->identifiable);
+  EXPECT_FALSE(result.final->find(b)->identifiable);
+  EXPECT_FALSE(result.final->find(a)->value);
+  ASSERT_EQ(result.final->identifiability.determined.size(), 1U);
+  const DeterminedCombination& only = result.final->identifiability.determined.front();
   ASSERT_EQ(only.combination.size(), 2U);
   EXPECT_EQ(only.combination[0].first, a);
   EXPECT_EQ(only.combination[1].first, b);
@@ -122,9 +122,9 @@ TEST(ThreeLevels, TellTheZCarriagesBendButOnlyTheSumOfItsLeanAndTheSquareness) {
   expect_recovered(result, "straightness.b3", -1.5e-9);
   expect_one_combination(result, "vertical_straightness.c1", "squareness.dbeta_xz", 8.0e-6);
   // numpy's ordinary least squares: 8.05e-6, standard uncertainty 0.11e-6.
-  const DeterminedCombination& sum = result.fit->identifiability.determined.front();
+  const DeterminedCombination& sum = result.final->identifiability.determined.front();
   EXPECT_NEAR(sum.standard_uncertainty, 0.11e-6, 0.02e-6);
-  EXPECT_EQ(result.squareness->verdict, "not_available");
+  EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::not_available);
   EXPECT_EQ(result.dominant.agree, false);
   EXPECT_THAT(result.dominant.doubt,
               HasSubstr("do not tell squareness from vertical_straightness"));

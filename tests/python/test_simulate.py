@@ -95,7 +95,7 @@ def test_what_was_simulated_is_identified():
     report = slideway.identify(
         problem, {name: (p.position, p.value) for name, p in profiles.items()}, trace=False
     )
-    (squareness,) = (p for p in report.fit.parameters if p.name == "squareness.dbeta_xz")
+    (squareness,) = (p for p in report.final.parameters if p.name == "squareness.dbeta_xz")
     # four standard uncertainties: 6 in 100 000 seeds, and this one is fixed
     assert abs(squareness.value - TRUE_SQUARENESS) < 4 * squareness.standard_uncertainty
 

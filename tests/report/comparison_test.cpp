@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-NamedReport sample(const std::string& name) { return {name, {sample_result(), std::nullopt}}; }
+NamedReport sample(const std::string& name) { return {name, {sample_result()}}; }
 
 TEST(Comparison, OfAReportWithItselfFindsNothing) {
   const json document = json::parse(comparison_json(sample("a"), sample("b")));
@@ -29,10 +29,10 @@ TEST(Comparison, OfAReportWithItselfFindsNothing) {
 
 TEST(Comparison, CountsInUnitsOfTheCombinedUncertainty) {
   NamedReport later = sample("b");
-  FittedParameter& squareness = later.analysis.result.fit->parameters[0];
+  FittedParameter& squareness = later.analysis.result.final->parameters[0];
   // U_A = 3e-9, U_B = 4e-9: U = 5e-9 (Pythagoras); B - A = 1e-8: E_n = 2.
   NamedReport first = sample("a");
-  first.analysis.result.fit->parameters[0].expanded_uncertainty = 3e-9;
+  first.analysis.result.final->parameters[0].expanded_uncertainty = 3e-9;
   squareness.expanded_uncertainty = 4e-9;
   squareness.value = *squareness.value + 1e-8;
   const json p = json::parse(comparison_json(first, later))["parameters"][0];
@@ -46,15 +46,15 @@ TEST(Comparison, NamesWhatChanged) {
   NamedReport later = sample("b");
   Result& result = later.analysis.result;
   result.inputs[0].sha256 = std::string(64, 'b');
-  result.wavelet = "db4";
-  result.squareness->verdict = "inconsistent";
+  result.low_band[0].wavelet = "db4";
+  result.crosscheck.squareness->verdict = Consistency::inconsistent;
   result.inputs.pop_back();
-  result.fit->parameters.pop_back();
+  result.final->parameters.pop_back();
   const json document = json::parse(comparison_json(sample("a"), later));
   std::vector<std::string> what;
   for (const json& change : document["changes"]) what.push_back(change["what"]);
   EXPECT_THAT(what, testing::IsSupersetOf(
-                        {"input feed2, sha256", "low band", "cross-check of squareness"}));
+                        {"input feed2, sha256", "low band of feed2", "cross-check of squareness"}));
   EXPECT_EQ(document["parameters"].size(), 3U);
   EXPECT_TRUE(document["parameters"][2]["b"].is_null());
   for (const bool swapped : {false, true}) {
@@ -67,7 +67,7 @@ TEST(Comparison, NamesWhatChanged) {
 
 TEST(Comparison, RefusesOneParameterInTwoUnits) {
   NamedReport later = sample("b");
-  later.analysis.result.fit->parameters[0].unit = "um";
+  later.analysis.result.final->parameters[0].unit = "um";
   EXPECT_THROW(comparison_text(sample("a"), later), DataError);
 }
 

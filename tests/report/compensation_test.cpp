@@ -24,7 +24,7 @@ constexpr double kSquareness = 2.8e-6;
 constexpr double kSpindle = 20.0;
 constexpr double kWritten = 1e-12;  // mm: half a digit of each of two numbers
 
-Analysis analysis(const std::string& lever, double overhang = 0.0) {
+Analysis analysis(Lever lever, double overhang = 0.0) {
   Analysis out;
   ModelResult fit;
   fit.converged = true;
@@ -32,13 +32,13 @@ Analysis analysis(const std::string& lever, double overhang = 0.0) {
     fit.parameters.push_back(fitted("straightness.b" + std::to_string(k), "b_" + std::to_string(k),
                                     "mm", kB[k], std::abs(kB[k]) / 100.0));
   fit.parameters.push_back(fitted("squareness.dbeta_xz", "Δβxz", "rad", kSquareness, 1e-8));
-  out.result.fit = fit;
+  out.result.final = fit;
   out.result.travel = {lever, kSpindle, 600.0 + kSpindle, kSpindle, overhang};
   return out;
 }
 
 FittedParameter& parameter(Analysis& analysis, const std::string& name) {
-  return *std::ranges::find(analysis.result.fit->parameters, name, &FittedParameter::name);
+  return *std::ranges::find(analysis.result.final->parameters, name, &FittedParameter::name);
 }
 
 double height(double x, double lever) {
@@ -164,9 +164,9 @@ void expect_model(const std::map<double, double>& points, double squareness, dou
 
 TEST(Compensation, TablesAddUpToTheModelsHeightOfTheToolTip) {
   for (const auto& [lever, overhang] :
-       {std::pair{"split", 0.0}, std::pair{"split", 150.0}, std::pair{"paper", 0.0}}) {
+       {std::pair{Lever::split, 0.0}, std::pair{Lever::split, 150.0}, std::pair{Lever::paper, 0.0}}) {
     SCOPED_TRACE(lever);
-    const bool paper = std::string(lever) == "paper";
+    const bool paper = lever == Lever::paper;
     const auto at = [&, overhang = overhang](double x) { return paper ? x - kSpindle : overhang; };
     const Compensation table = compensation(analysis(lever, overhang));
     const Read isg = read_isg(compensation_table(table, "isg", "test"));
@@ -182,7 +182,7 @@ TEST(Compensation, TablesAddUpToTheModelsHeightOfTheToolTip) {
 }
 
 TEST(Compensation, StraightnessIsZeroAtBothEndsOfTheReferenceLine) {
-  const Compensation table = compensation(analysis("split"), 7.0);
+  const Compensation table = compensation(analysis(Lever::split), 7.0);
   EXPECT_EQ(table.positions_mm.front(), 20.0);
   EXPECT_EQ(table.positions_mm.back(), 620.0);
   EXPECT_EQ(table.positions_mm.size(), 87U);  // ceil(600 / 7) pieces
@@ -192,7 +192,7 @@ TEST(Compensation, StraightnessIsZeroAtBothEndsOfTheReferenceLine) {
 
 TEST(Compensation, StraightnessNeedsNoConvention) {
   // b_0 and b_1 are gauge: what they are, or that they are unknown, changes no deviation.
-  Analysis shifted = analysis("paper");
+  Analysis shifted = analysis(Lever::paper);
   const Compensation whole = compensation(shifted);
   parameter(shifted, "straightness.b0").identifiable = false;
   parameter(shifted, "straightness.b1").identifiable = false;
@@ -203,7 +203,7 @@ TEST(Compensation, StraightnessNeedsNoConvention) {
 }
 
 TEST(Compensation, LeavesOutWhatIsNotDetermined) {
-  Analysis given = analysis("split");
+  Analysis given = analysis(Lever::split);
   parameter(given, "straightness.b1").identifiable = false;
   const Compensation no_squareness = compensation(given);
   EXPECT_FALSE(no_squareness.squareness_rad);
@@ -225,7 +225,7 @@ TEST(Compensation, LeavesOutWhatIsNotDetermined) {
 TEST(Compensation, TablesAreAscii) {
   for (const std::string& format : compensation_formats()) {
     const std::string text =
-        compensation_table(compensation(analysis("split")), format, "Fläche\n");
+        compensation_table(compensation(analysis(Lever::split)), format, "Fläche\n");
     EXPECT_TRUE(std::ranges::all_of(text, [](char c) {
       return c == '\n' || c == '\t' || (c >= ' ' && c <= '~');
     })) << text;
@@ -233,7 +233,7 @@ TEST(Compensation, TablesAreAscii) {
 }
 
 TEST(Compensation, SaysBesideATableWithoutCommentsWhatItsValuesAre) {
-  const Compensation table = compensation(analysis("split"));
+  const Compensation table = compensation(analysis(Lever::split));
   EXPECT_EQ(compensation_notes(table, "isg", "test"), table.left_out);
   const std::vector<std::string> notes = compensation_notes(table, "heidenhain", "test");
   EXPECT_EQ(notes.front(), "test");
@@ -245,9 +245,9 @@ TEST(Compensation, SaysBesideATableWithoutCommentsWhatItsValuesAre) {
 TEST(Compensation, RefusesMoreRowsThanAComTableTakes) {
   // 256 entries: TNC 407/415/425, Technical Manual, error 3 of module 9095.
   const std::string full =
-      compensation_table(compensation(analysis("split"), 600.0 / 255.0), "heidenhain", "test");
+      compensation_table(compensation(analysis(Lever::split), 600.0 / 255.0), "heidenhain", "test");
   EXPECT_THAT(read_heidenhain(full).points, testing::SizeIs(256));
-  const Compensation fine = compensation(analysis("split"), 600.0 / 256.0);
+  const Compensation fine = compensation(analysis(Lever::split), 600.0 / 256.0);
   try {
     compensation_table(fine, "heidenhain", "test");
     ADD_FAILURE() << "written with 257 rows";
@@ -258,45 +258,43 @@ TEST(Compensation, RefusesMoreRowsThanAComTableTakes) {
 }
 
 TEST(Compensation, LeavesOutASquarenessTheRunOutContradicts) {
-  Analysis given = analysis("split");
-  given.result.squareness.emplace();
-  given.result.squareness->verdict = "inconsistent";
+  Analysis given = analysis(Lever::split);
+  given.result.crosscheck.squareness.emplace();
+  given.result.crosscheck.squareness->verdict = Consistency::inconsistent;
   EXPECT_FALSE(compensation(given).squareness_rad);
 }
 
 TEST(Compensation, LeavesOutStraightnessAcrossOverhangs) {
-  Analysis given = analysis("split");
+  Analysis given = analysis(Lever::split);
   given.result.travel->overhang_mm.reset();
   EXPECT_TRUE(compensation(given).straightness_mm.empty());
 }
 
 TEST(Compensation, RefusesWhatTheLoopDoubts) {
-  Analysis given = analysis("split");
+  Analysis given = analysis(Lever::split);
   given.trace.emplace();
-  given.trace->after = given.result.fit->parameters;
-  given.trace->verdict = "not_identifiable";
+  given.trace->verdict = TraceVerdict::not_identifiable;
   EXPECT_THROW(compensation(given), DataError);
 
-  given.trace->verdict = "unnamed";
+  given.trace->verdict = TraceVerdict::unnamed;
   Unnamed left;
-  left.unit = "um";
-  left.rms = 0.01;
+  left.rms_um = 0.01;
   given.trace->unnamed = left;
   EXPECT_EQ(compensation(given).straightness_mm.size(), 51U);
-  given.trace->unnamed->rms = 100.0;
+  given.trace->unnamed->rms_um = 100.0;
   EXPECT_THROW(compensation(given), DataError);
 
   given.trace->unnamed.reset();
-  given.trace->verdict = "ambiguous";
+  given.trace->verdict = TraceVerdict::ambiguous;
   EXPECT_THAT(compensation(given).left_out, Contains(HasSubstr("ambiguous")));
 }
 
 TEST(Compensation, RefusesWhatItCanNotTable) {
   EXPECT_THROW(compensation(Analysis{}), DataError);
-  EXPECT_THROW(compensation(analysis("split"), -1.0), UsageError);
-  EXPECT_THROW(compensation(analysis("split"), 1e-9), UsageError);
-  EXPECT_THROW(compensation(analysis("split"), std::nan("")), UsageError);
-  Analysis point = analysis("split");
+  EXPECT_THROW(compensation(analysis(Lever::split), -1.0), UsageError);
+  EXPECT_THROW(compensation(analysis(Lever::split), 1e-9), UsageError);
+  EXPECT_THROW(compensation(analysis(Lever::split), std::nan("")), UsageError);
+  Analysis point = analysis(Lever::split);
   point.result.travel->slide_max_mm = point.result.travel->slide_min_mm;
   EXPECT_THROW(compensation(point), DataError);
   EXPECT_THROW(check_compensation_format("isgg"), UsageError);

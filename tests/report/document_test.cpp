@@ -25,11 +25,14 @@ TraceResult sample_trace() {
   round.after_holdout_rms_um = 0.05;
   round.candidates = {tried};
   TraceResult trace;
-  trace.verdict = "unnamed";
+  trace.verdict = TraceVerdict::unnamed;
+  trace.gates = {{"delta_bic", 10.0}};
+  trace.fragile = {"delta_bic", 12.5, TraceVerdict::nothing_missing};
+  trace.left = {{"cup", "straightness makes it"}};
   trace.rounds = {round};
   Unnamed left;
-  left.rms = 0.25;
-  left.unit = "urad";
+  left.rms_urad = 0.25;
+  left.pv_urad = 0.75;
   left.log_evidence = {{"t", 0.0}, {"r", -12.5}};
   trace.unnamed = left;
   trace.advice = {"cut again"};
@@ -43,8 +46,6 @@ TraceResult sample_trace() {
                              0.2,
                              "time_constant_s = 9",
                              {{3.0, 0.1}, {9.0, 0.2}}}};
-  trace.before = trace.after = sample_fit().parameters;
-  trace.after_rms_um = 0.05;
   return trace;
 }
 
@@ -58,7 +59,7 @@ class Document : public testing::Test {
 
   /// What a reader says of the sample with one value replaced, at a JSON pointer.
   [[nodiscard]] std::string refusal(const char* place, const Json& value) const {
-    Json report = Json::parse(json_report(sample_result(), sample_trace()));
+    Json report = Json::parse(json_report({sample_result(), sample_trace()}));
     report[Json::json_pointer(place)] = value;
     return refusal(report.dump());
   }
@@ -76,14 +77,23 @@ class Document : public testing::Test {
 
 TEST_F(Document, ReadBackMakesTheSameBytes) {
   Result result = sample_result();
-  result.travel = {"split", 0.0, 600.0, 0.0, std::nullopt};
+  result.about = {{"machine", "LT-3"}};
+  result.travel = {Lever::split, 0.0, 600.0, 0.0, std::nullopt};
   result.dominant.doubt = "two lead";
-  result.fit->implausible = "2 mm over 10 mm";
+  result.final->implausible = "2 mm over 10 mm";
+  result.crosscheck.profiles = {{{"run2", "run3"}, "straightness", 0.4, Consistency::consistent}};
+  result.crosscheck.held_out = {{"run5", 1.4, 0.02, 0.8, {}, 620.0, HeldOutVerdict::does_not_fit}};
+  result.conformity = {{"flatness", 2.1, 0.1, 3.0, {}, {}, {}, ConformityVerdict::conforms}};
   for (const std::string& text :
-       {json_report(result), json_report(result, sample_trace()), json_report(Result{})}) {
-    const Analysis read = read_report(file(text));
-    EXPECT_EQ(json_report(read.result, read.trace), text);
-  }
+       {json_report({result}), json_report({result, sample_trace()}), json_report({})})
+    EXPECT_EQ(json_report(read_report(file(text))), text);
+}
+
+// On one line, as a batch has it, too.
+TEST_F(Document, ReadBackOfALineMakesTheSameLine) {
+  const std::string line = json_line({sample_result(), sample_trace()});
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+  EXPECT_EQ(json_line(parse_report(line, "line")), line);
 }
 
 TEST_F(Document, PassesOverKeysItDoesNotKnow) {
@@ -93,26 +103,28 @@ TEST_F(Document, PassesOverKeysItDoesNotKnow) {
 TEST_F(Document, TakesOutWhatATerminalWouldObey) {
   Result result;
   result.title = "µm\x1b[31m\n";
-  EXPECT_EQ(read_report(file(json_report(result))).result.title, "µm?[31m?");
+  EXPECT_EQ(read_report(file(json_report({result}))).result.title, "µm?[31m?");
 }
 
 TEST_F(Document, NamesPlaceAndWhatIsAccepted) {
-  EXPECT_THAT(refusal("/fit/parameters/1/unit", 3),
-              HasSubstr("result.json: fit.parameters[1].unit: is number; accepted: a text"));
-  EXPECT_THAT(refusal("/fit/parameters/1/value", "NaN"),
-              HasSubstr("fit.parameters[1].value: is string; accepted: a number"));
+  EXPECT_THAT(refusal("/final/parameters/1/unit", 3),
+              HasSubstr("result.json: final.parameters[1].unit: is number; accepted: a text"));
+  EXPECT_THAT(refusal("/final/parameters/1/value", "NaN"),
+              HasSubstr("final.parameters[1].value: is string; accepted: a number"));
   EXPECT_THAT(refusal("/inputs/0/samples", -4), HasSubstr("accepted: a whole number"));
-  EXPECT_THAT(refusal("/low_band/level", 1e300), HasSubstr("low_band.level"));
+  EXPECT_THAT(refusal("/low_band/0/level", 1e300), HasSubstr("low_band[0].level"));
+  EXPECT_THAT(refusal("/trace/verdict", "certain"),
+              HasSubstr("trace.verdict: is string; accepted: \"nothing_missing\" or "));
   EXPECT_THAT(refusal("/trace/rounds/0/accepted", nullptr),
               HasSubstr("trace.rounds[0].accepted: is missing"));
-  EXPECT_THAT(refusal("/fit/correlations/0", Json::array({"a"})), HasSubstr("fit.correlations[0]"));
+  EXPECT_THAT(refusal("/final/correlations/0", Json::array({"a"})), HasSubstr("final.correlations[0]"));
 }
 
 TEST_F(Document, RefusesWhatIsNoReport) {
-  EXPECT_THAT(refusal("/schema", "slideway.diff/1"), HasSubstr("\"slideway.report/1\""));
+  EXPECT_THAT(refusal("/schema", "slideway.diff/1"), HasSubstr("\"slideway.report/2\""));
   for (const char* text : {"", "[]", "3", "{}", "{\"schema\": 1}", "\xff\xfe", "null"})
     EXPECT_THAT(refusal(std::string(text)), HasSubstr("accepted: ")) << text;
-  EXPECT_THAT(refusal("{\"schema\": \"slideway.report/1\", \"title\": 1e999}"),
+  EXPECT_THAT(refusal("{\"schema\": \"slideway.report/2\", \"title\": 1e999}"),
               HasSubstr("is no JSON"));
   EXPECT_THAT(refusal(std::string(1'000'000, '[')), HasSubstr("deep"));
   EXPECT_THROW(read_report(folder_.path() / "none.json"), DataError);
@@ -120,7 +132,7 @@ TEST_F(Document, RefusesWhatIsNoReport) {
 }
 
 TEST_F(Document, RefusesEveryTruncationInOneLine) {
-  const std::string text = json_report(sample_result(), sample_trace());
+  const std::string text = json_report({sample_result(), sample_trace()});
   for (std::size_t size = 0; size + 2 < text.size(); size += 53) {
     const std::string why = refusal(text.substr(0, size));
     EXPECT_NE(why, "read") << size;

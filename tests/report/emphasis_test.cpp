@@ -21,18 +21,18 @@ TEST(Emphasis, IsOfHeadingsAlone) {
 
 TEST(Emphasis, HasAColourForEveryVerdict) {
   TraceResult trace;
-  for (const auto& [verdict, colour] : {std::pair{"nothing_missing", "\033[32m"},
-                                        {"explained", "\033[32m"},
-                                        {"ambiguous", "\033[33m"},
-                                        {"unnamed", "\033[31m"},
-                                        {"not_identifiable", "\033[31m"}}) {
+  for (const auto& [verdict, colour] : {std::pair{TraceVerdict::nothing_missing, "\033[32m"},
+                                        {TraceVerdict::explained, "\033[32m"},
+                                        {TraceVerdict::ambiguous, "\033[33m"},
+                                        {TraceVerdict::unnamed, "\033[31m"},
+                                        {TraceVerdict::not_identifiable, "\033[31m"}}) {
     trace.verdict = verdict;
-    EXPECT_THAT(with_emphasis(text_report(sample_result(), trace)), HasSubstr(colour)) << verdict;
+    EXPECT_THAT(with_emphasis(text_report({sample_result(), trace})), HasSubstr(colour)) << text_of(verdict);
   }
   Result result = sample_result();
-  EXPECT_THAT(with_emphasis(text_report(result)), Not(HasSubstr("\033[31m")));
-  result.fit->converged = false;
-  EXPECT_THAT(with_emphasis(text_report(result)), HasSubstr("\033[31mNOT CONVERGED\033[39m"));
+  EXPECT_THAT(with_emphasis(text_report({result})), Not(HasSubstr("\033[31m")));
+  result.final->converged = false;
+  EXPECT_THAT(with_emphasis(text_report({result})), HasSubstr("\033[31mNOT CONVERGED\033[39m"));
 }
 
 }  // namespace

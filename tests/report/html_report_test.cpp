@@ -15,10 +15,8 @@ using Json = nlohmann::ordered_json;
 
 Details sample_details() {
   Details details;
-  ProfileCurves& curves = details.profiles.emplace_back();
+  ProfileCurves& curves = details.curves.emplace().profiles.emplace_back();
   curves.profile = "feed2";
-  curves.role = "fit";
-  curves.unit = "um";
   curves.position_mm = curves.contribution_position_mm = {0.0, 5.0, 10.0};
   curves.raw = {1.0, 2.5, 1.0};
   curves.low_band = curves.model_before = {1.0, 2.0, 1.0};
@@ -30,36 +28,39 @@ Details sample_details() {
   curves.autocorrelation_before = {1.0, 0.2};
   curves.spectrum_before = {{0.1, 0.2}, {0.5, 0.25}};
   curves.approximations = curves.details = {{{0.0, 0.5}, {1.0, 1.5}}};
-  curves.flatness = {{"", 2.0, 0.5}, {"squareness", 0.5, 0.1}, {"all", 0.25, 0.1}};
-  details.effects = {{{.name = "squareness", .formula = "-Δβxz p_x"}, false}};
-  details.straightness =
-      IdentifiedStraightness{{0.0, 5.0, 10.0},
-                             {-0.1, 0.2, -0.1},
-                             {0.01, 0.02, 0.01},
-                             {{"end-point", 0.3, 0.3, 5.0, 0.0, 0.0, 0.01, 0.02, 2.0}},
-                             ""};
-  details.budget = {{"squareness.dbeta_xz", "rad", {{"noise of feed2", 'A', 1.1e-9}}}};
+  details.what_if = {{"feed2", "", 2.0, 0.5, {}, {}},
+                     {"feed2", "squareness", 0.5, 0.1, {}, {}},
+                     {"feed2", "all", 0.25, 0.1, {}, {}}};
+  details.effects = {{.name = "squareness", .formula = "-Δβxz p_x"}};
   return details;
 }
 
 TraceResult sample_trace() {
   TraceResult trace;
-  trace.verdict = "explained";
+  trace.verdict = TraceVerdict::explained;
   TraceRound round;
   round.accepted = "thermal_drift";
   round.before_rms_um = 0.2;
   round.after_rms_um = 0.05;
   trace.rounds = {round};
-  trace.before_rms_um = 0.2;
-  trace.after_rms_um = 0.05;
-  trace.before = {fitted("squareness.dbeta_xz", "Δβxz", "rad", 3.0e-6, 1e-8)};
-  trace.after = {fitted("squareness.dbeta_xz", "Δβxz", "rad", 2.8e-6, 1e-8)};
   trace.advice = {"measure a second feed"};
   trace.refused = {{"tool_wear", -20.0, 0.04, 0.15, {}, "the joint fit does not bear it out"}};
   return trace;
 }
 
-std::string sample_json() { return json_report(sample_result(), sample_trace(), sample_details()); }
+/// The drift has bent the squareness by ten of its uncertainties.
+Analysis sample_analysis() {
+  Analysis out{sample_result(), sample_trace(), sample_details()};
+  ModelResult &declared = *out.result.declared, &final = *out.result.final;
+  declared.rms_um = 0.2;
+  final.rms_um = 0.05;
+  declared.parameters[0] = fitted("squareness.dbeta_xz", "Δβxz", "rad", 3.0e-6, 1e-8);
+  final.parameters[0] = fitted("squareness.dbeta_xz", "Δβxz", "rad", 2.8e-6, 1e-8);
+  final.budget = {{"squareness.dbeta_xz", "rad", {{"noise of feed2", EvaluationType::A, 1.1e-9}}}};
+  return out;
+}
+
+std::string sample_json() { return json_report(sample_analysis()); }
 
 std::string refusal(const std::string& json) {
   try {
@@ -93,33 +94,34 @@ TEST(HtmlReport, AsksForNothingFromOutside) {
 }
 
 TEST(HtmlReport, EscapesWhatComesFromOutside) {
-  Result result = sample_result();
+  Analysis analysis = sample_analysis();
+  Result& result = analysis.result;
   const std::string evil = "</script><script>alert('x')</script>\"&\x01";
   result.title = result.inputs[0].name = result.inputs[0].file = evil;
-  result.fit->parameters[0].symbol = result.fit->notes[0] = evil;
-  Details details = sample_details();
-  details.profiles[0].profile = details.profiles[0].effects[0] = evil;
-  const std::string page = html_report(json_report(result, sample_trace(), details));
+  result.final->parameters[0].symbol = result.final->notes[0] = evil;
+  ProfileCurves& curves = analysis.details.curves->profiles[0];
+  curves.profile = curves.effects[0] = evil;
+  const std::string page = html_report(json_report(analysis));
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
   EXPECT_THAT(page, Not(HasSubstr("\x01")));
   EXPECT_THAT(page, HasSubstr("&lt;/script&gt;&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt;"));
 }
 
 TEST(HtmlReport, IsMadeWithoutCurvesAndWithoutAFitToo) {
-  EXPECT_THAT(html_report(json_report(sample_result())), HasSubstr("Squareness"));
+  EXPECT_THAT(html_report(json_report({sample_result()})), HasSubstr("Squareness"));
   Result ranked = sample_result();
-  ranked.fit = std::nullopt;
-  ranked.squareness = std::nullopt;
-  EXPECT_THAT(html_report(json_report(ranked)), HasSubstr("Ranking only"));
+  ranked.declared = ranked.final = std::nullopt;
+  ranked.crosscheck.squareness = std::nullopt;
+  EXPECT_THAT(html_report(json_report({ranked})), HasSubstr("Ranking only"));
 }
 
 TEST(HtmlReport, RefusesWhatIsNoReportInOneLine) {
   EXPECT_THAT(refusal("{"), HasSubstr("report: is no JSON"));
   EXPECT_EQ(refusal("[]"), "report: is array; accepted: an object");
   EXPECT_THAT(refusal(R"({"schema": "other/2"})"),
-              HasSubstr("report: schema: is \"other/2\"; accepted: \"slideway.report/1\" or "
+              HasSubstr("report: schema: is \"other/2\"; accepted: \"slideway.report/2\" or "
                         "\"slideway.columns/1\""));
-  EXPECT_EQ(refusal(R"({"schema": "slideway.report/1"})"),
+  EXPECT_EQ(refusal(R"({"schema": "slideway.report/2"})"),
             "report: title: is missing; accepted: a text");
   EXPECT_THAT(refusal(std::string(1'000'000, '[')), HasSubstr("deep"));
 }
@@ -130,8 +132,8 @@ TEST(HtmlReport, NamesThePlaceOfAWrongValue) {
     report[Json::json_pointer(place)] = value;
     return refusal(report.dump());
   };
-  EXPECT_EQ(refusal_of("/fit/parameters/0/at_bound", 3),
-            "report: fit.parameters[0].at_bound: is number; accepted: true or false");
+  EXPECT_EQ(refusal_of("/final/parameters/0/at_bound", 3),
+            "report: final.parameters[0].at_bound: is number; accepted: true or false");
   EXPECT_EQ(refusal_of("/curves/profiles/0/raw/1", "high"),
             "report: curves.profiles[0].raw[1]: is string; accepted: a number");
 }

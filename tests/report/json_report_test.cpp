@@ -1,40 +1,51 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "report/sample_result.hpp"
+#include "slideway/report/document.hpp"
 #include "slideway/report/report.hpp"
 
 namespace slideway {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
-// The example of the contract for schema slideway.report/1, up to the cross-check.
+// The example of the contract for schema slideway.report/2, up to the trace.
 const Json kContract = Json::parse(R"({
-  "schema": "slideway.report/1", "version": "0.1.0", "title": "...",
+  "schema": "slideway.report/2", "version": "0.2.0", "title": "...", "about": {},
+  "assumed": [{ "key": "profile.feed2.free", "value": ["offset", "tilt"], "why": "default" }],
   "inputs": [{ "name": "feed2", "file": "feed2.csv", "sha256": "...", "kind": "face",
                "quantity": "height", "samples": 20000, "missing": 0, "position_min_mm": 0.0,
                "position_max_mm": 10.0, "rms_um": 0.5, "pv_um": 2.0 }],
-  "low_band": { "wavelet": "db1", "level": 5, "boundary": "symmetric", "values": 1250 },
+  "low_band": [{ "profile": "feed2", "wavelet": "db1", "level": 5, "boundary": "symmetric",
+                 "values": 625 }],
   "ranking": [{ "effect": "squareness", "profile": "feed2", "raw": 0.83, "low_band": 0.99 }],
   "dominant": { "by_correlation": "squareness", "by_fit": "squareness", "agree": true },
-  "fit": { "converged": true, "rms_um": 0.1, "observations": 1250, "effective_observations": 140.0,
+  "declared": {},
+  "final": { "effects": ["squareness", "straightness", "thermal_drift"], "converged": true,
+    "rms_um": 0.05, "observations": 1250, "effective_observations": 140.0,
     "parameters": [{ "name": "squareness.dbeta_xz", "symbol": "Δβxz", "value": 2.8e-6,
-                     "unit": "rad", "standard_uncertainty": 1e-8, "expanded_uncertainty": 2e-8,
-                     "coverage_factor": 2.0, "identifiable": true }],
+                     "unit": "rad", "standard_uncertainty": 1e-8, "degrees_of_freedom": 60.0,
+                     "expanded_uncertainty": 2e-8, "coverage_factor": 2.0, "identifiable": true }],
+    "straightness": { "end_point_um": 1.3, "expanded_uncertainty_um": 0.01 },
     "correlations": [["straightness.b2", "straightness.b3", -0.97]],
     "identifiability": { "parameters": 8, "rank": 7, "condition": 120.0,
       "unidentifiable": [{ "combination": { "vertical_straightness.c1": 0.707 },
                            "advice": "..." }] } },
   "crosscheck": { "squareness": { "fit_rad": 2.8e-6, "fit_U_rad": 2e-8, "indirect_rad": 2.8e-6,
-                                  "indirect_U_rad": 2e-7, "En": 0.1, "verdict": "consistent" } }
+                                  "indirect_U_rad": 2e-7, "En": 0.1, "verdict": "consistent" },
+                  "profiles": [], "held_out": [] },
+  "conformity": []
 })");
 
-Json report_of(const Result& result) { return Json::parse(json_report(result)); }
+Json report_of(const Result& result) { return Json::parse(json_report({result})); }
 
 /// Every key of `wanted` is in `given` with a value of the same type; lists by their first entry.
 void expect_like(const Json& wanted, const Json& given, const std::string& path) {
@@ -60,76 +71,69 @@ TEST(JsonReport, KeepsTheOrderOfTheContract) {
   const Json report = report_of(sample_result());
   for (const auto& [key, value] : report.items())
     if (kContract.contains(key) || key == "trace") keys.push_back(key);
-  EXPECT_THAT(keys, ElementsAre("schema", "version", "title", "inputs", "low_band", "ranking",
-                                "dominant", "fit", "crosscheck", "trace"));
+  EXPECT_THAT(keys, ElementsAre("schema", "version", "title", "about", "assumed", "inputs",
+                                "low_band", "ranking", "dominant", "declared", "final",
+                                "crosscheck", "conformity", "trace"));
   EXPECT_TRUE(report["trace"].is_null());
 }
 
 TEST(JsonReport, CarriesTheValuesUnchanged) {
   const Json report = report_of(sample_result());
+  EXPECT_EQ(report["assumed"][0]["value"], Json({"offset", "tilt"}));
   EXPECT_EQ(report["ranking"][0]["low_band"], 0.99);
   EXPECT_EQ(report["ranking"][0]["running"]["samples"], Json({10, 20}));
   EXPECT_EQ(report["candidate_correlations"][1]["coefficient"], 0.97);
-  EXPECT_EQ(report["fit"]["parameters"][0]["value"], 2.8e-6);
-  EXPECT_EQ(report["fit"]["correlations"][0],
-            Json::array({"straightness.b2", "straightness.b3", -0.97}));
-  EXPECT_EQ(report["fit"]["identifiability"]["determined"][0]["value"], 2.5e-6);
-  EXPECT_EQ(report["fit"]["noise"][1]["standard_deviation_urad"], 1.5);
-  EXPECT_EQ(report["fit"]["contributions"][0]["rms_um"], 0.4);
-  EXPECT_EQ(report["fit"]["contributions"][1]["rms_urad"], 1.25);
-  EXPECT_EQ(report["fit"]["residuals"][1]["rms_urad"], 1.5);
+  const Json& final = report["final"];
+  EXPECT_EQ(final["parameters"][0]["value"], 2.8e-6);
+  EXPECT_EQ(final["correlations"][0], Json::array({"straightness.b2", "straightness.b3", -0.97}));
+  EXPECT_EQ(final["identifiability"]["determined"][0]["value"], 2.5e-6);
+  EXPECT_EQ(final["noise"][1]["standard_deviation_urad"], 1.5);
+  EXPECT_EQ(final["contributions"][0]["rms_um"], 0.4);
+  EXPECT_EQ(final["contributions"][1]["rms_urad"], 1.25);
+  EXPECT_EQ(final["residuals"][1]["rms_urad"], 1.5);
   EXPECT_EQ(report["crosscheck"]["squareness"]["travel_mm"], 600.0);
 }
 
 TEST(JsonReport, WritesNullForWhatCouldNotBeDetermined) {
   const Json report = report_of(sample_result());
   EXPECT_TRUE(report["inputs"][1]["rms_um"].is_null());
-  EXPECT_TRUE(report["fit"]["noise"][1]["standard_deviation_um"].is_null());
+  EXPECT_TRUE(report["final"]["noise"][1]["standard_deviation_um"].is_null());
   for (const char* key : {"value", "standard_uncertainty", "expanded_uncertainty"})
-    EXPECT_TRUE(report["fit"]["parameters"][2][key].is_null()) << key;
+    EXPECT_TRUE(report["final"]["parameters"][2][key].is_null()) << key;
 }
 
 TEST(JsonReport, HasAllTopKeysWhereOnlyARankingWasAskedFor) {
-  Result result = sample_result();
-  result.fit.reset();
-  result.squareness.reset();
-  result.dominant = {"squareness", std::nullopt, std::nullopt};
-  const Json report = report_of(result);
-  EXPECT_TRUE(report["fit"].is_null());
+  const Json report = report_of({});
+  for (const auto& [key, value] : kContract.items()) EXPECT_TRUE(report.contains(key)) << key;
+  for (const char* key : {"declared", "final", "trace"}) EXPECT_TRUE(report[key].is_null()) << key;
   EXPECT_TRUE(report["crosscheck"]["squareness"].is_null());
-  EXPECT_TRUE(report["dominant"]["by_fit"].is_null());
-  EXPECT_TRUE(report["dominant"]["agree"].is_null());
 }
 
-TEST(JsonReport, SaysWhyThereIsNoCrossCheckWhereOnlyAFitWasAskedFor) {
-  Result result = sample_result();
-  result.ranking.reset();
-  result.squareness.reset();
-  const Json report = report_of(result);
-  EXPECT_EQ(report["ranking"], Json::array());
-  const Json& check = report["crosscheck"]["squareness"];
-  EXPECT_EQ(check["verdict"], "not_available");
-  EXPECT_NE(check["reason"], "");
-  EXPECT_TRUE(check["En"].is_null());
-}
-
-TEST(JsonReport, RefusesANumberThatIsNotFiniteAndNamesIt) {
-  Result result = sample_result();
-  result.fit->parameters[1].value = std::numeric_limits<double>::quiet_NaN();
-  try {
-    json_report(result);
-    FAIL() << "accepted a NaN";
-  } catch (const std::logic_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("fit.parameters[1].value"));
-  }
-  result = sample_result();
-  result.ranking->entries[0].running.raw[1] = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(json_report(result), std::logic_error);
+TEST(JsonReport, ANumberThatIsNotFiniteIsAbsentAndNamedInTheNotesOfItsPart) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  Analysis analysis{sample_result()};
+  analysis.result.final->parameters[1].standard_uncertainty = HUGE_VAL;
+  analysis.result.final->identifiability.condition = HUGE_VAL;
+  analysis.result.ranking.entries[0].running.raw[1] = kNan;
+  leave_out_non_finite(analysis);
+  const std::string text = json_report(analysis);
+  const Json report = Json::parse(text);
+  const Json& final = report["final"];
+  EXPECT_TRUE(final["parameters"][1]["standard_uncertainty"].is_null());
+  EXPECT_TRUE(final["identifiability"]["condition"].is_null());
+  EXPECT_TRUE(report["ranking"][0]["running"]["raw"][1].is_null());
+  EXPECT_THAT(final["notes"], Contains("parameters[1].standard_uncertainty is not a finite number "
+                                       "and is left out"));
+  EXPECT_THAT(final["notes"], Contains(HasSubstr("identifiability.condition")));
+  EXPECT_THAT(report["notes"], ElementsAre(HasSubstr("ranking[0].running.raw")));
+  EXPECT_THAT(report["declared"]["notes"], Not(Contains(HasSubstr("finite"))));
+  EXPECT_EQ(json_report(parse_report(text, "report")), text);
+  EXPECT_THAT(text_report(analysis), HasSubstr("straightness.b2"));
 }
 
 TEST(JsonReport, IsTheSameTextEveryTimeAndEndsWithANewline) {
-  const std::string text = json_report(sample_result());
-  EXPECT_EQ(text, json_report(sample_result()));
+  const std::string text = json_report({sample_result()});
+  EXPECT_EQ(text, json_report({sample_result()}));
   EXPECT_EQ(text.back(), '\n');
   EXPECT_EQ(text.substr(0, 15), "{\n  \"schema\": \"");
 }

@@ -44,7 +44,7 @@ void expect_fits(const std::string& text) {
   }
 }
 
-TEST(TextReport, HasNoLineOver80Columns) { expect_fits(text_report(sample_result())); }
+TEST(TextReport, HasNoLineOver80Columns) { expect_fits(text_report({sample_result()})); }
 
 TEST(TextReport, HasNoLineOver80ColumnsWithLongNamesAndNumbers) {
   Result result = sample_result();
@@ -56,43 +56,43 @@ TEST(TextReport, HasNoLineOver80ColumnsWithLongNamesAndNumbers) {
     in.position_max_mm = 1.23456789e-7;
     in.rms_um = 1.2345e-9;
   }
-  for (FittedParameter& p : result.fit->parameters) {
+  for (FittedParameter& p : result.final->parameters) {
     p.name = "revolution_periodic.cycles_per_revolution";
     p.expanded_uncertainty = 1e-17;
   }
-  result.squareness->reason = std::string(300, 'z');
-  expect_fits(text_report(result));
+  result.crosscheck.squareness->reason = std::string(300, 'z');
+  expect_fits(text_report({result}));
 }
 
 TEST(TextReport, GivesAValueWithItsUncertaintyFactorAndUnit) {
-  const std::string line = line_with(text_report(sample_result()), "squareness.dbeta_xz");
+  const std::string line = line_with(text_report({sample_result()}), "squareness.dbeta_xz");
   EXPECT_THAT(line, HasSubstr("Δβxz"));
   EXPECT_THAT(line, HasSubstr("(2.8000 ± 0.0022)e-06  rad"));
   EXPECT_THAT(line, HasSubstr("2.00"));
 }
 
 TEST(TextReport, GivesTheSquarenessInTheUnitsOfTheWorkshopToo) {
-  const std::string text = text_report(sample_result());
+  const std::string text = text_report({sample_result()});
   EXPECT_THAT(line_with(text, "in µm/m"), HasSubstr("2.8000 ± 0.0022"));
   // 2.8e-6 rad * 648000 / π = 0.577541"; 2.2e-9 rad = 0.000454".
   EXPECT_THAT(line_with(text, "in arcsec"), HasSubstr("0.57754 ± 0.00045"));
 }
 
 TEST(TextReport, NeverShowsANumberForAParameterThatIsNotDetermined) {
-  const std::string text = text_report(sample_result());
+  const std::string text = text_report({sample_result()});
   EXPECT_THAT(line_with(text, "vertical_straightness.c1"), HasSubstr("not determined"));
   EXPECT_THAT(text, Not(HasSubstr("777")));
 }
 
 TEST(TextReport, PutsTheUndeterminedDirectionInWordsWithItsAdvice) {
-  const std::string text = on_one_line(text_report(sample_result()));
+  const std::string text = on_one_line(text_report({sample_result()}));
   EXPECT_THAT(text, HasSubstr("0.71 c1 - 0.71 squareness.tilt"));
   EXPECT_THAT(text, HasSubstr("Measure a reference straightedge along Z"));
   EXPECT_THAT(text, HasSubstr("c1 + squareness.tilt = (2.500 ± 0.020)e-06 rad"));
 }
 
 TEST(TextReport, AlignsColumnsByCharactersNotBytes) {
-  const std::string text = text_report(sample_result());
+  const std::string text = text_report({sample_result()});
   const std::size_t column = column_of(line_with(text, "value ± U"), "value ± U");
   EXPECT_EQ(column_of(line_with(text, "Δβxz"), "(2.8000"), column);
   EXPECT_EQ(column_of(line_with(text, "  b_2"), "(-2.290"), column);
@@ -100,7 +100,7 @@ TEST(TextReport, AlignsColumnsByCharactersNotBytes) {
 }
 
 TEST(TextReport, ListsTheStrongestCorrelationsOfTheCandidatesAndTheRankingsNotes) {
-  const std::string text = on_one_line(text_report(sample_result()));
+  const std::string text = on_one_line(text_report({sample_result()}));
   EXPECT_THAT(text, HasSubstr("- constant profiles were passed over"));
   const auto strongest = text.find("squareness vertical_straightness feed2 +0.9700");
   const auto weaker = text.find("squareness straightness feed2 -0.2000");
@@ -111,69 +111,69 @@ TEST(TextReport, ListsTheStrongestCorrelationsOfTheCandidatesAndTheRankingsNotes
 
 TEST(TextReport, ShowsALagOnlyWhereItsCoefficientIsClearlyLarger) {
   Result result = sample_result();
-  EXPECT_THAT(text_report(result), Not(HasSubstr("shifted")));
-  result.ranking->entries[1].low_band = -0.6;
-  EXPECT_THAT(on_one_line(text_report(result)),
+  EXPECT_THAT(text_report({result}), Not(HasSubstr("shifted")));
+  result.ranking.entries[1].low_band = -0.6;
+  EXPECT_THAT(on_one_line(text_report({result})),
               testing::ContainsRegex("larger when shifted: vertical_straightness on [^ ]* -0.9800 "
                                      "by -1.5 mm[.]"));
 }
 
 TEST(TextReport, NamesNoDominantEffectWhereThereIsADoubt) {
   Result result = sample_result();
-  EXPECT_THAT(text_report(result), HasSubstr("by fit squareness: the two agree."));
+  EXPECT_THAT(text_report({result}), HasSubstr("by fit squareness: the two agree."));
   result.dominant.agree = false;
   result.dominant.doubt = "no clear lead, by fit cup 51 % against step 49 %";
-  EXPECT_THAT(text_report(result),
+  EXPECT_THAT(text_report({result}),
               HasSubstr("Dominant effect: no clear lead, by fit cup 51 % against step 49 %.\n"));
 }
 
 TEST(TextReport, GivesChiSquareOnlyWhereUncertaintiesAreDeclared) {
   Result result = sample_result();
-  EXPECT_THAT(text_report(result), Not(HasSubstr("chi-square")));
-  result.fit->noise.front().scaling = "declared";
-  EXPECT_THAT(on_one_line(text_report(result)),
+  EXPECT_THAT(text_report({result}), Not(HasSubstr("chi-square")));
+  result.final->noise.front().scaling = NoiseScaling::declared;
+  EXPECT_THAT(on_one_line(text_report({result})),
               HasSubstr("chi-square 131 at 133 degrees of freedom"));
 }
 
 TEST(TextReport, HasNoCrossCheckWhereThereIsNothingToCheck) {
   Result result = sample_result();
-  result.squareness = SquarenessCheck{};
-  result.squareness->reason = "the model declares no squareness";
-  EXPECT_THAT(text_report(result), Not(HasSubstr("Cross-check")));
+  result.crosscheck.squareness = SquarenessCheck{};
+  result.crosscheck.squareness->reason = "the model declares no squareness";
+  EXPECT_THAT(text_report({result}), Not(HasSubstr("Cross-check")));
 }
 
 TEST(TextReport, StatesTheCrossCheckWithEnAndTheAmplitudeOverTheTravel) {
-  const std::string text = on_one_line(text_report(sample_result()));
+  const std::string text = on_one_line(text_report({sample_result()}));
   EXPECT_THAT(text, HasSubstr("E_n = 0.25: consistent"));
   EXPECT_THAT(text, HasSubstr("Over the travel of 600 mm that is 1.68 µm by the fit and 1.65 µm"));
 }
 
 TEST(TextReport, ShoutsAnInconsistentCrossCheckWithItsReason) {
   Result result = sample_result();
-  result.squareness->verdict = "inconsistent";
-  result.squareness->En = 70.0;
-  result.squareness->reason = "the fit asks for more than the run-out allows";
-  const std::string text = on_one_line(text_report(result));
+  result.crosscheck.squareness->verdict = Consistency::inconsistent;
+  result.crosscheck.squareness->En = 70.0;
+  result.crosscheck.squareness->reason = "the fit asks for more than the run-out allows";
+  const std::string text = on_one_line(text_report({result}));
   EXPECT_THAT(text, HasSubstr("E_n = 70: INCONSISTENT"));
   EXPECT_THAT(text, HasSubstr("(E_n is above 1). The fit asks for more than the run-out allows."));
   EXPECT_THAT(text, Not(HasSubstr("Over the travel")));  // the library's reason has it
 }
 
 TEST(TextReport, SaysHowUncertaintiesWereScaledPerProfile) {
-  const std::string text = text_report(sample_result());
+  const std::string text = text_report({sample_result()});
   EXPECT_THAT(text, HasSubstr("How the uncertainties were scaled"));
   EXPECT_THAT(on_one_line(text), HasSubstr("feed2: the declared uncertainty is too small"));
 }
 
 TEST(TextReport, ShowsHeldOutResidualsApart) {
-  EXPECT_THAT(line_with(text_report(sample_result()), "held out"), HasSubstr("1.5 µrad"));
+  EXPECT_THAT(line_with(text_report({sample_result()}), "held out"), HasSubstr("1.5 µrad"));
 }
 
 TEST(TextReport, LeavesOutWhatWasNotAskedFor) {
   Result result = sample_result();
-  result.fit.reset();
-  result.squareness.reset();
-  const std::string text = text_report(result);
+  result.final.reset();
+  result.crosscheck.squareness.reset();
+  const std::string text = text_report({result});
   EXPECT_THAT(text, Not(HasSubstr("Fit:")));
   EXPECT_THAT(text, Not(HasSubstr("Cross-check")));
   EXPECT_THAT(text, HasSubstr("Ranking"));
@@ -193,7 +193,7 @@ TEST(TextReport, ListsDetectionLimitsInColumnsHoweverLongTheirShapes) {
                              0.0113,
                              "cycles_per_revolution = 0.01894",
                              {{0.1, 0.0059}, {0.5, 0.015}}}};
-  const std::string text = text_report(sample_result(), trace);
+  const std::string text = text_report({sample_result(), trace});
   expect_fits(text);
   const std::string line = line_with(text, "revolution_periodic");
   EXPECT_THAT(line, testing::ContainsRegex("0.011 µm +0.0059 to 0.015 +cycles_.*0.01894$"));
@@ -201,7 +201,7 @@ TEST(TextReport, ListsDetectionLimitsInColumnsHoweverLongTheirShapes) {
 }
 
 TEST(TextReport, IsTheSameTextEveryTime) {
-  EXPECT_EQ(text_report(sample_result()), text_report(sample_result()));
+  EXPECT_EQ(text_report({sample_result()}), text_report({sample_result()}));
 }
 
 }  // namespace

@@ -8,7 +8,6 @@ namespace {
 
 using namespace faces;  // NOLINT(google-build-using-namespace)
 using ::testing::HasSubstr;
-using ::testing::Pair;
 using turning::ToolPoint;
 
 turning::Hidden cup() {
@@ -19,7 +18,7 @@ TEST(Conflict, CupIsOneColumnWithTheStraightnessOfAFace) {
   const TraceResult result = close_loop(problem_of(), quarter_faces(cup(), 1, kBlunt, 2));
   SCOPED_TRACE(story(result));
   EXPECT_THAT(named(result), ::testing::IsEmpty());
-  EXPECT_THAT(result.not_separable, ::testing::Contains(Pair("cup", HasSubstr("straightness.b2"))));
+  EXPECT_THAT(result.not_separable, ::testing::Contains(::testing::FieldsAre("cup", HasSubstr("straightness.b2"))));
 }
 
 /// The straightness of make_faces() as an autocollimator reads it on the slide, to 0.02 µrad.

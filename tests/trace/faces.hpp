@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "slideway/trace/trace.hpp"
+#include "slideway/trace/analysis.hpp"
 #include "support/hidden_effect.hpp"
 
 /// Faces with one effect more than the model declares, for the tests of the closed loop.
@@ -41,6 +41,16 @@ inline Problem problem_of(std::vector<std::string> candidates = {}) {
   return problem;
 }
 
+/// A closed loop with the models it began and ended with.
+struct Closed : TraceResult {
+  ModelResult declared, final;
+};
+inline Closed closed(const Problem& problem, const std::vector<Profile>& profiles) {
+  Analysis analysis = analyse(problem, profiles);
+  return {*std::move(analysis.trace), *std::move(analysis.result.declared),
+          *std::move(analysis.result.final)};
+}
+
 /// Names in the order they were accepted, feed marks left out: the process does make them.
 inline std::vector<std::string> named(const TraceResult& result) {
   std::vector<std::string> out;
@@ -73,7 +83,7 @@ inline void expect_within_4u(const std::vector<FittedParameter>& parameters,
 
 /// What a failing test shows.
 inline std::string story(const TraceResult& result) {
-  std::string out = "verdict " + result.verdict;
+  std::string out = "verdict " + std::string(text_of(result.verdict));
   for (const TraceRound& round : result.rounds) {
     out += "\n  accepted " + round.accepted;
     for (const std::string& rival : round.ambiguous_with) out += " | " + rival;
@@ -84,13 +94,14 @@ inline std::string story(const TraceResult& result) {
   }
   for (const TriedEffect& tried : result.refused)
     out += "\n  refused " + tried.effect + " dBIC " + std::to_string(tried.delta_bic) + ": " +
-           tried.refused;
+           tried.refused.value_or("");
   for (const auto& [effect, same] : result.not_separable)
     out += "\n  not separable " + effect + ": " + same;
   for (const std::string& text : result.advice) out += "\n  advice " + text;
   for (const std::string& text : result.notes) out += "\n  note " + text;
   if (result.unnamed)
-    out += "\n  unnamed " + std::to_string(result.unnamed->rms) + " " + result.unnamed->unit +
+    out += "\n  unnamed " + std::to_string(result.unnamed->rms_um.value_or(
+                               result.unnamed->rms_urad.value_or(0.0))) +
            " on clock " + result.unnamed->clock;
   return out + "\n  lack of fit p " + std::to_string(result.lack_of_fit_p);
 }

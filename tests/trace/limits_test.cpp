@@ -9,7 +9,6 @@ namespace {
 
 using namespace faces;  // NOLINT(google-build-using-namespace)
 using ::testing::HasSubstr;
-using ::testing::Pair;
 using turning::ToolPoint;
 
 const turning::Hidden& drift() {
@@ -29,7 +28,7 @@ std::vector<std::optional<double>> values_of(const std::vector<FittedParameter>&
 TEST(HeldOut, ProfileIsPredictedAndNeverFitted) {
   std::vector<Profile> cuts = quarter_faces(drift(), 3, kBlunt, 5);
   cuts[2].role = Role::holdout;
-  const TraceResult result = close_loop(small_problem(), cuts);
+  const Closed result = closed(small_problem(), cuts);
   SCOPED_TRACE(story(result));
   const TraceRound* round = round_of(result, "linear_drift");
   ASSERT_NE(round, nullptr);
@@ -38,9 +37,9 @@ TEST(HeldOut, ProfileIsPredictedAndNeverFitted) {
 
   RandomStream random(1, "other noise");
   for (double& value : cuts[2].values) value += 0.005e-3 * random.normal();
-  const TraceResult other = close_loop(small_problem(), cuts);
-  EXPECT_EQ(values_of(other.before), values_of(result.before));
-  EXPECT_EQ(values_of(other.after), values_of(result.after));
+  const Closed other = closed(small_problem(), cuts);
+  EXPECT_EQ(values_of(other.declared.parameters), values_of(result.declared.parameters));
+  EXPECT_EQ(values_of(other.final.parameters), values_of(result.final.parameters));
   const TraceRound* again = round_of(other, "linear_drift");
   ASSERT_NE(again, nullptr);
   EXPECT_EQ(again->delta_bic, round->delta_bic);
@@ -50,7 +49,7 @@ TEST(HeldOut, ProfileIsPredictedAndNeverFitted) {
 }
 
 TEST(HeldOut, EachProfileInTurnWhereNoneIs) {
-  const TraceResult result = close_loop(small_problem(), quarter_faces(drift(), 3, kBlunt, 5));
+  const Closed result = closed(small_problem(), quarter_faces(drift(), 3, kBlunt, 5));
   SCOPED_TRACE(story(result));
   const TraceRound* round = round_of(result, "linear_drift");
   ASSERT_NE(round, nullptr);
@@ -62,12 +61,12 @@ TEST(Testable, NeedsTheMetadataOfTheClock) {
   std::vector<Profile> cut = quarter_faces({"clean"}, 1, kBlunt, 1);
   cut[0].setup.feed_mm_per_min.reset();
   cut[0].setup.traverse_mm_per_s.reset();
-  const TraceResult result = close_loop(
+  const Closed result = closed(
       problem_of({"thermal_drift", "tool_wear", "traverse_periodic", "centre_step"}), cut);
   EXPECT_THAT(result.not_testable, ::testing::UnorderedElementsAre(
-                                       Pair("thermal_drift", HasSubstr("feed_mm_per_min")),
-                                       Pair("tool_wear", HasSubstr("feed_mm_per_min")),
-                                       Pair("traverse_periodic", HasSubstr("traverse_mm_per_s"))));
+                                       ::testing::FieldsAre("thermal_drift", HasSubstr("feed_mm_per_min")),
+                                       ::testing::FieldsAre("tool_wear", HasSubstr("feed_mm_per_min")),
+                                       ::testing::FieldsAre("traverse_periodic", HasSubstr("traverse_mm_per_s"))));
 }
 
 TEST(Testable, NeedsAProfileThatShowsIt) {
@@ -78,12 +77,12 @@ TEST(Testable, NeedsAProfileThatShowsIt) {
   cut[1].setup.kind = Kind::slide;
   Problem problem = problem_of({"cup"});
   problem.effects = {{"straightness", {std::nullopt, 3, std::nullopt}, {}}};
-  const TraceResult result = close_loop(problem, cut);
-  EXPECT_THAT(result.not_testable, ::testing::ElementsAre(Pair("cup", HasSubstr("reading"))));
+  const Closed result = closed(problem, cut);
+  EXPECT_THAT(result.not_testable, ::testing::ElementsAre(::testing::FieldsAre("cup", HasSubstr("reading"))));
 }
 
 TEST(Search, LooksOnlyAtItsCandidates) {
-  const TraceResult result = close_loop(problem_of({"slide_periodic", "centre_step"}),
+  const Closed result = closed(problem_of({"slide_periodic", "centre_step"}),
                                         quarter_faces(drift(), 2, kBlunt, 5));
   SCOPED_TRACE(story(result));
   EXPECT_EQ(round_of(result, "linear_drift"), nullptr);
@@ -96,19 +95,19 @@ TEST(Search, LooksOnlyAtItsCandidates) {
 TEST(Search, AddsNothingWhereNothingMayBeAdded) {
   Problem problem = small_problem();
   problem.trace.max_effects = 0;
-  const TraceResult result = close_loop(problem, quarter_faces(drift(), 2, kBlunt, 5));
+  const Closed result = closed(problem, quarter_faces(drift(), 2, kBlunt, 5));
   EXPECT_THAT(result.rounds, ::testing::IsEmpty());
-  EXPECT_EQ(values_of(result.after), values_of(result.before));
+  EXPECT_EQ(values_of(result.final.parameters), values_of(result.declared.parameters));
 }
 
 TEST(Search, RefusesByItsSignificance) {
   Problem problem = small_problem();
   const std::vector<Profile> cuts = quarter_faces({"clean"}, 2, kBlunt, 5);
-  const TraceResult result = close_loop(problem, cuts);
+  const Closed result = closed(problem, cuts);
   SCOPED_TRACE(story(result));
-  EXPECT_EQ(result.verdict, "nothing_missing");
+  EXPECT_EQ(result.verdict, TraceVerdict::nothing_missing);
   EXPECT_EQ(result.detection_limits.size(), 3U);
-  for (const DetectionLimit& limit : result.detection_limits) EXPECT_GT(limit.value, 0.0);
+  for (const DetectionLimit& limit : result.detection_limits) EXPECT_GT(limit.value.value_or(0.0), 0.0);
 }
 
 }  // namespace

@@ -9,9 +9,9 @@ namespace {
 
 using namespace faces;  // NOLINT(google-build-using-namespace)
 
-TraceResult close_problem(const std::string& name) {
+Closed close_problem(const std::string& name) {
   const Problem problem = shipped_problem(name);
-  return close_loop(problem, read_profiles(problem));
+  return closed(problem, read_profiles(problem));
 }
 
 class Measured : public ::testing::Test {
@@ -23,7 +23,7 @@ class Measured : public ::testing::Test {
 };
 
 TEST_F(Measured, TestBarRunsOut) {
-  const TraceResult result = close_problem("real/test-bar.toml");
+  const Closed result = close_problem("real/test-bar.toml");
   SCOPED_TRACE(story(result));
   ASSERT_FALSE(result.rounds.empty());
   const TraceRound& first = result.rounds.front();
@@ -39,7 +39,7 @@ TEST_F(Measured, TestBarRunsOut) {
 }
 
 TEST_F(Measured, LatheBedHasNoEffectOfTheSlide) {
-  const TraceResult result = close_problem("real/lathe-bed.toml");
+  const Closed result = close_problem("real/lathe-bed.toml");
   SCOPED_TRACE(story(result));
   EXPECT_THAT(result.rounds, ::testing::IsEmpty());
 }
@@ -51,31 +51,31 @@ TEST_F(Measured, CurvatureOfAMirrorDeclaredStraightComesBack) {
   const std::vector<Profile> profiles = read_profiles(problem);
   const Result declared = identify(problem, profiles, Scope::fit);
   problem.effects.at(0).options.degree = 1;
-  const TraceResult result = close_loop(problem, profiles);
+  const Closed result = closed(problem, profiles);
   SCOPED_TRACE(story(result));
   ASSERT_FALSE(result.rounds.empty());
   EXPECT_EQ(result.rounds[0].accepted, "straightness");
   ASSERT_TRUE(result.rounds[0].after_rms_urad);
   EXPECT_NEAR(*result.rounds[0].after_rms_urad, 0.31849, 0.5e-5);
-  ASSERT_TRUE(declared.fit);
-  const FittedParameter* b2 = find(declared.fit->parameters, "straightness.b2");
+  ASSERT_TRUE(declared.final);
+  const FittedParameter* b2 = find(declared.final->parameters, "straightness.b2");
   ASSERT_NE(b2, nullptr);
-  expect_within_4u(result.after, "straightness.b2", *b2->value);
+  expect_within_4u(result.final.parameters, "straightness.b2", *b2->value);
 }
 
 // What is left without a name is a part of the residual, not of what the parameters take.
 TEST_F(Measured, StructureWithoutANameIsNoLargerThanTheResidual) {
-  const TraceResult result = close_problem("real/mirror.toml");
+  const Closed result = close_problem("real/mirror.toml");
   SCOPED_TRACE(story(result));
   ASSERT_TRUE(result.unnamed);
-  ASSERT_TRUE(result.after_rms_urad);
-  EXPECT_LT(result.unnamed->rms, *result.after_rms_urad);
+  ASSERT_TRUE(result.final.rms_urad);
+  EXPECT_LT(*result.unnamed->rms_urad, *result.final.rms_urad);
 }
 
 TEST(Shipped, ThreeLevelsLackNothing) {
-  const TraceResult result = close_problem("three-levels/problem.toml");
+  const Closed result = close_problem("three-levels/problem.toml");
   SCOPED_TRACE(story(result));
-  EXPECT_EQ(result.verdict, "nothing_missing");
+  EXPECT_EQ(result.verdict, TraceVerdict::nothing_missing);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ using ::testing::HasSubstr;
 using turning::Hidden;
 using turning::ToolPoint;
 
-TraceResult close_on(const Hidden& hidden, int cuts, double nose_radius, std::uint64_t seed) {
-  return close_loop(problem_of(), quarter_faces(hidden, cuts, nose_radius, seed));
+Closed close_on(const Hidden& hidden, int cuts, double nose_radius, std::uint64_t seed) {
+  return closed(problem_of(), quarter_faces(hidden, cuts, nose_radius, seed));
 }
 
 void expect_only(const TraceResult& result, const std::string& effect) {
@@ -33,7 +33,7 @@ TEST(Named, StepAtTheSampleWhereItIs) {
   problem.low_band.level = 5;
   const turning::Hidden step{"step",
                              [=](const ToolPoint& p) { return p.r < place ? 0.1e-3 : 0.0; }};
-  const TraceResult result = close_loop(problem, turning::make_faces(step, 2, kSharp, 3));
+  const Closed result = closed(problem, turning::make_faces(step, 2, kSharp, 3));
   SCOPED_TRACE(story(result));
   expect_only(result, "step");
   const TraceRound* round = round_of(result, "step");
@@ -48,7 +48,7 @@ TEST(Named, StepAtTheSampleWhereItIs) {
 
 TEST(Named, SlidePeriodicOfAPeriodOffTheGrid) {
   const double period = 2.7183;
-  const TraceResult result = close_on(
+  const Closed result = close_on(
       {"slide_periodic",
        [=](const ToolPoint& p) { return 0.1e-3 * std::cos(2.0 * kPi * p.x / period + 0.4); }},
       2, kBlunt, 4);
@@ -61,7 +61,7 @@ TEST(Named, SlidePeriodicOfAPeriodOffTheGrid) {
 }
 
 TEST(Named, CentreStep) {
-  const TraceResult result = close_on(
+  const Closed result = close_on(
       {"centre_step", nullptr, [](double X, double) { return X < 0.0 ? -0.05e-3 : 0.05e-3; }}, 2,
       kBlunt, 5);
   SCOPED_TRACE(story(result));
@@ -72,7 +72,7 @@ TEST(Named, CentreStep) {
 }
 
 TEST(Named, TraverseDatum) {
-  const TraceResult result = close_on({"traverse_datum", nullptr,
+  const Closed result = close_on({"traverse_datum", nullptr,
                                        [](double X, double) {
                                          const double u = X / 10.0;
                                          return 0.1e-3 * u * u * u;
@@ -86,7 +86,7 @@ TEST(Named, TraverseDatum) {
 }
 
 TEST(Named, EdgeRollOff) {
-  const TraceResult result = close_on(
+  const Closed result = close_on(
       {"edge_roll_off", [](const ToolPoint& p) { return -0.3e-3 * std::exp((p.r - 10.0) / 0.23); }},
       3, kSharp, 8);
   SCOPED_TRACE(story(result));
@@ -98,14 +98,14 @@ TEST(Named, EdgeRollOff) {
 
 // 3 µm at the rim that grow with r⁴; with one lever a coefficient b_4 makes -3 b_4 r⁴.
 TEST(Named, StraightnessOfMoreTermsThanDeclared) {
-  const TraceResult result =
+  const Closed result =
       close_on({"quartic", [](const ToolPoint& p) { return 3e-3 * std::pow(p.r / 10.0, 4); }}, 2,
                kBlunt, 10);
   SCOPED_TRACE(story(result));
   expect_only(result, "straightness");
-  EXPECT_EQ(find(result.before, "straightness.b4"), nullptr);
-  expect_within_4u(result.after, "straightness.b4", -1e-7);
-  expect_within_4u(result.after, "squareness.dbeta_xz", turning::kFaceSquareness);
+  EXPECT_EQ(find(result.declared.parameters, "straightness.b4"), nullptr);
+  expect_within_4u(result.final.parameters, "straightness.b4", -1e-7);
+  expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
 }
 
 // Both are steep at the centre, where a nose of 2 mm does not follow: the wrong one is never named
@@ -113,7 +113,7 @@ TEST(Named, StraightnessOfMoreTermsThanDeclared) {
 TEST(Named, WhatIsSteepAtTheCentreIsNoOtherAlone) {
   for (const std::uint64_t seed : {106, 107}) {
     RandomStream random(seed, "speed_effect");
-    const TraceResult result =
+    const Closed result =
         close_on(turning::make_hidden("speed_effect", 0.15e-3, random), 3, kSharp, seed);
     SCOPED_TRACE(story(result));
     std::vector<std::string> set = named(result);
@@ -122,19 +122,19 @@ TEST(Named, WhatIsSteepAtTheCentreIsNoOtherAlone) {
     if (!result.unnamed) {
       EXPECT_THAT(set, ::testing::Contains("speed_effect"));
     }
-    expect_within_4u(result.after, "squareness.dbeta_xz", turning::kFaceSquareness);
+    expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
   }
 }
 
 // One spindle speed in all cuts: time and revolutions are one clock. Of 0.1 um a nose of 50 mm
 // would make a second harmonic of 50 mm/4 (2π 0.1 um/0.9 mm)² = 6 nm, a line of its own.
 TEST(Named, TimeAndRevolutionsAreOneClockAtOneSpeed) {
-  const TraceResult result = close_on(
+  const Closed result = close_on(
       {"time_periodic",
        [](const ToolPoint& p) { return 0.05e-3 * std::cos(2.0 * kPi * p.t / 27.18 + 0.9); }},
       2, kBlunt, 9);
   SCOPED_TRACE(story(result));
-  EXPECT_EQ(result.verdict, "ambiguous");
+  EXPECT_EQ(result.verdict, TraceVerdict::ambiguous);
   ASSERT_EQ(named(result).size(), 1U);
   const std::string name = named(result)[0];
   const std::string other = name == "time_periodic" ? "revolution_periodic" : "time_periodic";

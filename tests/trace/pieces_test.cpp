@@ -264,14 +264,14 @@ TEST(DetectionLimit, GrowsWithTheNoise) {
   ASSERT_EQ(quiet.size(), 4U);
   for (std::size_t i = 0; i < quiet.size(); ++i) {
     SCOPED_TRACE(quiet[i].effect);
-    EXPECT_NEAR(noisy[i].value, 2.0 * quiet[i].value, kRounding * quiet[i].value);
+    EXPECT_NEAR(noisy[i].value.value(), 2.0 * quiet[i].value.value(),
+                kRounding * *quiet[i].value);
     EXPECT_EQ(quiet[i].by_shape.empty(), quiet[i].at.empty());
     for (std::size_t k = 0; k < quiet[i].by_shape.size(); ++k) {
-      EXPECT_NEAR(noisy[i].by_shape[k].second, 2.0 * quiet[i].by_shape[k].second,
-                  kRounding * quiet[i].by_shape[k].second);
+      const double size = quiet[i].by_shape[k].value.value();
+      EXPECT_NEAR(noisy[i].by_shape[k].value.value(), 2.0 * size, kRounding * size);
     }
-    const auto shape = &std::pair<double, double>::first;
-    EXPECT_TRUE(std::ranges::is_sorted(quiet[i].by_shape, {}, shape));
+    EXPECT_TRUE(std::ranges::is_sorted(quiet[i].by_shape, {}, &LimitAtShape::shape));
   }
 }
 

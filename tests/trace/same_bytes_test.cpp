@@ -16,8 +16,7 @@ TEST(SameBytes, RunForRun) {
   const std::vector<Profile> cut = quarter_faces(hidden, 1, kBlunt, 1);
   const Problem problem = problem_of();
   const auto report = [&] {
-    const TraceResult trace = close_loop(problem, cut);
-    return json_report(identify(problem, cut), trace);
+    return json_report(analyse(problem, cut));
   };
   const std::string first = report();
   EXPECT_THAT(first, ::testing::HasSubstr("slide_periodic"));

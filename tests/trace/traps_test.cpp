@@ -51,12 +51,12 @@ TEST(Trap, CleanFacesWithCorrelatedNoiseHaveNoEffectWhereANaiveTestSeesOne) {
   int naive = 0, false_alarms = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const std::vector<Profile> cut = quarter_faces({"clean"}, 1, kBlunt, seed);
-    const TraceResult result = close_loop(problem, cut);
+    const Closed result = closed(problem, cut);
     if (!named(result).empty()) {
       ++false_alarms;
       ADD_FAILURE() << "seed " << seed << ": " << story(result);
     }
-    EXPECT_NE(result.verdict, "unnamed") << "seed " << seed << ": " << story(result);
+    EXPECT_NE(result.verdict, TraceVerdict::unnamed) << "seed " << seed << ": " << story(result);
     if (naive_gain(problem, cut) > 10.0) ++naive;
   }
   EXPECT_EQ(false_alarms, 0);
@@ -66,25 +66,25 @@ TEST(Trap, CleanFacesWithCorrelatedNoiseHaveNoEffectWhereANaiveTestSeesOne) {
 }
 
 void expect_found(const Hidden& hidden, const std::string& parameter, double truth) {
-  const TraceResult result = close_loop(problem_of(), quarter_faces(hidden, 3, kBlunt, 7));
+  const Closed result = closed(problem_of(), quarter_faces(hidden, 3, kBlunt, 7));
   SCOPED_TRACE(story(result));
   EXPECT_THAT(named(result), ::testing::ElementsAre(hidden.name));
   const TraceRound* round = round_of(result, hidden.name);
   ASSERT_NE(round, nullptr);
   expect_within_4u(round->parameters, parameter, truth);
-  expect_within_4u(result.after, "squareness.dbeta_xz", turning::kFaceSquareness);
+  expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
 }
 
 /// The bias of a parameter by the missing effect falls by nine tenths. The effect is ten times as
 /// large as in the traps, so that a tenth of its bias still stands out of the noise, and the nose
 /// sharp enough to follow its slope (a groove is lowered by slope² times half the nose radius).
 void expect_bias_removed(const Hidden& hidden, const std::string& parameter, double truth) {
-  const TraceResult result = close_loop(
+  const Closed result = closed(
       problem_of({"linear_drift", "thermal_drift", "tool_wear", "tool_running_in", "feed_marks"}),
       quarter_faces(hidden, 3, kSharp, 7));
   SCOPED_TRACE(story(result));
-  const FittedParameter* before = find(result.before, parameter);
-  const FittedParameter* after = find(result.after, parameter);
+  const FittedParameter* before = find(result.declared.parameters, parameter);
+  const FittedParameter* after = find(result.final.parameters, parameter);
   ASSERT_TRUE(before && after);
   const double bias = std::abs(*before->value - truth);
   EXPECT_LT(2.0 * *after->standard_uncertainty, 0.1 * bias);
@@ -107,15 +107,15 @@ TEST(Trap, ToolWearIsNotTakenForNoise) {
 // cut's was taken for noise, and the other's could then be the slide's.
 TEST(Trap, ALineThatRunsThereAndBackIsNotTakenForNoise) {
   RandomStream random(102, "time_periodic");
-  const TraceResult result =
-      close_loop(turning::face_problem(),
+  const Closed result =
+      closed(turning::face_problem(),
                  turning::make_faces(turning::make_hidden("time_periodic", 0.23648e-3, random), 2,
                                      kSharp, 102));
   SCOPED_TRACE(story(result));
   EXPECT_THAT(named(result), ::testing::AnyOf(::testing::Contains("time_periodic"),
                                               ::testing::Contains("revolution_periodic")));
   // What is left is the stylus' noise, 11 nm, and what the nose makes of the line.
-  EXPECT_LT(result.after_rms_um, 0.03);
+  EXPECT_LT(result.final.rms_um, 0.03);
 }
 
 TEST(Trap, BiasOfTheSquarenessByADriftFallsByNineTenths) {

@@ -17,7 +17,7 @@ TraceResult close_on(const std::string& shape) {
 TEST(Unnamed, TwoBumpsLiveOnTheRadius) {
   const TraceResult result = close_on("double_bump");
   SCOPED_TRACE(story(result));
-  EXPECT_EQ(result.verdict, "unnamed");
+  EXPECT_EQ(result.verdict, TraceVerdict::unnamed);
   EXPECT_TRUE(is_negative(result));
   EXPECT_THAT(named(result), ::testing::IsEmpty());
   ASSERT_TRUE(result.unnamed);
@@ -38,24 +38,26 @@ TEST(Unnamed, WidensTheStraightnessAsItsParameter) {
   const Analysis analysis =
       analyse(problem, quarter_faces(hidden, 2, kBlunt, 11), {.with_details = true});
   SCOPED_TRACE(story(*analysis.trace));
-  ASSERT_EQ(analysis.trace->verdict, "unnamed");
-  const FittedParameter* b2 = find(analysis.trace->after, "straightness.b2");
+  ASSERT_EQ(analysis.trace->verdict, TraceVerdict::unnamed);
+  const FittedParameter* b2 = find(analysis.result.final->parameters, "straightness.b2");
   ASSERT_NE(b2, nullptr);
   const double share = *b2->expanded_uncertainty / std::abs(*b2->value);
-  const IdentifiedStraightness& found = *analysis.details->straightness;
+  const Straightness& found = *analysis.result.final->straightness;
   ASSERT_EQ(found.reason, "");
-  const double rounding = 1e-6 * found.expanded_uncertainty_um[0];
-  for (std::size_t i = 0; i < found.position_mm.size(); ++i)
-    EXPECT_NEAR(found.expanded_uncertainty_um[i], share * std::abs(found.deviation_um[i]),
+  const StraightnessCurve& curve = found.curve;
+  const double rounding = 1e-6 * curve.expanded_uncertainty_um[0];
+  for (std::size_t i = 0; i < curve.position_mm.size(); ++i)
+    EXPECT_NEAR(curve.expanded_uncertainty_um[i], share * std::abs(curve.deviation_um[i]),
                 rounding);
-  for (const IdentifiedStraightness::Error& error : found.errors)
-    EXPECT_NEAR(error.expanded_uncertainty_um / error.error_um, share, 1e-6 * share) << error.line;
+  for (const StraightnessError& error : found.errors)
+    EXPECT_NEAR(*error.expanded_uncertainty / *error.value, share, 1e-6 * share)
+        << text_of(error.line);
 }
 
 TEST(Unnamed, ChirpIsNoLine) {
   const TraceResult result = close_on("chirp");
   SCOPED_TRACE(story(result));
-  EXPECT_EQ(result.verdict, "unnamed");
+  EXPECT_EQ(result.verdict, TraceVerdict::unnamed);
   EXPECT_THAT(named(result), ::testing::IsEmpty());
   ASSERT_TRUE(result.unnamed);
 }

@@ -9,7 +9,8 @@
 
 /// What the program writes and reads back, as lists: the texts of an enumeration, the members of a
 /// struct. All that has to know every member of a result (the JSON writer and reader, the JSON
-/// Schema, the Python classes, the search for numbers that are not finite) goes through these lists.
+/// Schema, the Python classes, the search for numbers that are not finite) goes through these
+/// lists.
 namespace slideway {
 
 /// Texts of an enumeration, in the order of its enumerators, which count from 0.
@@ -17,7 +18,7 @@ template <typename Enum>
 inline constexpr std::array<std::string_view, 0> kTexts{};
 
 template <typename Enum>
-concept Named = std::is_enum_v<Enum> && (kTexts<Enum>.size() > 0);
+concept Named = std::is_enum_v<Enum> &&(kTexts<Enum>.size() > 0);
 
 template <Named Enum>
 constexpr std::string_view text_of(Enum value) {

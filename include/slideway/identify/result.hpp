@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "slideway/base/record.hpp"
 #include "slideway/identify/assumption.hpp"
 #include "slideway/machine/machine.hpp"
 #include "slideway/profile/profile.hpp"
@@ -19,6 +20,8 @@
 namespace slideway {
 
 enum class MicroUnit { um, urad };
+template <>
+inline constexpr std::array<std::string_view, 2> kTexts<MicroUnit>{"um", "urad"};
 
 /// A value with its unit and its uncertainty (GUM 2.2, 6.2): U = k u, k Student's factor for a
 /// coverage of 95.45 % at ν degrees of freedom.
@@ -56,7 +59,12 @@ struct InputSummary {
 };
 
 enum class ClosureVerdict { closes, does_not_close, not_judged };
+template <>
+inline constexpr std::array<std::string_view, 3> kTexts<ClosureVerdict>{"closes", "does not close",
+                                                                        "not judged"};
 enum class RepeatVerdict { agree, do_not_agree };
+template <>
+inline constexpr std::array<std::string_view, 2> kTexts<RepeatVerdict>{"agree", "do not agree"};
 
 /// What one line reads where it meets others, against what they say (close_lines()).
 struct MisclosureSummary {
@@ -169,12 +177,15 @@ enum class NoiseScaling {
   estimated,
   refuted  // estimated: the declared uncertainty is too small
 };
+template <>
+inline constexpr std::array<std::string_view, 3> kTexts<NoiseScaling>{
+    "declared", "estimated", "estimated: the declared uncertainty is too small"};
 
 /// The noise of one profile as the fit has it.
 struct NoiseSummary {
   std::string profile;
   NoiseScaling scaling = NoiseScaling::estimated;
-  int order = 0;  // p of AR(p)
+  int order = 0;                                                         // p of AR(p)
   std::optional<double> standard_deviation_um, standard_deviation_urad;  // of one low-band value
   double correlation_mm = 0.0;          // integral correlation length, at most that of the trace
   double effective_observations = 0.0;  // at least 1
@@ -199,6 +210,9 @@ struct ResidualSummary {
 };
 
 enum class ReferenceLineKind { end_point, least_squares, minimum_zone };
+template <>
+inline constexpr std::array<std::string_view, 3> kTexts<ReferenceLineKind>{
+    "end-point", "least squares", "minimum zone"};
 
 /// Straightness error from one reference line, ISO 230-1: largest deviation minus smallest, with
 /// its uncertainty; µm.
@@ -237,6 +251,8 @@ struct Straightness {
 };
 
 enum class EvaluationType { A, B };  // GUM 3.3.4: by statistics, or otherwise
+template <>
+inline constexpr std::array<std::string_view, 2> kTexts<EvaluationType>{"A", "B"};
 
 /// What one source contributes to the uncertainty of a parameter; the squares of all lines of a
 /// parameter add up to that of its standard uncertainty (GUM 5.1.2).
@@ -279,6 +295,9 @@ struct ModelResult {
 };
 
 enum class Consistency { consistent, inconsistent, not_available };
+template <>
+inline constexpr std::array<std::string_view, 3> kTexts<Consistency>{"consistent", "inconsistent",
+                                                                     "not_available"};
 
 struct SquarenessCheck {
   std::optional<double> fit_rad, fit_U_rad, indirect_rad, indirect_U_rad, En;
@@ -297,6 +316,8 @@ struct ProfileCheck {
 };
 
 enum class HeldOutVerdict { fits, does_not_fit };
+template <>
+inline constexpr std::array<std::string_view, 2> kTexts<HeldOutVerdict>{"fits", "does not fit"};
 
 /// Whether a held-out profile lies where the model predicts it, within the uncertainty.
 struct HeldOutCheck {
@@ -314,6 +335,9 @@ struct Crosscheck {
 };
 
 enum class ConformityVerdict { conforms, does_not_conform, undecided };
+template <>
+inline constexpr std::array<std::string_view, 3> kTexts<ConformityVerdict>{
+    "conforms", "does not conform", "can not be decided"};
 
 /// ISO 14253-1: a value held against its limit, with U as guard band.
 struct Conformity {

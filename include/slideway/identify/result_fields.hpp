@@ -3,11 +3,10 @@
 #include "slideway/base/record.hpp"
 #include "slideway/identify/result.hpp"
 
-/// Texts and members of what stands in result.hpp, as reports have them.
+/// Members of what stands in result.hpp, as reports have them, and texts of enumerations of earlier
+/// rooms.
 namespace slideway {
 
-template <>
-inline constexpr std::array<std::string_view, 2> kTexts<MicroUnit>{"um", "urad"};
 template <>
 inline constexpr std::array<std::string_view, 2> kTexts<Kind>{"face", "slide"};
 template <>
@@ -26,27 +25,6 @@ template <>
 inline constexpr std::array<std::string_view, 9> kTexts<Boundary>{
     "zero",          "constant", "symmetric",     "periodic",   "smooth",
     "periodization", "reflect",  "antisymmetric", "antireflect"};
-template <>
-inline constexpr std::array<std::string_view, 3> kTexts<ClosureVerdict>{
-    "closes", "does not close", "not judged"};
-template <>
-inline constexpr std::array<std::string_view, 2> kTexts<RepeatVerdict>{"agree", "do not agree"};
-template <>
-inline constexpr std::array<std::string_view, 3> kTexts<NoiseScaling>{
-    "declared", "estimated", "estimated: the declared uncertainty is too small"};
-template <>
-inline constexpr std::array<std::string_view, 3> kTexts<ReferenceLineKind>{
-    "end-point", "least squares", "minimum zone"};
-template <>
-inline constexpr std::array<std::string_view, 2> kTexts<EvaluationType>{"A", "B"};
-template <>
-inline constexpr std::array<std::string_view, 3> kTexts<Consistency>{"consistent", "inconsistent",
-                                                                     "not_available"};
-template <>
-inline constexpr std::array<std::string_view, 2> kTexts<HeldOutVerdict>{"fits", "does not fit"};
-template <>
-inline constexpr std::array<std::string_view, 3> kTexts<ConformityVerdict>{
-    "conforms", "does not conform", "can not be decided"};
 
 template <>
 inline constexpr auto kRecord<Assumption> =
@@ -64,42 +42,41 @@ inline constexpr auto kRecord<OutlierSummary> =
            field("unit", &OutlierSummary::unit), field("kind", &OutlierSummary::kind));
 
 template <>
-inline constexpr auto kRecord<InputSummary> = record(
-    "Input", "One profile as it was read.", field("name", &InputSummary::name),
-    field("file", &InputSummary::file, "\"arrays\" for numbers from arrays"),
-    field("format", &InputSummary::format), field("sha256", &InputSummary::sha256),
-    field("kind", &InputSummary::kind), field("quantity", &InputSummary::quantity),
-    field("role", &InputSummary::role, "holdout: never fitted, only predicted"),
-    field("samples", &InputSummary::samples),
-    field("missing", &InputSummary::missing, "points of the file that have no value"),
-    field("left_out", &InputSummary::left_out, "samples left out as the problem asks"),
-    field("outlier_count", &InputSummary::outlier_count),
-    field("outliers", &InputSummary::outliers, "the 20 largest at most, by row"),
-    field("position_min_mm", &InputSummary::position_min_mm),
-    field("position_max_mm", &InputSummary::position_max_mm),
-    field("rms_um", &InputSummary::rms_um, "about the mean"), field("pv_um", &InputSummary::pv_um),
-    field("rms_urad", &InputSummary::rms_urad), field("pv_urad", &InputSummary::pv_urad),
-    field("notes", &InputSummary::notes));
+inline constexpr auto kRecord<InputSummary> =
+    record("Input", "One profile as it was read.", field("name", &InputSummary::name),
+           field("file", &InputSummary::file, "\"arrays\" for numbers from arrays"),
+           field("format", &InputSummary::format), field("sha256", &InputSummary::sha256),
+           field("kind", &InputSummary::kind), field("quantity", &InputSummary::quantity),
+           field("role", &InputSummary::role, "holdout: never fitted, only predicted"),
+           field("samples", &InputSummary::samples),
+           field("missing", &InputSummary::missing, "points of the file that have no value"),
+           field("left_out", &InputSummary::left_out, "samples left out as the problem asks"),
+           field("outlier_count", &InputSummary::outlier_count),
+           field("outliers", &InputSummary::outliers, "the 20 largest at most, by row"),
+           field("position_min_mm", &InputSummary::position_min_mm),
+           field("position_max_mm", &InputSummary::position_max_mm),
+           field("rms_um", &InputSummary::rms_um, "about the mean"),
+           field("pv_um", &InputSummary::pv_um), field("rms_urad", &InputSummary::rms_urad),
+           field("pv_urad", &InputSummary::pv_urad), field("notes", &InputSummary::notes));
 
 template <>
-inline constexpr auto kRecord<MisclosureSummary> = record(
-    "Misclosure", "What one line reads where it meets others, against what they say.",
-    field("profile", &MisclosureSummary::profile), field("x_mm", &MisclosureSummary::x_mm),
-    field("y_mm", &MisclosureSummary::y_mm),
-    field("difference_um", &MisclosureSummary::difference_um, "as the data stand"),
-    field("closure_um", &MisclosureSummary::closure_um, "null: nothing checks it"),
-    field("standard_uncertainty_um", &MisclosureSummary::standard_uncertainty_um));
+inline constexpr auto kRecord<MisclosureSummary> =
+    record("Misclosure", "What one line reads where it meets others, against what they say.",
+           field("profile", &MisclosureSummary::profile), field("x_mm", &MisclosureSummary::x_mm),
+           field("y_mm", &MisclosureSummary::y_mm),
+           field("difference_um", &MisclosureSummary::difference_um, "as the data stand"),
+           field("closure_um", &MisclosureSummary::closure_um, "null: nothing checks it"),
+           field("standard_uncertainty_um", &MisclosureSummary::standard_uncertainty_um));
 
 template <>
-inline constexpr auto kRecord<RepeatSummary> =
-    record("Repeat", "Two profiles of one line, at the station at which they differ most.",
-           field("a", &RepeatSummary::a), field("b", &RepeatSummary::b),
-           field("stations", &RepeatSummary::stations), field("x_mm", &RepeatSummary::x_mm),
-           field("y_mm", &RepeatSummary::y_mm),
-           field("difference_um", &RepeatSummary::difference_um),
-           field("standard_uncertainty_um", &RepeatSummary::standard_uncertainty_um),
-           field("limit", &RepeatSummary::limit, "of the ratio of the two"),
-           field("verdict", &RepeatSummary::verdict));
+inline constexpr auto kRecord<RepeatSummary> = record(
+    "Repeat", "Two profiles of one line, at the station at which they differ most.",
+    field("a", &RepeatSummary::a), field("b", &RepeatSummary::b),
+    field("stations", &RepeatSummary::stations), field("x_mm", &RepeatSummary::x_mm),
+    field("y_mm", &RepeatSummary::y_mm), field("difference_um", &RepeatSummary::difference_um),
+    field("standard_uncertainty_um", &RepeatSummary::standard_uncertainty_um),
+    field("limit", &RepeatSummary::limit, "of the ratio of the two"),
+    field("verdict", &RepeatSummary::verdict));
 
 template <>
 inline constexpr auto kRecord<ClosureSummary> = record(
@@ -110,27 +87,24 @@ inline constexpr auto kRecord<ClosureSummary> = record(
     field("limit", &ClosureSummary::limit, "of closure_um / standard_uncertainty_um"),
     field("tied", &ClosureSummary::tied, "heights that a reduction has made agree"),
     field("readings", &ClosureSummary::readings), field("repeats", &ClosureSummary::repeats),
-    field("suspects", &ClosureSummary::suspects,
-          "lines without any one of which the rest closes"),
+    field("suspects", &ClosureSummary::suspects, "lines without any one of which the rest closes"),
     field("notes", &ClosureSummary::notes));
 
 template <>
-inline constexpr auto kRecord<TravelSummary> =
-    record("Travel", "What the fitted profiles cover of the slide, and the lever that acts on it.",
-           field("lever", &TravelSummary::lever),
-           field("slide_min_mm", &TravelSummary::slide_min_mm),
-           field("slide_max_mm", &TravelSummary::slide_max_mm),
-           field("spindle_position_mm", &TravelSummary::spindle_position_mm,
-                 "null: no face was fitted"),
-           field("overhang_mm", &TravelSummary::overhang_mm,
-                 "null: no face was fitted, or faces of several overhangs"));
+inline constexpr auto kRecord<TravelSummary> = record(
+    "Travel", "What the fitted profiles cover of the slide, and the lever that acts on it.",
+    field("lever", &TravelSummary::lever), field("slide_min_mm", &TravelSummary::slide_min_mm),
+    field("slide_max_mm", &TravelSummary::slide_max_mm),
+    field("spindle_position_mm", &TravelSummary::spindle_position_mm, "null: no face was fitted"),
+    field("overhang_mm", &TravelSummary::overhang_mm,
+          "null: no face was fitted, or faces of several overhangs"));
 
 template <>
-inline constexpr auto kRecord<LowBandSummary> = record(
-    "LowBand", "The low band of one profile.", field("profile", &LowBandSummary::profile),
-    field("wavelet", &LowBandSummary::wavelet),
-    field("level", &LowBandSummary::level, "0: no low band, the profile as it is"),
-    field("boundary", &LowBandSummary::boundary), field("values", &LowBandSummary::values));
+inline constexpr auto kRecord<LowBandSummary> =
+    record("LowBand", "The low band of one profile.", field("profile", &LowBandSummary::profile),
+           field("wavelet", &LowBandSummary::wavelet),
+           field("level", &LowBandSummary::level, "0: no low band, the profile as it is"),
+           field("boundary", &LowBandSummary::boundary), field("values", &LowBandSummary::values));
 
 template <>
 inline constexpr auto kRecord<RunningSeries> = record(
@@ -143,15 +117,14 @@ inline constexpr auto kRecord<RunningSeries> = record(
     field("low_band", &RunningSeries::low_band));
 
 template <>
-inline constexpr auto kRecord<Ranking> =
-    record("Ranking", "Pearson's coefficient of an effect and a profile, Eqs. (6), (19), (20).",
-           field("effect", &Ranking::effect), field("profile", &Ranking::profile),
-           field("raw", &Ranking::raw), field("low_band", &Ranking::low_band),
-           field("lag_mm", &Ranking::lag_mm, "at which the low-band coefficient is largest"),
-           field("lag_coefficient", &Ranking::lag_coefficient),
-           field("effective_observations", &Ranking::effective_observations),
-           field("p_value", &Ranking::p_value, "of `low_band`"),
-           field("running", &Ranking::running));
+inline constexpr auto kRecord<Ranking> = record(
+    "Ranking", "Pearson's coefficient of an effect and a profile, Eqs. (6), (19), (20).",
+    field("effect", &Ranking::effect), field("profile", &Ranking::profile),
+    field("raw", &Ranking::raw), field("low_band", &Ranking::low_band),
+    field("lag_mm", &Ranking::lag_mm, "at which the low-band coefficient is largest"),
+    field("lag_coefficient", &Ranking::lag_coefficient),
+    field("effective_observations", &Ranking::effective_observations),
+    field("p_value", &Ranking::p_value, "of `low_band`"), field("running", &Ranking::running));
 
 template <>
 inline constexpr auto kRecord<CandidateCorrelation> =
@@ -167,21 +140,21 @@ inline constexpr auto kRecord<Dominant> =
            field("agree", &Dominant::agree), field("doubt", &Dominant::doubt, "why none is named"));
 
 template <>
-inline constexpr auto kRecord<FittedParameter> = record(
-    "Parameter", "A parameter: value ± expanded_uncertainty, in `unit`.",
-    field("name", &FittedParameter::name), field("symbol", &FittedParameter::symbol),
-    field("standard_name", &FittedParameter::standard_name),
-    field("value", &FittedParameter::value, "null: not determined"),
-    field("unit", &FittedParameter::unit),
-    field("standard_uncertainty", &FittedParameter::standard_uncertainty),
-    field("expanded_uncertainty", &FittedParameter::expanded_uncertainty,
-          "coverage_factor * standard_uncertainty, 95.45 % coverage"),
-    field("coverage_factor", &FittedParameter::coverage_factor,
-          "Student's, for degrees_of_freedom"),
-    field("degrees_of_freedom", &FittedParameter::degrees_of_freedom,
-          "null beside a coverage_factor: infinitely many"),
-    field("identifiable", &FittedParameter::identifiable),
-    field("at_bound", &FittedParameter::at_bound));
+inline constexpr auto kRecord<FittedParameter> =
+    record("Parameter", "A parameter: value ± expanded_uncertainty, in `unit`.",
+           field("name", &FittedParameter::name), field("symbol", &FittedParameter::symbol),
+           field("standard_name", &FittedParameter::standard_name),
+           field("value", &FittedParameter::value, "null: not determined"),
+           field("unit", &FittedParameter::unit),
+           field("standard_uncertainty", &FittedParameter::standard_uncertainty),
+           field("expanded_uncertainty", &FittedParameter::expanded_uncertainty,
+                 "coverage_factor * standard_uncertainty, 95.45 % coverage"),
+           field("coverage_factor", &FittedParameter::coverage_factor,
+                 "Student's, for degrees_of_freedom"),
+           field("degrees_of_freedom", &FittedParameter::degrees_of_freedom,
+                 "null beside a coverage_factor: infinitely many"),
+           field("identifiable", &FittedParameter::identifiable),
+           field("at_bound", &FittedParameter::at_bound));
 
 template <>
 inline constexpr auto kRecord<UndeterminedDirection> =
@@ -190,15 +163,14 @@ inline constexpr auto kRecord<UndeterminedDirection> =
            field("advice", &UndeterminedDirection::advice, "what would determine it"));
 
 template <>
-inline constexpr auto kRecord<DeterminedCombination> =
-    record("Determined", "What the data say of parameters they cannot tell apart.",
-           field("combination", &DeterminedCombination::combination),
-           field("value", &DeterminedCombination::value),
-           field("unit", &DeterminedCombination::unit),
-           field("standard_uncertainty", &DeterminedCombination::standard_uncertainty),
-           field("expanded_uncertainty", &DeterminedCombination::expanded_uncertainty),
-           field("coverage_factor", &DeterminedCombination::coverage_factor),
-           field("degrees_of_freedom", &DeterminedCombination::degrees_of_freedom));
+inline constexpr auto kRecord<DeterminedCombination> = record(
+    "Determined", "What the data say of parameters they cannot tell apart.",
+    field("combination", &DeterminedCombination::combination),
+    field("value", &DeterminedCombination::value), field("unit", &DeterminedCombination::unit),
+    field("standard_uncertainty", &DeterminedCombination::standard_uncertainty),
+    field("expanded_uncertainty", &DeterminedCombination::expanded_uncertainty),
+    field("coverage_factor", &DeterminedCombination::coverage_factor),
+    field("degrees_of_freedom", &DeterminedCombination::degrees_of_freedom));
 
 template <>
 inline constexpr auto kRecord<Identifiability> =
@@ -209,16 +181,15 @@ inline constexpr auto kRecord<Identifiability> =
            field("determined", &Identifiability::determined));
 
 template <>
-inline constexpr auto kRecord<NoiseSummary> =
-    record("Noise", "The noise of one profile as the fit has it.",
-           field("profile", &NoiseSummary::profile), field("scaling", &NoiseSummary::scaling),
-           field("order", &NoiseSummary::order, "p of AR(p)"),
-           field("standard_deviation_um", &NoiseSummary::standard_deviation_um,
-                 "of one low-band value"),
-           field("standard_deviation_urad", &NoiseSummary::standard_deviation_urad),
-           field("correlation_mm", &NoiseSummary::correlation_mm, "integral correlation length"),
-           field("effective_observations", &NoiseSummary::effective_observations),
-           field("ljung_box_p", &NoiseSummary::ljung_box_p, "of the whitened residual"));
+inline constexpr auto kRecord<NoiseSummary> = record(
+    "Noise", "The noise of one profile as the fit has it.",
+    field("profile", &NoiseSummary::profile), field("scaling", &NoiseSummary::scaling),
+    field("order", &NoiseSummary::order, "p of AR(p)"),
+    field("standard_deviation_um", &NoiseSummary::standard_deviation_um, "of one low-band value"),
+    field("standard_deviation_urad", &NoiseSummary::standard_deviation_urad),
+    field("correlation_mm", &NoiseSummary::correlation_mm, "integral correlation length"),
+    field("effective_observations", &NoiseSummary::effective_observations),
+    field("ljung_box_p", &NoiseSummary::ljung_box_p, "of the whitened residual"));
 
 template <>
 inline constexpr auto kRecord<Contribution> =
@@ -229,12 +200,11 @@ inline constexpr auto kRecord<Contribution> =
            field("share", &Contribution::share, "of the sum of mean squares of all effects"));
 
 template <>
-inline constexpr auto kRecord<ResidualSummary> =
-    record("Residual", "Residual of one profile in the low band.",
-           field("profile", &ResidualSummary::profile), field("role", &ResidualSummary::role),
-           field("rms_um", &ResidualSummary::rms_um), field("pv_um", &ResidualSummary::pv_um),
-           field("rms_urad", &ResidualSummary::rms_urad),
-           field("pv_urad", &ResidualSummary::pv_urad));
+inline constexpr auto kRecord<ResidualSummary> = record(
+    "Residual", "Residual of one profile in the low band.",
+    field("profile", &ResidualSummary::profile), field("role", &ResidualSummary::role),
+    field("rms_um", &ResidualSummary::rms_um), field("pv_um", &ResidualSummary::pv_um),
+    field("rms_urad", &ResidualSummary::rms_urad), field("pv_urad", &ResidualSummary::pv_urad));
 
 template <>
 inline constexpr auto kRecord<StraightnessError> =
@@ -273,24 +243,23 @@ inline constexpr auto kRecord<StraightnessStation> =
            field("expanded_uncertainty_um", &StraightnessStation::expanded_uncertainty_um));
 
 template <>
-inline constexpr auto kRecord<Straightness> =
-    record("Straightness", "Straightness error of the slide, E_ZX, ISO 230-1.",
-           field("end_point_um", &Straightness::end_point_um),
-           field("least_squares_um", &Straightness::least_squares_um),
-           field("minimum_zone_um", &Straightness::minimum_zone_um),
-           field("expanded_uncertainty_um", &Straightness::expanded_uncertainty_um,
-                 "of end_point_um"),
-           field("stations", &Straightness::stations, "of slides"),
-           field("errors", &Straightness::errors, "one for each reference line"),
-           field("curve", &Straightness::curve),
-           field("reason", &Straightness::reason, "why there is none"));
+inline constexpr auto kRecord<Straightness> = record(
+    "Straightness", "Straightness error of the slide, E_ZX, ISO 230-1.",
+    field("end_point_um", &Straightness::end_point_um),
+    field("least_squares_um", &Straightness::least_squares_um),
+    field("minimum_zone_um", &Straightness::minimum_zone_um),
+    field("expanded_uncertainty_um", &Straightness::expanded_uncertainty_um, "of end_point_um"),
+    field("stations", &Straightness::stations, "of slides"),
+    field("errors", &Straightness::errors, "one for each reference line"),
+    field("curve", &Straightness::curve),
+    field("reason", &Straightness::reason, "why there is none"));
 
 template <>
-inline constexpr auto kRecord<BudgetLine> = record(
-    "BudgetLine", "What one source contributes to an uncertainty.",
-    field("source", &BudgetLine::source),
-    field("type", &BudgetLine::type, "GUM 3.3.4: A by statistics, B otherwise"),
-    field("standard_uncertainty", &BudgetLine::standard_uncertainty));
+inline constexpr auto kRecord<BudgetLine> =
+    record("BudgetLine", "What one source contributes to an uncertainty.",
+           field("source", &BudgetLine::source),
+           field("type", &BudgetLine::type, "GUM 3.3.4: A by statistics, B otherwise"),
+           field("standard_uncertainty", &BudgetLine::standard_uncertainty));
 
 template <>
 inline constexpr auto kRecord<Budget> =
@@ -303,8 +272,7 @@ inline constexpr auto kRecord<ModelResult> = record(
     "ModelResult", "A model and what the data say of it.", field("effects", &ModelResult::effects),
     field("converged", &ModelResult::converged),
     field("message", &ModelResult::message, "the solver's, where it did not converge"),
-    field("rms_um", &ModelResult::rms_um,
-          "residual of the fitted height profiles in the low band"),
+    field("rms_um", &ModelResult::rms_um, "residual of the fitted height profiles in the low band"),
     field("rms_urad", &ModelResult::rms_urad, "and of the slope profiles"),
     field("observations", &ModelResult::observations),
     field("effective_observations", &ModelResult::effective_observations),
@@ -324,17 +292,15 @@ inline constexpr auto kRecord<ModelResult> = record(
     field("notes", &ModelResult::notes));
 
 template <>
-inline constexpr auto kRecord<SquarenessCheck> =
-    record("SquarenessCheck", "Squareness of the final model against the run-out, Eq. (21).",
-           field("fit_rad", &SquarenessCheck::fit_rad),
-           field("fit_U_rad", &SquarenessCheck::fit_U_rad),
-           field("indirect_rad", &SquarenessCheck::indirect_rad),
-           field("indirect_U_rad", &SquarenessCheck::indirect_U_rad),
-           field("En", &SquarenessCheck::En), field("verdict", &SquarenessCheck::verdict),
-           field("reason", &SquarenessCheck::reason),
-           field("travel_mm", &SquarenessCheck::travel_mm, "over which the squareness acts"),
-           field("fit_amplitude_um", &SquarenessCheck::fit_amplitude_um),
-           field("indirect_amplitude_um", &SquarenessCheck::indirect_amplitude_um));
+inline constexpr auto kRecord<SquarenessCheck> = record(
+    "SquarenessCheck", "Squareness of the final model against the run-out, Eq. (21).",
+    field("fit_rad", &SquarenessCheck::fit_rad), field("fit_U_rad", &SquarenessCheck::fit_U_rad),
+    field("indirect_rad", &SquarenessCheck::indirect_rad),
+    field("indirect_U_rad", &SquarenessCheck::indirect_U_rad), field("En", &SquarenessCheck::En),
+    field("verdict", &SquarenessCheck::verdict), field("reason", &SquarenessCheck::reason),
+    field("travel_mm", &SquarenessCheck::travel_mm, "over which the squareness acts"),
+    field("fit_amplitude_um", &SquarenessCheck::fit_amplitude_um),
+    field("indirect_amplitude_um", &SquarenessCheck::indirect_amplitude_um));
 
 template <>
 inline constexpr auto kRecord<ProfileCheck> =
@@ -346,10 +312,9 @@ template <>
 inline constexpr auto kRecord<HeldOutCheck> =
     record("HeldOutCheck", "Whether a held-out profile lies where the model predicts it.",
            field("profile", &HeldOutCheck::profile), field("chi2", &HeldOutCheck::chi2),
-           field("p_value", &HeldOutCheck::p_value),
-           field("largest_um", &HeldOutCheck::largest_um),
-           field("largest_urad", &HeldOutCheck::largest_urad),
-           field("at_mm", &HeldOutCheck::at_mm), field("verdict", &HeldOutCheck::verdict));
+           field("p_value", &HeldOutCheck::p_value), field("largest_um", &HeldOutCheck::largest_um),
+           field("largest_urad", &HeldOutCheck::largest_urad), field("at_mm", &HeldOutCheck::at_mm),
+           field("verdict", &HeldOutCheck::verdict));
 
 template <>
 inline constexpr auto kRecord<Crosscheck> =
@@ -358,13 +323,12 @@ inline constexpr auto kRecord<Crosscheck> =
            field("held_out", &Crosscheck::held_out));
 
 template <>
-inline constexpr auto kRecord<Conformity> =
-    record("Conformity", "A value against its limit, with U as guard band (ISO 14253-1).",
-           field("what", &Conformity::what), field("value_um", &Conformity::value_um),
-           field("U_um", &Conformity::U_um), field("limit_um", &Conformity::limit_um),
-           field("value_um_per_m", &Conformity::value_um_per_m),
-           field("U_um_per_m", &Conformity::U_um_per_m),
-           field("limit_um_per_m", &Conformity::limit_um_per_m),
-           field("verdict", &Conformity::verdict));
+inline constexpr auto kRecord<Conformity> = record(
+    "Conformity", "A value against its limit, with U as guard band (ISO 14253-1).",
+    field("what", &Conformity::what), field("value_um", &Conformity::value_um),
+    field("U_um", &Conformity::U_um), field("limit_um", &Conformity::limit_um),
+    field("value_um_per_m", &Conformity::value_um_per_m),
+    field("U_um_per_m", &Conformity::U_um_per_m),
+    field("limit_um_per_m", &Conformity::limit_um_per_m), field("verdict", &Conformity::verdict));
 
 }  // namespace slideway

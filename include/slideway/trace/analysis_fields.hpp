@@ -3,33 +3,28 @@
 #include "slideway/identify/result_fields.hpp"
 #include "slideway/trace/analysis.hpp"
 
-/// Texts and members of what the closed loop adds to a result, and of the whole report.
+/// Members of what the closed loop adds to a result, and of the whole report.
 namespace slideway {
 
 template <>
-inline constexpr std::array<std::string_view, 5> kTexts<TraceVerdict>{
-    "nothing_missing", "explained", "ambiguous", "unnamed", "not_identifiable"};
+inline constexpr auto kRecord<TriedEffect> =
+    record("Tried", "A candidate of the loop.", field("effect", &TriedEffect::effect),
+           field("delta_bic", &TriedEffect::delta_bic), field("p_value", &TriedEffect::p_value),
+           field("rms_um", &TriedEffect::rms_um), field("parameters", &TriedEffect::parameters),
+           field("refused", &TriedEffect::refused, "why it was not accepted; null: a rival"));
 
 template <>
-inline constexpr auto kRecord<TriedEffect> = record(
-    "Tried", "A candidate of the loop.", field("effect", &TriedEffect::effect),
-    field("delta_bic", &TriedEffect::delta_bic), field("p_value", &TriedEffect::p_value),
-    field("rms_um", &TriedEffect::rms_um), field("parameters", &TriedEffect::parameters),
-    field("refused", &TriedEffect::refused, "why it was not accepted; null: a rival"));
-
-template <>
-inline constexpr auto kRecord<TraceRound> =
-    record("Round", "One effect that entered the model.", field("accepted", &TraceRound::accepted),
-           field("ambiguous_with", &TraceRound::ambiguous_with),
-           field("before_rms_um", &TraceRound::before_rms_um),
-           field("after_rms_um", &TraceRound::after_rms_um),
-           field("before_rms_urad", &TraceRound::before_rms_urad),
-           field("after_rms_urad", &TraceRound::after_rms_urad),
-           field("before_holdout_rms_um", &TraceRound::before_holdout_rms_um),
-           field("after_holdout_rms_um", &TraceRound::after_holdout_rms_um),
-           field("delta_bic", &TraceRound::delta_bic), field("p_value", &TraceRound::p_value),
-           field("parameters", &TraceRound::parameters),
-           field("candidates", &TraceRound::candidates));
+inline constexpr auto kRecord<TraceRound> = record(
+    "Round", "One effect that entered the model.", field("accepted", &TraceRound::accepted),
+    field("ambiguous_with", &TraceRound::ambiguous_with),
+    field("before_rms_um", &TraceRound::before_rms_um),
+    field("after_rms_um", &TraceRound::after_rms_um),
+    field("before_rms_urad", &TraceRound::before_rms_urad),
+    field("after_rms_urad", &TraceRound::after_rms_urad),
+    field("before_holdout_rms_um", &TraceRound::before_holdout_rms_um),
+    field("after_holdout_rms_um", &TraceRound::after_holdout_rms_um),
+    field("delta_bic", &TraceRound::delta_bic), field("p_value", &TraceRound::p_value),
+    field("parameters", &TraceRound::parameters), field("candidates", &TraceRound::candidates));
 
 template <>
 inline constexpr auto kRecord<Unnamed> =
@@ -45,9 +40,10 @@ inline constexpr auto kRecord<Unnamed> =
            field("odd_share", &Unnamed::odd_share));
 
 template <>
-inline constexpr auto kRecord<NotTestable> =
-    record("NotTestable", "An effect the data cannot be asked for.",
-           field("effect", &NotTestable::effect), field("needs", &NotTestable::needs));
+inline constexpr auto kRecord<NotTestable> = record("NotTestable",
+                                                    "An effect the data cannot be asked for.",
+                                                    field("effect", &NotTestable::effect),
+                                                    field("needs", &NotTestable::needs));
 
 template <>
 inline constexpr auto kRecord<NotSeparable> =
@@ -60,9 +56,10 @@ inline constexpr auto kRecord<LeftEffect> =
            field("effect", &LeftEffect::effect), field("reason", &LeftEffect::reason));
 
 template <>
-inline constexpr auto kRecord<LimitAtShape> =
-    record("LimitAtShape", "A detection limit at one shape.", field("shape", &LimitAtShape::shape),
-           field("value", &LimitAtShape::value));
+inline constexpr auto kRecord<LimitAtShape> = record("LimitAtShape",
+                                                     "A detection limit at one shape.",
+                                                     field("shape", &LimitAtShape::shape),
+                                                     field("value", &LimitAtShape::value));
 
 template <>
 inline constexpr auto kRecord<DetectionLimit> =
@@ -103,32 +100,36 @@ inline constexpr auto kRecord<EffectInModel> = record(
 
 /// A member of the setup inside a ProfileSetup.
 template <auto member>
-inline constexpr auto kOfSetup = [](auto& each) -> auto& { return each.setup.*member; };
+inline constexpr auto kOfSetup = [](auto& each) -> auto& {
+  return each.setup.*member;
+};
 
 template <>
-inline constexpr auto kRecord<ProfileSetup> =
-    record("Setup", "How one profile was cut and measured.",
-           field("profile", &ProfileSetup::profile), field("center_mm", kOfSetup<&Setup::center_mm>),
-           field("spindle_position_mm", kOfSetup<&Setup::spindle_position_mm>),
-           field("z_mm", kOfSetup<&Setup::z_mm>), field("overhang_mm", kOfSetup<&Setup::overhang_mm>),
-           field("base_mm", kOfSetup<&Setup::base_mm>),
-           field("feed_mm_per_min", kOfSetup<&Setup::feed_mm_per_min>),
-           field("spindle_rpm", kOfSetup<&Setup::spindle_rpm>),
-           field("cut_direction", kOfSetup<&Setup::cut_direction>),
-           field("cut_radius_mm", kOfSetup<&Setup::cut_radius_mm>),
-           field("start_s", kOfSetup<&Setup::start_s>),
-           field("traverse_mm_per_s", kOfSetup<&Setup::traverse_mm_per_s>));
+inline constexpr auto kRecord<ProfileSetup> = record(
+    "Setup", "How one profile was cut and measured.", field("profile", &ProfileSetup::profile),
+    field("center_mm", kOfSetup<&Setup::center_mm>),
+    field("spindle_position_mm", kOfSetup<&Setup::spindle_position_mm>),
+    field("z_mm", kOfSetup<&Setup::z_mm>), field("overhang_mm", kOfSetup<&Setup::overhang_mm>),
+    field("base_mm", kOfSetup<&Setup::base_mm>),
+    field("feed_mm_per_min", kOfSetup<&Setup::feed_mm_per_min>),
+    field("spindle_rpm", kOfSetup<&Setup::spindle_rpm>),
+    field("cut_direction", kOfSetup<&Setup::cut_direction>),
+    field("cut_radius_mm", kOfSetup<&Setup::cut_radius_mm>),
+    field("start_s", kOfSetup<&Setup::start_s>),
+    field("traverse_mm_per_s", kOfSetup<&Setup::traverse_mm_per_s>));
 
 template <>
-inline constexpr auto kRecord<Body> =
-    record("Body", "One body of the lower-body array, Eq. (1).", field("name", &Body::name),
-           field("lower", &Body::lower), field("axis", &Body::axis));
+inline constexpr auto kRecord<Body> = record("Body", "One body of the lower-body array, Eq. (1).",
+                                             field("name", &Body::name),
+                                             field("lower", &Body::lower),
+                                             field("axis", &Body::axis));
 
 template <>
-inline constexpr auto kRecord<PriorSummary> =
-    record("Prior", "A prior of the problem file.", field("parameter", &PriorSummary::parameter),
-           field("value", &PriorSummary::value),
-           field("standard_uncertainty", &PriorSummary::standard_uncertainty));
+inline constexpr auto kRecord<PriorSummary> = record("Prior", "A prior of the problem file.",
+                                                     field("parameter", &PriorSummary::parameter),
+                                                     field("value", &PriorSummary::value),
+                                                     field("standard_uncertainty",
+                                                           &PriorSummary::standard_uncertainty));
 
 template <>
 inline constexpr auto kRecord<Runout> =
@@ -137,28 +138,26 @@ inline constexpr auto kRecord<Runout> =
            field("standard_uncertainty_um", &Runout::standard_uncertainty_um));
 
 template <>
-inline constexpr auto kRecord<OptionsSummary> =
-    record("Options", "What the problem file asked for.", field("lever", &OptionsSummary::lever),
-           field("bodies", &OptionsSummary::bodies), field("priors", &OptionsSummary::priors),
-           field("runout", &OptionsSummary::runout),
-           field("candidates", &OptionsSummary::candidates),
-           field("max_effects", &OptionsSummary::max_effects),
-           field("significance", &OptionsSummary::significance));
+inline constexpr auto kRecord<OptionsSummary> = record(
+    "Options", "What the problem file asked for.", field("lever", &OptionsSummary::lever),
+    field("bodies", &OptionsSummary::bodies), field("priors", &OptionsSummary::priors),
+    field("runout", &OptionsSummary::runout), field("candidates", &OptionsSummary::candidates),
+    field("max_effects", &OptionsSummary::max_effects),
+    field("significance", &OptionsSummary::significance));
 
 template <>
-inline constexpr auto kRecord<PredictedFlatness> =
-    record("WhatIf", "Flatness of a profile, measured or with effects taken out.",
-           field("profile", &PredictedFlatness::profile),
-           field("corrected", &PredictedFlatness::corrected, "\"\": as measured; \"all\""),
-           field("pv_um", &PredictedFlatness::pv_um), field("rms_um", &PredictedFlatness::rms_um),
-           field("pv_urad", &PredictedFlatness::pv_urad),
-           field("rms_urad", &PredictedFlatness::rms_urad));
+inline constexpr auto kRecord<PredictedFlatness> = record(
+    "WhatIf", "Flatness of a profile, measured or with effects taken out.",
+    field("profile", &PredictedFlatness::profile),
+    field("corrected", &PredictedFlatness::corrected, "\"\": as measured; \"all\""),
+    field("pv_um", &PredictedFlatness::pv_um), field("rms_um", &PredictedFlatness::rms_um),
+    field("pv_urad", &PredictedFlatness::pv_urad), field("rms_urad", &PredictedFlatness::rms_urad));
 
 template <>
-inline constexpr auto kRecord<Spectrum> =
-    record("Spectrum", "Amplitude of each frequency.",
-           drawn("cycles_per_mm", &Spectrum::cycles_per_sample),
-           drawn("amplitude", &Spectrum::amplitude));
+inline constexpr auto kRecord<Spectrum> = record("Spectrum", "Amplitude of each frequency.",
+                                                 drawn("cycles_per_mm",
+                                                       &Spectrum::cycles_per_sample),
+                                                 drawn("amplitude", &Spectrum::amplitude));
 
 template <>
 inline constexpr auto kRecord<Envelope> =
@@ -191,16 +190,21 @@ inline constexpr auto kRecord<ProfileCurves> = record(
     field("details", &ProfileCurves::details, "d_1 ..."));
 
 template <>
-inline constexpr auto kRecord<Curves> =
-    record("Curves", "What is drawn.", field("profiles", &Curves::profiles));
+inline constexpr auto kRecord<Curves> = record("Curves", "What is drawn.",
+                                               field("profiles", &Curves::profiles));
 
 template <auto member>
-inline constexpr auto kOfResult = [](auto& analysis) -> auto& { return analysis.result.*member; };
+inline constexpr auto kOfResult = [](auto& analysis) -> auto& {
+  return analysis.result.*member;
+};
 template <auto member>
-inline constexpr auto kOfRanking =
-    [](auto& analysis) -> auto& { return analysis.result.ranking.*member; };
+inline constexpr auto kOfRanking = [](auto& analysis) -> auto& {
+  return analysis.result.ranking.*member;
+};
 template <auto member>
-inline constexpr auto kOfDetails = [](auto& analysis) -> auto& { return analysis.details.*member; };
+inline constexpr auto kOfDetails = [](auto& analysis) -> auto& {
+  return analysis.details.*member;
+};
 
 template <>
 inline constexpr auto kRecord<Analysis> = record(

@@ -88,6 +88,9 @@ enum class TraceVerdict {
   unnamed,           // structure is left that no effect of the catalogue explains
   not_identifiable,  // a form is there of which the data cannot tell what makes it
 };
+template <>
+inline constexpr std::array<std::string_view, 5> kTexts<TraceVerdict>{
+    "nothing_missing", "explained", "ambiguous", "unnamed", "not_identifiable"};
 
 /// The smallest change of one gate within its range that would have changed the verdict.
 struct Fragile {

@@ -20,9 +20,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from slideway import _slideway
+from slideway._made import made
 from slideway._problem import Problem, source
 from slideway._slideway import DataError, UsageError, __version__
-from slideway.report import Report, made
+from slideway.report import Report
 
 __all__ = [
     "ColumnRanking",
@@ -135,7 +136,7 @@ def rank(
     *,
     data: str | os.PathLike[str] | None = None,
 ) -> Report:
-    """The correlations alone, Eqs. (6), (19), (20): a report without ``fit`` and ``trace``.
+    """The correlations alone, Eqs. (6), (19), (20): a report without models.
 
     Arguments and errors as in `identify`.
     """

@@ -1,0 +1,64 @@
+"""schema_test.py PROGRAM SOURCE: every report of every problem that ships is what the published
+schema says. Exit code 77 where jsonschema is not installed."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+try:
+    import jsonschema
+except ImportError:
+    sys.exit(77)
+
+program, source = sys.argv[1], pathlib.Path(sys.argv[2])
+schema = json.loads((source / "docs/report.schema.json").read_text(encoding="utf-8"))
+jsonschema.Draft202012Validator.check_schema(schema)
+validator = jsonschema.Draft202012Validator(schema)
+
+
+def undeclared(value, described, place=""):
+    """Keys of a document that its schema does not describe."""
+    if "anyOf" in described:
+        described = described["anyOf"][0]
+    if "$ref" in described:
+        described = schema["$defs"][described["$ref"].rsplit("/", 1)[1]]
+    if isinstance(value, list) and "items" in described:
+        for index, each in enumerate(value):
+            yield from undeclared(each, described["items"], f"{place}[{index}]")
+    if isinstance(value, dict) and "properties" in described:
+        for key, each in value.items():
+            if key not in described["properties"]:
+                yield f"{place}.{key}"
+            else:
+                yield from undeclared(each, described["properties"][key], f"{place}.{key}")
+
+
+def faults(report):
+    for error in validator.iter_errors(report):
+        yield f"{error.json_path}: {error.message}"
+    yield from undeclared(report, schema)
+
+
+def reports():
+    """Name and report of every problem by every command."""
+    for problem in sorted(source.glob("problems/*/problem.toml")):
+        for options in (["identify"], ["identify", "--no-trace"], ["fit"], ["rank"]):
+            command = [program, *options, problem, "--json", "-"]
+            done = subprocess.run(command, capture_output=True, text=True, check=True)
+            yield f"{' '.join(options)} {problem.parent.name}", json.loads(done.stdout)
+    problem = source / "problems/three-levels/problem.toml"
+    with tempfile.TemporaryDirectory() as folder:
+        manifest, results = pathlib.Path(folder, "m.csv"), pathlib.Path(folder, "r.jsonl")
+        manifest.write_text(f"id,problem\na,{problem}\n", encoding="utf-8")
+        subprocess.run([program, "batch", manifest, "--out", results, "--quiet"], check=True)
+        yield "batch", json.loads(results.read_text(encoding="utf-8"))["report"]
+
+
+failed = 0
+for name, report in reports():
+    for fault in faults(report):
+        print(f"{name}: {fault}")
+        failed += 1
+sys.exit(failed > 0)
