@@ -46,7 +46,8 @@ class RankCommand : public ProblemCommand {
     keep(input());
     const std::vector<ColumnRanking> ranking =
         rank_columns(input(), signal_, candidates_, options_);
-    report([&] { return text(ranking); }, [&] { return json(ranking); });
+    report([&] { return text(ranking); }, [&] { return json(ranking); },
+           [&] { return html_report(json(ranking), input()); });
     return kDone;
   }
 

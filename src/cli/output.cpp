@@ -30,12 +30,33 @@ void write_output(const std::string& path, std::string_view text) {
     write_file(path, text);
 }
 
+namespace {
+
+void require_writable(const std::filesystem::path& output) {
+  const auto refuse = [&](int error) {
+    throw std::runtime_error(output.string() + ": cannot be written: " +
+                             std::generic_category().message(error));
+  };
+  std::error_code ignored;
+  if (std::filesystem::is_directory(output, ignored)) refuse(EISDIR);
+  const std::filesystem::path folder = output.has_parent_path() ? output.parent_path() : ".";
+  if (std::filesystem::exists(folder, ignored) && !std::filesystem::is_directory(folder, ignored))
+    refuse(ENOTDIR);
+  const bool is_special = std::filesystem::is_other(output, ignored) ||
+                          std::filesystem::is_character_file(output, ignored);
+  if (!is_special && access(folder.c_str(), W_OK) != 0) refuse(errno);
+}
+
+}  // namespace
+
 void keep_input(const std::filesystem::path& input, const std::filesystem::path& output) {
+  if (output.empty() || output == "-") return;
   std::error_code ignored;
   if (std::filesystem::is_regular_file(input, ignored) &&
       std::filesystem::equivalent(input, output, ignored))
     throw UsageError(output.string() +
                      ": is the input, which would be lost; accepted: another name");
+  require_writable(output);
 }
 
 bool obeys_escapes(Stream stream) {

@@ -13,7 +13,9 @@ void print(std::string_view text);
 /// Writes a file, or stdout if the path is "-". @throws std::runtime_error
 void write_output(const std::string& path, std::string_view text);
 
-/// @throws UsageError  the output would replace the input
+/// Looks at where an output goes before the work is done.
+/// @throws UsageError          it would replace the input
+/// @throws std::runtime_error  it cannot be written: its folder is missing, it is a folder
 void keep_input(const std::filesystem::path& input, const std::filesystem::path& output);
 
 enum class Stream { out, err };

@@ -44,13 +44,9 @@ void ReportCommand::keep(const std::filesystem::path& input) const {
   keep_input(input, html_);
 }
 
-void ReportCommand::report(const std::function<std::string()>& text,
-                           const std::function<std::string()>& json) const {
-  if (wants_json()) {
-    const std::string document = json();
-    if (!json_.empty()) write_output(json_, document);
-    if (!html_.empty()) write_output(html_, html_report(document));
-  }
+void ReportCommand::report(const Make& text, const Make& json, const Make& html) const {
+  if (!json_.empty()) write_output(json_, json());
+  if (!html_.empty()) write_output(html_, html());
   if (!is_quiet() && json_ != "-" && html_ != "-") print_report(text());
 }
 
@@ -78,6 +74,10 @@ ProblemCommand::ProblemCommand(std::string name, std::string arguments, std::str
                 "what ${SLIDEWAY_DATA} in the problem file stands for");
   add_options()("ignore-checksum", po::bool_switch(&ignore_checksum_),
                 "read a file whose checksum is wrong; the report then says so");
+  add_options()("full", po::bool_switch(&full_),
+                "print all that was found, not the verdict and the numbers alone");
+  add_options()("curves", po::bool_switch(&curves_),
+                "put what the page draws into the JSON, too; --html implies it");
 }
 
 void ProblemCommand::add_strict() {
@@ -91,13 +91,18 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
     StageLine line(!is_quiet());
     const std::vector<Profile> profiles = profiles_of(problem, ignore_checksum_, line);
     line.show("fitting the declared model");
-    return analyse(problem, profiles, {scope, closes_loop, closes_loop || wants_json()},
+    const bool with_curves = curves_ || !page().empty() || full_;
+    return analyse(problem, profiles,
+                   {.scope = scope,
+                    .closes_loop = closes_loop,
+                    .with_details = with_curves || wants_json(),
+                    .with_curves = with_curves},
                    [&](const std::string& stage, double done) {
                      line.show("closing the loop: " + stage, done);
                    });
   }();
-  report([&] { return text_report(analysis); },
-         [&] { return json_report(analysis); });
+  report([&] { return text_report(analysis, {.full = full_, .page = page()}); },
+         [&] { return json_report(analysis); }, [&] { return html_report(analysis); });
   return strict_ && is_negative(analysis) ? kNegativeVerdict : kDone;
 }
 

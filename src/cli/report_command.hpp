@@ -19,11 +19,12 @@ class ReportCommand : public Command {
  protected:
   ReportCommand(std::string name, std::string arguments, std::string summary);
 
-  /// Makes and writes the outputs that the options request.
-  void report(const std::function<std::string()>& text,
-              const std::function<std::string()>& json) const;
+  using Make = std::function<std::string()>;
 
-  /// Adds --html: the report() of this command is a document html_report() knows.
+  /// Makes and writes the outputs that the options request. REQUIRES html where add_html() was
+  /// called.
+  void report(const Make& text, const Make& json, const Make& html = {}) const;
+
   void add_html();
 
   /// @throws UsageError  an output would replace the input
@@ -36,7 +37,9 @@ class ReportCommand : public Command {
   /// A document as --json writes it; what is no UTF-8 in it, a file's name, is replaced.
   static std::string document_text(const nlohmann::ordered_json& document);
 
-  [[nodiscard]] bool wants_json() const { return !json_.empty() || !html_.empty(); }
+  [[nodiscard]] bool wants_json() const { return !json_.empty(); }
+  /// Where the page goes; "": none is asked for.
+  [[nodiscard]] const std::string& page() const { return html_; }
 
  private:
   std::string json_, html_;
@@ -56,7 +59,7 @@ class ProblemCommand : public ReportCommand {
 
  private:
   std::string input_, data_;
-  bool strict_ = false, ignore_checksum_ = false;
+  bool strict_ = false, ignore_checksum_ = false, full_ = false, curves_ = false;
 };
 
 }  // namespace slideway

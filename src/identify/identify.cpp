@@ -53,18 +53,12 @@ InputSummary summarise_input(const Profile& profile) {
   return out;
 }
 
-TravelSummary summarise_travel(Lever lever, const std::vector<const Observation*>& fitted,
-                               const Machine& machine) {
-  TravelSummary out;
-  out.lever = lever;
-  out.slide_min_mm = std::numeric_limits<double>::infinity();
-  out.slide_max_mm = -out.slide_min_mm;
+TravelSummary summarise_travel(Lever lever, const Model& model) {
+  const SlideRange travel = measured_travel(model);
+  TravelSummary out{lever, travel.least, travel.greatest, {}, {}};
   bool one_overhang = true;
-  for (const Observation* observation : fitted) {
+  for (const Observation* observation : fitted_observations(model)) {
     const Setup& setup = observation->profile->setup;
-    const SlideRange range = slide_range(*observation->profile, machine);
-    out.slide_min_mm = std::min(out.slide_min_mm, range.least);
-    out.slide_max_mm = std::max(out.slide_max_mm, range.greatest);
     if (setup.kind != Kind::face) continue;
     one_overhang = one_overhang && out.overhang_mm.value_or(setup.overhang_mm) == setup.overhang_mm;
     out.overhang_mm = setup.overhang_mm;
@@ -102,7 +96,7 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
   for (const Observation& observation : model.observations)
     result.low_band.push_back(summarise_low_band(observation));
   ModelResult summary = summarise(model, fit, {}, with_budget);
-  result.travel = summarise_travel(problem.lever, fitted_observations(model), model.machine);
+  result.travel = summarise_travel(problem.lever, model);
   if (scope != Scope::fit) {
     result.ranking = rank_effects(model, fit);
     result.dominant =

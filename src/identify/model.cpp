@@ -35,6 +35,19 @@ SlideRange slide_range(const Profile& profile, const Machine& machine) {
   return range;
 }
 
+SlideRange measured_travel(const Model& model) {
+  SlideRange out{INFINITY, -INFINITY};
+  for (const Observation& observation : model.observations) {
+    const Profile& profile = *observation.profile;
+    if (profile.role != Role::fit) continue;
+    const SlideRange own = slide_range(profile, model.machine);
+    const double foot = profile.setup.base_mm.value_or(0.0) / 2.0;
+    out.least = std::min(out.least, own.least - foot);
+    out.greatest = std::max(out.greatest, own.greatest + foot);
+  }
+  return out;
+}
+
 std::vector<Eigen::Index> left_out_values(const Observation& observation) {
   std::vector<Eigen::Index> out;
   for (Eigen::Index j = std::ssize(observation.nuisance_names); j < observation.nuisances.cols();

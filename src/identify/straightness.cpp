@@ -11,6 +11,7 @@ namespace slideway {
 namespace {
 
 constexpr Eigen::Index kPoints = 201;
+constexpr std::size_t kMostStations = 50;
 
 /// Deviation of each point from the least-squares line: deviations = matrix * heights.
 Eigen::MatrixXd least_squares_deviations(const Eigen::VectorXd& x) {
@@ -80,6 +81,107 @@ ReferenceLine minimum_zone(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
   return *best;
 }
 
+/// Where the straightness is evaluated: what one reading would see of it, and of it alone.
+class Locus {
+ public:
+  Locus(const Model& model, const ModelTerm& term, const Solution& fit, const Reported& reported,
+        Setup setup)
+      : model_(model), term_(term), fit_(fit), reported_(reported), setup_(std::move(setup)) {}
+
+  /// f_j at slide coordinates x; on a face x is turned into the radius.
+  [[nodiscard]] Eigen::MatrixXd columns(const Eigen::VectorXd& x) const {
+    const bool is_face = setup_.kind == Kind::face;
+    Setup setup = setup_;
+    const Eigen::VectorXd positions =
+        is_face ? Eigen::VectorXd(x.array() - setup.spindle_position_mm) : x;
+    setup.center_mm = 0.0;
+    setup.first_mm = positions[0];
+    setup.last_mm = positions[positions.size() - 1];
+    Eigen::MatrixXd out(x.size(), term_.effect->amplitudes());
+    term_.effect->columns(
+        {{positions.data(), static_cast<std::size_t>(positions.size())}, setup, model_.machine},
+        shapes_of(term_, fit_.estimate.shapes), out);
+    return out;
+  }
+
+  [[nodiscard]] double value(const Eigen::RowVectorXd& weighted) const {
+    return weighted.dot(
+        fit_.estimate.amplitudes.segment(term_.first_amplitude, weighted.size()));
+  }
+
+  [[nodiscard]] Spread spread(const Eigen::RowVectorXd& weighted) const {
+    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(fit_.uncertainty.basis.rows());
+    row.segment(term_.first_amplitude, weighted.size()) = weighted;
+    return reported_.spread(row);
+  }
+
+  /// Deviation at each x from the line through those at the ends of `travel`, µm.
+  [[nodiscard]] std::vector<QuantityValue> deviations(const Eigen::VectorXd& x,
+                                                      const SlideRange& travel) const {
+    if (x.size() == 0) return {};
+    const Eigen::MatrixXd own = columns(x),
+                          ends = columns(Eigen::Vector2d(travel.least, travel.greatest));
+    std::vector<QuantityValue> out(static_cast<std::size_t>(x.size()));
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      const double share = (x[i] - travel.least) / (travel.greatest - travel.least);
+      const Eigen::RowVectorXd row = own.row(i) - (1.0 - share) * ends.row(0) - share * ends.row(1);
+      Reported::set(value(row), spread(row), kMicrometre, out[static_cast<std::size_t>(i)]);
+    }
+    return out;
+  }
+
+ private:
+  const Model& model_;
+  const ModelTerm& term_;
+  const Solution& fit_;
+  const Reported& reported_;
+  Setup setup_;
+};
+
+Setup on_slide() {
+  Setup setup;
+  setup.kind = Kind::slide;
+  return setup;
+}
+
+/// Slide coordinates of the readings, of a bridge those of its feet; at most kMostStations.
+Eigen::VectorXd station_positions(const Model& model) {
+  std::vector<double> x;
+  for (const Observation* observation : fitted_observations(model)) {
+    const Profile& profile = *observation->profile;
+    if (profile.setup.kind != Kind::slide) continue;
+    const Stations stations = profile.stations(model.machine);
+    const double foot = profile.setup.base_mm.value_or(0.0) / 2.0;
+    for (Eigen::Index i = 0; i < stations.size(); ++i)
+      for (const double at : {stations.slide(i) - foot, stations.slide(i) + foot}) x.push_back(at);
+  }
+  if (x.empty()) return {};
+  std::ranges::sort(x);
+  const double same = 1e-3 * (x.back() - x.front()) / static_cast<double>(x.size());
+  x.erase(std::unique(x.begin(), x.end(), [&](double a, double b) { return b - a <= same; }),
+          x.end());
+  const std::size_t count = std::min(kMostStations, x.size());
+  Eigen::VectorXd out(static_cast<Eigen::Index>(count));
+  for (std::size_t i = 0; i < count; ++i)
+    out[static_cast<Eigen::Index>(i)] =
+        x[count == 1 ? 0 : i * (x.size() - 1) / (count - 1)];
+  return out;
+}
+
+/// The setup of the fitted faces, where the pitch acts on all of them alike.
+const Setup* one_face(const Model& model) {
+  const Setup* out = nullptr;
+  for (const Observation* observation : fitted_observations(model)) {
+    const Setup& setup = observation->profile->setup;
+    if (setup.kind != Kind::face) continue;
+    const bool differs = out != nullptr && (setup.overhang_mm != out->overhang_mm ||
+                                            setup.spindle_position_mm != out->spindle_position_mm);
+    if (differs) return nullptr;
+    out = &setup;
+  }
+  return out;
+}
+
 /// All but offset and slope, which the reference line takes.
 bool is_determined(const ModelTerm& term, const Solution& fit) {
   const std::vector<Parameter>& parameters = term.effect->parameters();
@@ -88,6 +190,21 @@ bool is_determined(const ModelTerm& term, const Solution& fit) {
         !parameters[p].by_convention)
       return false;
   return true;
+}
+
+void append(const std::vector<QuantityValue>& values, std::vector<double>& deviation,
+            std::vector<double>& U) {
+  for (const QuantityValue& each : values) {
+    deviation.push_back(*each.value);
+    U.push_back(*each.expanded_uncertainty);
+  }
+}
+
+void add_tip(const Locus& tip, const Eigen::VectorXd& x, const SlideRange& travel,
+             StraightnessCurve& out) {
+  append(tip.deviations(x, travel), out.tip_um, out.tip_expanded_uncertainty_um);
+  const Eigen::MatrixXd ends = tip.columns(Eigen::Vector2d(travel.least, travel.greatest));
+  out.tip_slope_rad = tip.value(ends.row(1) - ends.row(0)) / (travel.greatest - travel.least);
 }
 
 void add_error(const ReferenceLine& line, const Eigen::VectorXd& x, const Spread& spread,
@@ -138,35 +255,31 @@ std::vector<ReferenceLine> reference_lines(const Eigen::VectorXd& positions,
 std::optional<Straightness> identified_straightness(const Model& model, const Solution& fit,
                                                     const MoreVariance& more) {
   const ModelTerm* term = model.find_term(MotionError::straightness);
-  if (!term || !(model.range.slide_max > model.range.slide_min)) return std::nullopt;
+  if (!term) return std::nullopt;
+  const SlideRange travel = measured_travel(model);
+  if (!(travel.greatest > travel.least)) return std::nullopt;
   Straightness out;
   if (!is_determined(*term, fit)) {
     out.reason = "these data do not tell the straightness from another effect";
     return out;
   }
-  const Eigen::VectorXd x =
-      Eigen::VectorXd::LinSpaced(kPoints, model.range.slide_min, model.range.slide_max);
-  const Eigen::MatrixXd columns = along_slide(*term->effect, model.machine, x, Quantity::height,
-                                              shapes_of(*term, fit.estimate.shapes));
-  const Eigen::Index first = term->first_amplitude, count = columns.cols();
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, travel.least, travel.greatest);
   const Reported reported(fit, more);
-  const auto spread = [&](const Eigen::RowVectorXd& weights) {
-    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(fit.uncertainty.basis.rows());
-    row.segment(first, count) = weights * columns;
-    return reported.spread(row);
-  };
-  const Eigen::MatrixXd deviations = least_squares_deviations(x);
-  const Eigen::VectorXd from_line =
-      deviations * columns * fit.estimate.amplitudes.segment(first, count);
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    QuantityValue own;
-    Reported::set(from_line[i], spread(deviations.row(i)), kMicrometre, own);
-    out.curve.position_mm.push_back(x[i]);
-    out.curve.deviation_um.push_back(*own.value);
-    out.curve.expanded_uncertainty_um.push_back(*own.expanded_uncertainty);
-  }
-  for (const ReferenceLine& line : reference_lines(x, from_line))
-    add_error(line, x, spread(line.sensitivity), out);
+  const Locus slide(model, *term, fit, reported, on_slide());
+  out.curve.position_mm.assign(x.begin(), x.end());
+  append(slide.deviations(x, travel), out.curve.deviation_um, out.curve.expanded_uncertainty_um);
+  if (const Setup* const face = one_face(model))
+    add_tip(Locus(model, *term, fit, reported, *face), x, travel, out.curve);
+  const Eigen::VectorXd stations = station_positions(model);
+  const std::vector<QuantityValue> heights = slide.deviations(stations, travel);
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    out.stations.push_back({stations[static_cast<Eigen::Index>(i)], *heights[i].value,
+                            heights[i].expanded_uncertainty});
+  const Eigen::MatrixXd columns = slide.columns(x);
+  const Eigen::VectorXd form =
+      columns * fit.estimate.amplitudes.segment(term->first_amplitude, columns.cols());
+  for (const ReferenceLine& line : reference_lines(x, least_squares_deviations(x) * form))
+    add_error(line, x, slide.spread(line.sensitivity * columns), out);
   return out;
 }
 

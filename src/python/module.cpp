@@ -93,7 +93,7 @@ py::tuple analysed(const py::object& problem,
     const Problem read = given.read();
     const Analysis analysis =
         analyse(read, read_profiles(read, traces),
-                {ranks_only ? Scope::rank : Scope::identify, closes_loop, true}, let_interrupt);
+                {ranks_only ? Scope::rank : Scope::identify, closes_loop, true, true}, let_interrupt);
     json = json_report(analysis);
     report = text_report(analysis);
   }

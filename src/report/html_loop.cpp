@@ -1,29 +1,30 @@
 #include <algorithm>
 
 #include "html_parts.hpp"
+#include "slideway/base/text.hpp"
 
 namespace slideway {
 namespace {
 
 using Column = HtmlTable::Column;
 
-std::string values(const Node& parameters) {
-  std::vector<std::string> lines;
-  for (const Node& p : parameters.entries()) {
-    const auto value = p["value"].number_or_null(), U = p["expanded_uncertainty"].number_or_null();
-    if (!value) continue;
-    const std::string& name = p["name"].verbatim();
-    const std::string unit = html_unit(p);
-    lines.push_back(escaped(name.substr(name.rfind('.') + 1)) + " = " +
-                    (U ? html_pair(*value, *U) : html_number(*value, 4)) +
-                    (unit.empty() ? "" : " " + unit));
-  }
-  return joined(lines, "<br>");
+Html values(const std::vector<FittedParameter>& parameters) {
+  std::vector<Html> lines;
+  for (const FittedParameter& p : parameters)
+    lines.push_back(Html(p.name.substr(p.name.rfind('.') + 1)) + " = " + html_value(p) + " " +
+                    html_unit(p.unit));
+  return joined(lines, element("br"));
 }
 
-std::string or_dash(const std::string& text) { return text.empty() ? "–" : text; }
+Html or_dash(const Html& text) { return text.empty() ? "–" : text; }
 
-std::string accepted(const Node& trace) {
+Html change(const std::optional<double>& before_um, const std::optional<double>& after_um,
+            const std::optional<double>& before_urad = {},
+            const std::optional<double>& after_urad = {}) {
+  return or_dash(residual_change(before_um, after_um, before_urad, after_urad));
+}
+
+Html accepted(const TraceResult& trace) {
   HtmlTable table("Effects that entered the model",
                   {{"effect", Column::text},
                    {"parameters ± U", Column::text},
@@ -32,93 +33,97 @@ std::string accepted(const Node& trace) {
                    {"ΔBIC", Column::number},
                    {"p", Column::number},
                    {"not told apart from", Column::text}});
-  for (const Node& round : trace["rounds"].entries())
-    table.add({html_text(round["accepted"]), values(round["parameters"]),
-               or_dash(html_change(round, "before_rms", round, "after_rms")),
-               or_dash(html_change(round, "before_holdout_rms", round, "after_holdout_rms")),
-               html_cell(round["delta_bic"], 3), html_probability(round["p_value"].number()),
-               or_dash(joined(html_texts(round["ambiguous_with"])))});
+  for (const TraceRound& round : trace.rounds)
+    table.add({effect_title(round.accepted), values(round.parameters),
+               change(round.before_rms_um, round.after_rms_um, round.before_rms_urad,
+                      round.after_rms_urad),
+               change(round.before_holdout_rms_um, round.after_holdout_rms_um),
+               html_number(round.delta_bic, 3), html_probability(round.p_value),
+               or_dash(effect_titles(round.ambiguous_with, ", "))});
   return table.html();
 }
 
-std::string tried(const Node& trace) {
+Html tried(const TraceResult& trace) {
   HtmlTable table("Effects tried", {{"effect", Column::text},
                                     {"in round", Column::text},
                                     {"ΔBIC", Column::number},
                                     {"p", Column::number},
                                     {"residual rms, µm", Column::number},
                                     {"why it is not in the model", Column::text}});
-  const auto add = [&](const Node& effect, const std::string& round) {
-    table.add(
-        {html_text(effect["effect"]), round, html_cell(effect["delta_bic"]),
-         html_probability(effect["p_value"].number()), html_cell(effect["rms_um"]),
-         effect.has("refused") ? html_text(effect["refused"]) : "a rival of the accepted one"});
+  const auto add = [&](const TriedEffect& effect, const std::string& round) {
+    table.add({effect_title(effect.effect), round, html_number(effect.delta_bic),
+               html_probability(effect.p_value), html_number(effect.rms_um),
+               with_titles(effect.refused.value_or("a rival of the accepted one"))});
   };
-  std::size_t index = 0;
-  for (const Node& round : trace["rounds"].entries()) {
-    ++index;
-    for (const Node& effect : round["candidates"].entries()) add(effect, std::to_string(index));
-  }
-  for (const Node& effect : trace["refused"].entries()) add(effect, "last");
+  for (std::size_t i = 0; i < trace.rounds.size(); ++i)
+    for (const TriedEffect& effect : trace.rounds[i].candidates) add(effect, std::to_string(i + 1));
+  for (const TriedEffect& effect : trace.refused) add(effect, "last");
   return table.html();
 }
 
-std::string extremes(const Node& limit) {
-  const std::vector<Node> shapes = limit["by_shape"].entries();
-  if (shapes.empty()) return "";
-  const auto [least, most] = std::ranges::minmax_element(
-      shapes, {}, [](const Node& shape) { return shape["value"].number(); });
-  return html_cell((*least)["value"], 2) + " to " + html_cell((*most)["value"], 2);
-}
-
-std::string untried(const Node& trace) {
-  HtmlTable table("Effects not told apart or not testable with these data",
+Html untried(const TraceResult& trace) {
+  HtmlTable table("Effects that left again, are not told apart or not testable with these data",
                   {{"effect", Column::text}, {"why", Column::text}});
-  for (const Node& each : trace["not_separable"].entries())
-    table.add({html_text(each["effect"]), "one column with " + html_text(each["same_as"])});
-  for (const Node& each : trace["not_testable"].entries())
-    table.add({html_text(each["effect"]), "needs " + html_text(each["needs"])});
-  HtmlTable limits("Size an effect must have to be found with 80 % probability",
-                   {{"effect", Column::text},
-                    {"parameter", Column::text},
-                    {"found from", Column::number},
-                    {"unit", Column::text},
-                    {"at", Column::text},
-                    {"at other shapes", Column::text}});
-  for (const Node& limit : trace["detection_limits"].entries())
-    limits.add({html_text(limit["effect"]), html_text(limit["parameter"]),
-                html_cell(limit["value"], 2), html_unit(limit), html_text(limit["at"]),
-                extremes(limit)});
-  return table.html() + limits.html();
+  for (const LeftEffect& each : trace.left)
+    table.add({effect_title(each.effect), "left: " + with_titles(each.reason)});
+  for (const NotSeparable& each : trace.not_separable)
+    table.add({effect_title(each.effect), "one column with " + with_titles(each.same_as)});
+  for (const NotTestable& each : trace.not_testable)
+    table.add({effect_title(each.effect), "needs " + each.needs});
+  return table.html();
 }
 
-std::string unnamed(const Node& trace) {
-  if (!trace.has("unnamed")) return "";
-  const Node left = trace["unnamed"];
-  std::string out = "<p>Left without a name: " + html_size(left, "rms") + " rms, " +
-                    html_size(left, "pv") + " peak to valley on <b>" + html_text(left["profile"]) +
-                    "</b> (lack of fit " + html_p_value(left["p_value"].number()) +
-                    "), largest from " + html_cell(left["from_mm"], 4) + " to " +
-                    html_cell(left["to_mm"], 4) + " mm";
-  if (left.has("clock") && !left["clock"].verbatim().empty())
-    out += "; most alike on the clock " + html_text(left["clock"]) + ", correlation length " +
-           html_cell(left["correlation_length"], 2) + " " +
-           html_unit(left["correlation_unit"].verbatim());
-  if (left.has("dominant_period_mm"))
-    out += "; dominant period " + html_cell(left["dominant_period_mm"]) + " mm";
-  if (const auto odd = left["odd_share"].number_or_null())
-    out += "; " + html_number(100.0 * *odd, 2) + " % of it odd about the axis";
-  return out + ". It is not counted as an improvement.</p>\n";
+Html extremes(const DetectionLimit& limit) {
+  std::vector<double> sizes;
+  for (const LimitAtShape& each : limit.by_shape)
+    if (each.value) sizes.push_back(*each.value);
+  if (sizes.empty()) return {};
+  const auto [least, most] = std::ranges::minmax(sizes);
+  return html_number(least, 2) + " to " + html_number(most, 2);
+}
+
+Html limits(const TraceResult& trace) {
+  HtmlTable table("Size an effect must have to be found with 80 % probability",
+                  {{"effect", Column::text},
+                   {"parameter", Column::text},
+                   {"found from", Column::number},
+                   {"unit", Column::text},
+                   {"at", Column::text},
+                   {"at other shapes", Column::text}});
+  for (const DetectionLimit& limit : trace.detection_limits)
+    table.add({effect_title(limit.effect), limit.parameter,
+               limit.value ? html_number(limit.value, 2) : "at no size", html_unit(limit.unit),
+               limit.at, extremes(limit)});
+  return table.html();
+}
+
+Html unnamed(const TraceResult& trace) {
+  if (!trace.unnamed) return {};
+  const Unnamed& left = *trace.unnamed;
+  Html out = "Left without a name: " + html_size(left.rms_um, left.rms_urad) + " rms, " +
+             html_size(left.pv_um, left.pv_urad) + " peak to valley on " + bold(left.profile) +
+             " (lack of fit " + html_p_value(left.p_value) + "), largest from " +
+             html_number(left.from_mm) + " to " + html_number(left.to_mm) + " mm";
+  if (!left.clock.empty())
+    out += "; most alike over " + Html(left.clock) + ", correlation length " +
+           html_number(left.correlation_length, 2) + " " + html_unit(left.correlation_unit);
+  if (left.dominant_period_mm)
+    out += "; dominant period " + html_number(left.dominant_period_mm) + " mm";
+  if (left.odd_share)
+    out += "; " + html_number(100.0 * *left.odd_share, 2) + " % of it odd about the axis";
+  return element("p", out + ". It is not counted as an improvement.");
 }
 
 }  // namespace
 
-std::string html_loop(const Node& report) {
-  if (!report.has("trace")) return "";
-  const Node trace = report["trace"];
-  return html_section("loop", "Missing effects: found, tried, refused",
-                      unnamed(trace) + accepted(trace) + html_list(html_texts(trace["notes"])) +
-                          tried(trace) + untried(trace));
+HtmlSection html_loop(const Analysis& analysis) {
+  if (!analysis.trace) return {};
+  const TraceResult& trace = *analysis.trace;
+  std::vector<std::string> remarks;
+  for (const std::string& note : trace.notes) remarks.push_back(with_titles(note));
+  return {"loop", "Missing effects: found, tried, refused",
+          unnamed(trace) + accepted(trace) + html_list(remarks) + tried(trace) + untried(trace) +
+              limits(trace)};
 }
 
 }  // namespace slideway

@@ -1,91 +1,96 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "document_node.hpp"
+#include "html.hpp"
+#include "html_plot.hpp"
+#include "slideway/trace/analysis.hpp"
+#include "summary.hpp"
 
-/// What the page is put together from. Everything that comes out of a document goes through
-/// escaped(); a number that got out of hand on the way is a DataError.
+/// What the page is put together from.
 namespace slideway {
 
-/// Text for HTML, also in attributes; control characters become U+FFFD.
-std::string escaped(std::string_view text);
+Html bold(std::string_view text);
+Html small(const Html& content);
+/// A quantity's symbol: "b_2" with its index lowered.
+Html html_symbol(std::string_view symbol);
 
-/// A text, escaped, or a number with six digits.
-std::string html_text(const Node& value);
-std::string html_bold(std::string_view text);  // escapes it
-/// The texts of a list, escaped; none where it is null.
-std::vector<std::string> html_texts(const Node& texts);
+/// Numbers in words of HTML: a true minus, powers of ten raised; "–" for one that is absent or not
+/// finite.
+Html html_number(const std::optional<double>& value, int digits = 4);
+Html html_value(const QuantityValue& result, double unit = 1.0);  // as value_text()
+Html html_probability(double p);                                  // "0.02", "< 10⁻⁴"
+Html html_p_value(double p);                                      // "p = 0.02", "p < 10⁻⁴"
 
-/// @throws DataError the number is not finite
-double finite(double value);
+/// "mm^-1" with its exponent raised, "um" as µm; nothing for a bare number.
+Html html_unit(std::string_view unit);
+std::string unit_name(MicroUnit unit);
 
-/// Numbers in words of HTML: a true minus, powers of ten raised. @throws DataError  not finite
-std::string html_number(double value, int digits);
-std::string html_pair(double value, double uncertainty);  // value ± uncertainty
-std::string html_probability(double p);                   // "0.02", "< 10⁻⁴"
-std::string html_p_value(double p);                       // "p = 0.02", "p < 10⁻⁴"
-
-/// "mm^-1" with its exponent raised, "um" as µm; "" for a bare number.
-std::string html_unit(std::string_view unit);
-std::string html_unit(const Node& owner);  // what its key "unit" says
-/// "b_2" with its index lowered.
-std::string html_symbol(std::string_view symbol);
-
-/// A number with its unit from a pair of keys, "rms_um" and "rms_urad": "0.2 µm", or "–".
-std::string html_size(const Node& owner, const std::string& name, int digits = 3);
-/// The same of two, "0.2 → 0.05 µm"; "" where one of them is not known.
-std::string html_change(const Node& before, const std::string& name_before, const Node& after,
-                        const std::string& name_after);
+/// Of a pair of numbers such as rms_um and rms_urad the one that is there, with its unit, or "–".
+Html html_size(const std::optional<double>& um, const std::optional<double>& urad);
 
 /// "p" and 2: "p2".
 std::string numbered(std::string stem, std::size_t number);
 
 inline constexpr std::size_t kStyles = 8;  // "e0" ... of the page's style
 
-/// A number or "–".
-std::string html_cell(const Node& value, int digits = 4);
-
 /// A box that scrolls in itself where the screen is narrow.
-std::string html_scroll(const std::string& body);
+Html html_scroll(const Html& body);
 
-/// A picture with its caption, both HTML.
-std::string html_figure(const std::string& picture, const std::string& caption,
-                        const std::string& attributes = "");
+/// A picture with its caption; nothing where the picture is empty.
+Html html_figure(const Plot& plot, const Html& caption);
+Html html_figure(const Html& picture, const Html& caption, const HtmlAttributes& attributes = {});
 
-/// The pictures of each profile, of its curves and an id that starts with the prefix.
-std::string html_each_profile(
-    const Node& report, const std::string& prefix,
-    const std::function<std::string(const Node& curves, const std::string& id)>& picture);
-
-/// A table in such a box.
+/// A table in such a box; nothing without rows.
 class HtmlTable {
  public:
   enum class Column { text, number };
-  /// Headings are HTML; the first column's cells head their rows.
-  HtmlTable(std::string caption, std::vector<std::pair<std::string, Column>> columns);
-  void add(const std::vector<std::string>& cells);  // HTML
+  HtmlTable(Html caption, std::vector<std::pair<Html, Column>> columns)
+      : caption_(std::move(caption)), columns_(std::move(columns)) {}
+
+  /// The first cell heads the row.
+  void add(const std::vector<Html>& cells);
   [[nodiscard]] bool empty() const { return rows_.empty(); }
-  [[nodiscard]] std::string html() const;  // "" without rows
+  [[nodiscard]] Html html() const;
 
  private:
-  std::string caption_;
-  std::vector<std::pair<std::string, Column>> columns_;
-  std::string rows_;
+  Html caption_;
+  std::vector<std::pair<Html, Column>> columns_;
+  Html rows_;
 };
 
-std::string html_section(const std::string& id, const std::string& title, const std::string& body);
-std::string html_list(const std::vector<std::string>& items);  // HTML; "" without items
+Html html_list(const std::vector<Html>& items);
+Html html_list(const std::vector<std::string>& items);
 
-/// The parts of the page, each from the whole document.
-std::string html_verdict(const Node& report);
-std::string html_pictures(const Node& report);
-std::string html_profile_pictures(const Node& report);
-std::string html_tables(const Node& report);
-std::string html_uncertainty(const Node& report);
-std::string html_loop(const Node& report);
+/// The pictures of each profile, of its curves and an id that starts with the prefix.
+Html html_each_profile(
+    const Analysis& analysis, const std::string& prefix,
+    const std::function<Html(const ProfileCurves& curves, const std::string& id)>& picture);
+
+/// A section of the page; without a body it is left out.
+struct HtmlSection {
+  std::string id, title;
+  Html body;
+};
+using HtmlSections = std::vector<HtmlSection>;
+
+/// The sections of a report, in the order of the page.
+HtmlSection html_verdict(const Analysis& analysis);
+HtmlSection html_profiles(const Analysis& analysis);
+HtmlSection html_straightness(const Analysis& analysis);
+HtmlSection html_correlation(const Analysis& analysis);
+HtmlSection html_residual(const Analysis& analysis);
+HtmlSection html_bands(const Analysis& analysis);
+HtmlSection html_what_if(const Analysis& analysis);
+HtmlSection html_uncertainty(const Analysis& analysis);
+HtmlSection html_identifiability(const Analysis& analysis);
+HtmlSection html_loop(const Analysis& analysis);
+HtmlSection html_data(const Analysis& analysis);
+HtmlSection html_method(const Analysis& analysis);
 
 }  // namespace slideway

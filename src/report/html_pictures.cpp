@@ -1,8 +1,7 @@
-#include <algorithm>
 #include <cmath>
 
 #include "html_parts.hpp"
-#include "html_plot.hpp"
+#include "slideway/identify/result_fields.hpp"
 #include "slideway/report/number.hpp"
 
 namespace slideway {
@@ -12,10 +11,9 @@ using Column = HtmlTable::Column;
 
 // --- straightness ---------------------------------------------------------------------------
 
-std::string straightness_errors(const std::vector<Node>& errors) {
+Html straightness_errors(const Straightness& form) {
   HtmlTable table(
-      "Straightness error: largest positive minus largest negative deviation from the "
-      "stated line",
+      "Straightness error: largest positive minus largest negative deviation from the stated line",
       {{"reference line", Column::text},
        {"error ± U, µm", Column::number},
        {"k", Column::number},
@@ -23,142 +21,101 @@ std::string straightness_errors(const std::vector<Node>& errors) {
        {"at x, mm", Column::number},
        {"lowest, µm", Column::number},
        {"at x, mm", Column::number}});
-  for (const Node& e : errors)
-    table.add({html_text(e["line"]),
-               html_pair(e["error_um"].number(), e["expanded_uncertainty_um"].number()),
-               html_cell(e["coverage_factor"], 3), html_cell(e["highest_um"], 3),
-               html_cell(e["highest_at_mm"], 4), html_cell(e["lowest_um"], 3),
-               html_cell(e["lowest_at_mm"], 4)});
+  for (const StraightnessError& e : form.errors)
+    table.add({text_of(e.line), html_value(e), html_number(e.coverage_factor, 3),
+               html_number(e.highest_um, 3), html_number(e.highest_at_mm), html_number(e.lowest_um, 3),
+               html_number(e.lowest_at_mm)});
   return table.html();
 }
 
-std::string straightness(const Node& report) {
-  if (!report.has("final") || !report["final"].has("straightness")) return "";
-  const std::vector<Node> errors = report["final"]["straightness"]["errors"].entries();
-  if (errors.empty())
-    return html_section(
-        "straightness", "Straightness of the slide, ISO 230-1",
-        "<p>None is given: " + html_text(report["final"]["straightness"]["reason"]) + ".</p>\n");
-  const Node curve = report["final"]["straightness"]["curve"];
-  const std::vector<double> x = curve["position_mm"].numbers();
-  const std::vector<double> deviation = curve["deviation_um"].numbers();
-  const std::vector<double> U = curve["expanded_uncertainty_um"].numbers();
-  if (x.size() != deviation.size() || x.size() != U.size() || x.size() < 2)
-    curve.fail("three curves of one length");
+Html station_table(const Straightness& form) {
+  HtmlTable table("Station heights: deviation from the line through the end points",
+                  {{"x, mm", Column::number}, {"deviation ± U, µm", Column::number}});
+  for (const StraightnessStation& at : form.stations) {
+    QuantityValue height;
+    height.value = at.deviation_um;
+    height.expanded_uncertainty = at.expanded_uncertainty_um;
+    table.add({html_number(at.position_mm, 6), html_value(height)});
+  }
+  return table.html();
+}
+
+Html straightness_curve(const StraightnessCurve& curve) {
+  const std::vector<double>&x = curve.position_mm, &deviation = curve.deviation_um,
+        &U = curve.expanded_uncertainty_um;
+  if (x.size() < 2 || x.size() != deviation.size() || x.size() != U.size()) return {};
   std::vector<double> low = deviation, high = deviation;
   for (std::size_t i = 0; i < U.size(); ++i) {
     low[i] -= U[i];
     high[i] += U[i];
   }
   Plot plot({"straightness-curve", "Identified straightness of the X slide",
-             "Deviation from the least-squares line over the travel, with its expanded "
-             "uncertainty, and the end-point line.",
+             "Deviation from the line through the end points over the travel, with its expanded "
+             "uncertainty.",
              "slide coordinate x, mm", "deviation, µm"});
   plot.band("± U", "band", x, low, high)
-      .line("deviation from the least-squares line", "after", x, deviation)
-      .line("end-point line", "before", {x.front(), x.back()},
-            {deviation.front(), deviation.back()})
-      .level("least-squares line", "limit", 0.0);
-  const double step = (x.back() - x.front()) / static_cast<double>(x.size() - 1);
-  return html_section(
-      "straightness", "Straightness of the slide, ISO 230-1",
-      html_figure(
-          plot.svg(),
-          "Straightness error motion <i>E</i><sub>ZX</sub> of the X slide over the travel the "
-          "profiles cover, positive along +Z; band: expanded uncertainty. <b>Good:</b> the "
-          "band is narrow beside the curve (the form is known) and the error is within the "
-          "machine's tolerance. The three reference lines give three different numbers, all "
-          "of them valid: a tolerance must state its line.") +
-          straightness_errors(errors) +
-          "<p class=\"hint\">Evaluated from the fitted polynomial at " + std::to_string(x.size()) +
-          " points over x = " + html_number(x.front(), 5) + " to " + html_number(x.back(), 5) +
-          " mm, a step of " + html_number(step, 3) + " mm: a limited representation of the slide." +
-          (report.has("trace") && report["trace"].has("unnamed")
-               ? " U includes what the structure without a name adds to it."
-               : "") +
-          "</p>\n");
+      .line("deviation from the end-point line", "after", x, deviation)
+      .level("end-point line", "limit", 0.0);
+  return html_figure(
+      plot, "Straightness error motion " + html_symbol("E_ZX") +
+                " of the X slide over the travel that was measured, " + html_number(x.front(), 5) +
+                " to " + html_number(x.back(), 5) +
+                " mm, positive along +Z; band: expanded uncertainty. " + bold("Good:") +
+                " the band is narrow beside the curve (the form is known) and the error is within "
+                "the machine's tolerance. The three reference lines give three different numbers, "
+                "all of them valid: a tolerance must state its line.");
 }
 
 // --- correlations -----------------------------------------------------------------------------
 
-/// The low band has its coefficients at the same shares of the trace, however many they are.
-std::vector<double> shares(double whole, std::size_t count) {
-  std::vector<double> out;
-  for (std::size_t i = 1; i <= count; ++i)
-    out.push_back(whole * static_cast<double>(i) / static_cast<double>(count));
-  return out;
-}
-
-std::string running(const Node& report, const std::string& profile, const std::string& id) {
+Html running(const Analysis& analysis, const std::string& profile, const std::string& id) {
   Plot plot({id + "-running", "Profile " + profile + ": running correlation",
-             "Correlation coefficient of each effect with the profile over the first n samples, "
-             "raw and in the low band.",
-             "samples n", "coefficient"});
+             "Correlation coefficient of each effect with the profile from its start up to a "
+             "position, raw and in the low band.",
+             "trace position, mm", "coefficient"});
   std::size_t style = 0;
-  for (const Node& entry : report["ranking"].entries()) {
-    if (entry["profile"].verbatim() != profile || !entry.has("running")) continue;
-    const Node series = entry["running"];
-    const std::string own = numbered("e", style++ % kStyles);
-    const std::string& effect = entry["effect"].verbatim();
-    const std::vector<double> samples = series["samples"].numbers();
-    const std::vector<double> low_band = series["low_band"].numbers();
-    if (samples.empty()) continue;
-    plot.line(effect + ", low band", own, shares(samples.back(), low_band.size()), low_band);
-    plot.line(effect + ", raw", own + " thin", samples, series["raw"].numbers());
+  for (const Ranking& entry : analysis.result.ranking.entries) {
+    if (entry.profile != profile || entry.running.raw.empty()) continue;
+    const std::string own = numbered("e", style++ % kStyles), effect = effect_title(entry.effect);
+    plot.line(effect + ", low band", own, entry.running.low_band_position_mm,
+              entry.running.low_band);
+    plot.line(effect + ", raw", own + " thin", entry.running.position_mm, entry.running.raw);
   }
-  if (plot.empty()) return "";
   return html_figure(
-      plot.svg(), html_bold(profile) +
-                      ": correlation of each effect with the first n samples, Eqs. (6), (19), (20) "
-                      "(Figs. 8 and 9 of the paper); thick: low band, thin: raw. <b>Good:</b> the "
-                      "dominant effect's low-band curve settles early, near ±1, and clear of the "
-                      "others. The low band raises every coefficient: compare effects, not bands.");
+      plot, bold(profile) +
+                ": correlation of each effect with the profile up to a position, Eqs. (6), (19), "
+                "(20) (Figs. 8 and 9 of the paper); thick: low band, thin: raw. " +
+                bold("Good:") +
+                " the dominant effect's low-band curve settles early, near ±1, and clear of the "
+                "others. The low band raises every coefficient: compare effects, not bands.");
 }
 
 /// Blue for +1, orange for -1, the number in every cell.
-std::string heat_cell(double r) {
-  const double strength = std::min(std::abs(r), 1.0);
-  return "<td class=\"n\" style=\"background:rgba(" +
-         std::string(r < 0.0 ? "230,159,0," : "86,180,233,") + fixed_point(0.75 * strength, 2) +
-         ")\">" + html_number(std::round(r * 1000.0) / 1000.0, 3) + "</td>";
+Html heat_cell(double r) {
+  const double strength = std::isfinite(r) ? std::min(std::abs(r), 1.0) : 0.0;
+  return element("td",
+                 {{"class", "n"},
+                  {"style", std::string("background:rgba(") +
+                                (r < 0.0 ? "230,159,0," : "86,180,233,") +
+                                fixed_point(0.75 * strength, 2) + ")"}},
+                 html_number(std::round(r * 1000.0) / 1000.0, 3));
 }
 
-std::string matrix(const Node& curves) {
-  const std::vector<std::string> effects = html_texts(curves["effects"]);
-  const std::vector<Node> rows = curves["correlation"].entries();
-  if (effects.size() < 2) return "";
-  const auto require = [&](std::size_t size) {
-    if (size != effects.size()) curves["correlation"].fail("a row and a column for each effect");
-  };
-  require(rows.size());
-  std::string out = "<table class=\"heat\"><caption>Effects among themselves on " +
-                    html_text(curves["profile"]) + ", low band</caption><thead><tr><td></td>";
-  for (const std::string& effect : effects) out += "<th scope=\"col\">" + effect + "</th>";
-  out += "</tr></thead><tbody>\n";
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const std::vector<double> row = rows[i].numbers();
-    require(row.size());
-    out += "<tr><th scope=\"row\">" + effects[i] + "</th>";
-    for (const double r : row) out += heat_cell(r);
-    out += "</tr>\n";
+Html matrix(const ProfileCurves& curves) {
+  if (curves.effects.size() < 2 || curves.correlation.size() != curves.effects.size()) return {};
+  Html headings = element("td"), rows;
+  for (std::size_t i = 0; i < curves.effects.size(); ++i) {
+    const std::string title = effect_title(curves.effects[i]);
+    headings += element("th", {{"scope", "col"}}, title);
+    Html row = element("th", {{"scope", "row"}}, title);
+    for (const double r : curves.correlation[i]) row += heat_cell(r);
+    rows += element("tr", row);
   }
-  return html_scroll(out + "</tbody></table>") + "\n";
-}
-
-std::string correlations(const Node& report) {
-  std::string runs, matrices;
-  std::size_t index = 0;
-  for (const Node& in : report["inputs"].entries())
-    runs += running(report, in["name"].verbatim(), numbered("r", index++));
-  if (report.has("curves"))
-    for (const Node& curves : report["curves"]["profiles"].entries()) matrices += matrix(curves);
-  if (!matrices.empty())
-    matrices +=
-        "<p class=\"caption\">Correlation of the effects of the final model with one "
-        "another, blue positive, orange negative. <b>Good:</b> small numbers off the "
-        "diagonal. Near ±1 two effects look alike in this profile, and a high correlation "
-        "with the profile selects neither.</p>\n";
-  return html_section("correlation", "Correlation", runs + matrices);
+  return html_scroll(element("table", {{"class", "heat"}},
+                             element("caption", "Effects among themselves on " + Html(curves.profile) +
+                                                    ", low band") +
+                                 element("thead", element("tr", headings)) +
+                                 element("tbody", rows)));
 }
 
 // --- residual ---------------------------------------------------------------------------------
@@ -169,93 +126,95 @@ std::vector<double> multiples(double step, std::size_t count) {
   return out;
 }
 
-std::string residual(const Node& curves, const std::string& id) {
-  const std::string& profile = curves["profile"].verbatim();
-  const std::vector<double> before = curves["autocorrelation_before"].numbers();
-  const std::vector<double> after = curves["autocorrelation_after"].numbers();
-  const double step = curves["lag_mm"].number(), limit = curves["white_limit"].number();
-  const std::string first = after.empty() ? "residual" : "before";
-  const std::string style = after.empty() ? "after" : "before";
-  Plot lags({id + "-autocorrelation", "Profile " + profile + ": autocorrelation of the residual",
+Html autocorrelation_picture(const ProfileCurves& curves, const std::string& id) {
+  const std::vector<double>&before = curves.autocorrelation_before,
+        &after = curves.autocorrelation_after;
+  Plot lags({id + "-autocorrelation",
+             "Profile " + curves.profile + ": autocorrelation of the residual",
              "Autocorrelation coefficient of the residual over the lag, with the 95 % limits of "
              "white noise.",
              "lag, mm", "autocorrelation"});
   lags.size(720, 220)
-      .line(first, style, multiples(step, before.size()), before)
-      .line("after", "after", multiples(step, after.size()), after)
-      .level("95 % of white noise", "limit", limit)
-      .level("", "limit", -limit);
-  Plot spectrum({id + "-spectrum", "Profile " + profile + ": spectrum of the residual",
-                 "Amplitude of the residual at each spatial frequency, both axes logarithmic.",
-                 "frequency, cycles/mm", "amplitude, " + html_unit(curves)});
-  spectrum.size(720, 240).log_x().log_y();
-  const auto add = [&](const std::string& name, const std::string& own, const char* key) {
-    const Node series = curves[key];
-    spectrum.line(name, own, series["cycles_per_mm"].numbers(), series["amplitude"].numbers());
-  };
-  add(first, style, "spectrum_before");
-  add("after", "after", "spectrum_after");
-  std::string out;
-  if (!lags.empty())
-    out += html_figure(
-        lags.svg(),
-        html_bold(profile) +
-            ": autocorrelation of the residual. <b>Good:</b> it falls at once and stays "
-            "between the dotted lines. A slow fall or waves mean that neighbouring "
-            "values are not independent; the uncertainties here count that in.");
-  if (!spectrum.empty())
-    out += html_figure(
-        spectrum.svg(),
-        html_bold(profile) +
-            ": spectrum of the residual. <b>Good:</b> a level floor. A peak is something "
-            "periodic (rail, spindle, drive), a rise to the left is form the model lacks.");
-  return out;
+      .line(after.empty() ? "residual" : "declared model", after.empty() ? "after" : "before",
+            multiples(curves.lag_mm, before.size()), before)
+      .line("final model", "after", multiples(curves.lag_mm, after.size()), after)
+      .level("95 % of white noise", "limit", curves.white_limit)
+      .level("", "limit", -curves.white_limit);
+  return html_figure(
+      lags, bold(curves.profile) + ": autocorrelation of the residual. " + bold("Good:") +
+                " it falls at once and stays between the dotted lines. A slow fall or waves mean "
+                "that neighbouring values are not independent; the uncertainties here count that "
+                "in.");
 }
 
-// --- wavelet bands ----------------------------------------------------------------------------
-
-std::string band_panel(const Node& curves, const Node& band, const std::string& id,
-                       const std::string& name) {
-  const std::vector<double> low = band["low"].numbers(), high = band["high"].numbers();
-  const double first = curves["first_mm"].number(), last = curves["last_mm"].number();
-  std::vector<double> x;
-  for (std::size_t i = 0; i < low.size(); ++i)
-    x.push_back(first +
-                (last - first) * (static_cast<double>(i) + 0.5) / static_cast<double>(low.size()));
-  Plot plot({id, "Band " + name + " of profile " + curves["profile"].verbatim(),
-             "Lowest and highest value of the band along the trace.", "mm", html_unit(curves)});
-  plot.size(360, 120).band(name, "envelope", x, low, high);
-  return plot.empty() ? "" : plot.svg();
-}
-
-std::string bands(const Node& curves, const std::string& id) {
-  const std::vector<Node> approximations = curves["approximations"].entries();
-  const std::vector<Node> details = curves["details"].entries();
-  if (approximations.size() != details.size())
-    curves["details"].fail("as many bands as 'approximations' has");
-  std::string panels;
-  for (std::size_t i = 0; i < details.size(); ++i) {
-    const std::string level = std::to_string(i + 1);
-    panels += band_panel(curves, approximations[i], id + "-a" + level, numbered("a", i + 1));
-    panels += band_panel(curves, details[i], id + "-d" + level, numbered("d", i + 1));
-  }
-  if (panels.empty()) return "";
-  return "<figure><div class=\"panels\">" + panels + "</div><figcaption>" +
-         html_bold(curves["profile"].verbatim()) +
-         ": wavelet bands over the trace (Fig. 7 of the paper), from the lowest to the highest "
-         "value of each stretch; left the approximations, right "
-         "the details. <b>Good:</b> the last approximation has kept the whole form, and the "
-         "details look like noise, without form and without large values at the ends.</figcaption>"
-         "</figure>\n";
+Html spectrum_picture(const ProfileCurves& curves, const std::string& id) {
+  const Spectrum &before = curves.spectrum_before, &after = curves.spectrum_after;
+  const bool added = !after.amplitude.empty();
+  Plot plot({id + "-spectrum", "Profile " + curves.profile + ": spectrum of the residual",
+             "Amplitude of the residual at each spatial frequency, both axes logarithmic.",
+             "frequency, cycles/mm", "amplitude, " + unit_name(curves.unit)});
+  plot.size(720, 240)
+      .log_x()
+      .log_y()
+      .line(added ? "declared model" : "residual", added ? "before" : "after",
+            before.cycles_per_sample, before.amplitude)
+      .line("final model", "after", after.cycles_per_sample, after.amplitude);
+  return html_figure(
+      plot, bold(curves.profile) + ": spectrum of the residual. " + bold("Good:") +
+                " a level floor. A peak is something periodic (rail, spindle, drive), a rise to "
+                "the left is form the model lacks.");
 }
 
 }  // namespace
 
-std::string html_pictures(const Node& report) {
-  return html_profile_pictures(report) + straightness(report) + correlations(report) +
-         html_section("residual", "Is the residual noise?",
-                      html_each_profile(report, "n", residual)) +
-         html_section("bands", "Wavelet bands", html_each_profile(report, "w", bands));
+Html html_each_profile(
+    const Analysis& analysis, const std::string& prefix,
+    const std::function<Html(const ProfileCurves& curves, const std::string& id)>& picture) {
+  Html out;
+  std::size_t index = 0;
+  if (analysis.details.curves)
+    for (const ProfileCurves& curves : analysis.details.curves->profiles)
+      out += picture(curves, numbered(prefix, index++));
+  return out;
+}
+
+HtmlSection html_straightness(const Analysis& analysis) {
+  const auto& model = analysis.result.final;
+  if (!model || !model->straightness) return {};
+  const Straightness& form = *model->straightness;
+  Html body = form.errors.empty() ? element("p", "None is given: " + Html(form.reason) + ".")
+                                  : straightness_curve(form.curve) + straightness_errors(form) +
+                                        station_table(form);
+  if (!form.errors.empty() && analysis.trace && analysis.trace->unnamed)
+    body += element("p", {{"class", "hint"}},
+                    "U includes what the structure without a name adds to it.");
+  return {"straightness", "Straightness of the slide, ISO 230-1", body};
+}
+
+HtmlSection html_correlation(const Analysis& analysis) {
+  Html body, matrices;
+  std::size_t index = 0;
+  for (const InputSummary& in : analysis.result.inputs)
+    body += running(analysis, in.name, numbered("r", index++));
+  if (analysis.details.curves)
+    for (const ProfileCurves& curves : analysis.details.curves->profiles)
+      matrices += matrix(curves);
+  if (!matrices.empty())
+    matrices += element("p", {{"class", "caption"}},
+                        "Correlation of the effects of the final model with one another, blue "
+                        "positive, orange negative. " +
+                            bold("Good:") +
+                            " small numbers off the diagonal. Near ±1 two effects look alike in "
+                            "this profile, and a high correlation with the profile selects "
+                            "neither.");
+  return {"correlation", "Correlation", body + matrices};
+}
+
+HtmlSection html_residual(const Analysis& analysis) {
+  const auto both = [](const ProfileCurves& curves, const std::string& id) {
+    return autocorrelation_picture(curves, id) + spectrum_picture(curves, id);
+  };
+  return {"residual", "Is the residual noise?", html_each_profile(analysis, "n", both)};
 }
 
 }  // namespace slideway

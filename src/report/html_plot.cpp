@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "html_parts.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/report/layout.hpp"
@@ -18,10 +17,19 @@ constexpr double kLeft = 62.0, kRight = 22.0, kBottom = 40.0, kLegendRow = 16.0;
 constexpr std::size_t kPoints = 800;  // of a line: more than the picture has columns
 constexpr double kMostDecades = 5.0;  // of a logarithmic axis, below its largest
 
-std::string coordinate(double value) { return fixed_point(finite(value), 1); }
+std::string coordinate(double value) { return fixed_point(value, 1); }
 
-std::string attribute(const char* name, double value) {
-  return std::string(" ") + name + "=\"" + coordinate(value) + "\"";
+Html straight(const std::string& style, double x1, double y1, double x2, double y2) {
+  return element("line", {{"class", style},
+                          {"x1", coordinate(x1)},
+                          {"x2", coordinate(x2)},
+                          {"y1", coordinate(y1)},
+                          {"y2", coordinate(y2)}});
+}
+
+Html text_at(double x, double y, const char* anchor, const std::string& text) {
+  return element("text", {{"x", coordinate(x)}, {"y", coordinate(y)}, {"text-anchor", anchor}},
+                 text);
 }
 
 /// 1, 2 or 5 times a power of ten.
@@ -81,7 +89,8 @@ struct Plot::Axis {
     return from + (to - from) * at;
   }
   void settle(bool padded) {
-    finite(high - low);
+    if (!std::isfinite(high - low))
+      throw DataError("a curve is beyond all measure; accepted: what --json of slideway writes");
     if (logarithmic) return settle_logarithmic();
     if (!(high > low)) {
       const double margin = std::max(std::abs(low) * 0.1, 1e-12);
@@ -139,23 +148,29 @@ Plot& Plot::log_y() {
 Plot& Plot::line(std::string name, std::string style, std::vector<double> x,
                  std::vector<double> y) {
   require_one_length(text_, x, y);
-  if (x.empty()) return *this;
   Line line{std::move(name), std::move(style), {}, {}, {}};
-  for (const std::size_t i : thinned({y}, kPoints)) {
-    line.x.push_back(x[i]);
-    line.y.push_back(y[i]);
-  }
-  lines_.push_back(std::move(line));
+  if (!x.empty())
+    for (const std::size_t i : thinned({y}, kPoints)) {
+      if (!std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
+      line.x.push_back(x[i]);
+      line.y.push_back(y[i]);
+    }
+  if (!line.x.empty()) lines_.push_back(std::move(line));
   return *this;
 }
 
-Plot& Plot::band(std::string name, std::string style, std::vector<double> x,
-                 std::vector<double> low, std::vector<double> high) {
+Plot& Plot::band(std::string name, std::string style, const std::vector<double>& x,
+                 const std::vector<double>& low, const std::vector<double>& high) {
   require_one_length(text_, x, low);
   require_one_length(text_, x, high);
-  if (!x.empty())
-    lines_.push_back(
-        {std::move(name), std::move(style), std::move(x), std::move(low), std::move(high)});
+  Line line{std::move(name), std::move(style), {}, {}, {}};
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i]) || !std::isfinite(low[i]) || !std::isfinite(high[i])) continue;
+    line.x.push_back(x[i]);
+    line.y.push_back(low[i]);
+    line.high.push_back(high[i]);
+  }
+  if (!line.x.empty()) lines_.push_back(std::move(line));
   return *this;
 }
 
@@ -164,7 +179,44 @@ Plot& Plot::level(std::string name, std::string style, double y) {
   return *this;
 }
 
-Plot::Axis Plot::axis(bool horizontal) const {
+/// What the lines are called: rows of a sample and its name.
+struct Plot::Legend {
+  Html entries;
+  double height = 0.0;
+};
+
+Plot::Legend Plot::legend() const {
+  constexpr double kSample = 26.0, kGap = 18.0, kLetter = 6.3;
+  Legend out;
+  double at = kLeft, row = 12.0;
+  const auto add = [&](const Line& line) {
+    if (line.name.empty()) return;
+    const double length =
+        kSample + 6.0 + kLetter * static_cast<double>(code_points(line.name)) + kGap;
+    if (!out.entries.empty() && at + length - kGap > width_ - kRight) {
+      at = kLeft;
+      row += kLegendRow;
+    }
+    out.entries += line.high.empty()
+                       ? straight(line.style, at, row - 4.0, at + kSample, row - 4.0)
+                       : element("rect", {{"class", line.style},
+                                          {"x", coordinate(at)},
+                                          {"y", coordinate(row - 9.0)},
+                                          {"width", coordinate(kSample)},
+                                          {"height", "10"}});
+    out.entries += element(
+        "text",
+        {{"class", "key"}, {"x", coordinate(at + kSample + 6.0)}, {"y", coordinate(row)}},
+        line.name);
+    at += length;
+    out.height = row - 12.0 + kLegendRow;
+  };
+  for (const Line& line : lines_) add(line);
+  for (const auto& [line, y] : levels_) add(line);
+  return out;
+}
+
+Plot::Axis Plot::axis(bool horizontal, double top) const {
   Axis out;
   out.logarithmic = horizontal ? log_x_ : log_y_;
   for (const Line& line : lines_)
@@ -176,96 +228,64 @@ Plot::Axis Plot::axis(bool horizontal) const {
   if (!horizontal)
     for (const auto& [line, y] : levels_) out.include(y);
   if (!(out.low <= out.high)) out.include(1.0);
-  const std::string entries = legend();
-  const auto rows = static_cast<double>(std::count(entries.begin(), entries.end(), '\n'));
-  const double top = 6.0 + kLegendRow * rows;
   out.from = horizontal ? kLeft : height_ - kBottom;
   out.to = horizontal ? width_ - kRight : top;
   out.settle(!horizontal);
   return out;
 }
 
-std::string Plot::grid(const Axis& x, const Axis& y) const {
-  std::string out = "<g class=\"grid\">";
-  for (const auto& [value, text] : x.ticks)
-    out += "<line" + attribute("x1", x(value)) + attribute("x2", x(value)) +
-           attribute("y1", y.from) + attribute("y2", y.to) + "/>";
-  for (const auto& [value, text] : y.ticks)
-    out += "<line" + attribute("x1", x.from) + attribute("x2", x.to) + attribute("y1", y(value)) +
-           attribute("y2", y(value)) + "/>";
-  out += "</g><g class=\"tick\">";
-  for (const auto& [value, text] : x.ticks)
-    out += "<text" + attribute("x", x(value)) + attribute("y", y.from + 15.0) +
-           " text-anchor=\"middle\">" + text + "</text>";
-  for (const auto& [value, text] : y.ticks)
-    out += "<text" + attribute("x", x.from - 6.0) + attribute("y", y(value) + 4.0) +
-           " text-anchor=\"end\">" + text + "</text>";
-  out += "<text" + attribute("x", (x.from + x.to) / 2.0) + attribute("y", height_ - 6.0) +
-         " text-anchor=\"middle\">" + escaped(text_.x) + "</text>";
-  const std::string middle = coordinate((y.from + y.to) / 2.0);
-  out += "<text x=\"14\" y=\"" + middle + "\" text-anchor=\"middle\" transform=\"rotate(-90 14 " +
-         middle + ")\">" + escaped(text_.y) + "</text></g>\n";
-  return out;
+Html Plot::grid(const Axis& x, const Axis& y) const {
+  Html lines;
+  for (const auto& [value, text] : x.ticks) lines += straight("", x(value), y.from, x(value), y.to);
+  for (const auto& [value, text] : y.ticks) lines += straight("", x.from, y(value), x.to, y(value));
+  return element("g", {{"class", "grid"}}, lines);
 }
 
-std::string Plot::drawn(const Line& line, const Axis& x, const Axis& y) const {
+Html Plot::ticks(const Axis& x, const Axis& y) const {
+  Html texts;
+  for (const auto& [value, text] : x.ticks)
+    texts += text_at(x(value), y.from + 15.0, "middle", text);
+  for (const auto& [value, text] : y.ticks)
+    texts += text_at(x.from - 6.0, y(value) + 4.0, "end", text);
+  texts += text_at((x.from + x.to) / 2.0, height_ - 6.0, "middle", text_.x);
+  const std::string middle = coordinate((y.from + y.to) / 2.0);
+  texts += element("text",
+                   {{"x", "14"},
+                    {"y", middle},
+                    {"text-anchor", "middle"},
+                    {"transform", "rotate(-90 14 " + middle + ")"}},
+                   text_.y);
+  return element("g", {{"class", "tick"}}, texts);
+}
+
+Html Plot::drawn(const Line& line, const Axis& x, const Axis& y) {
   std::string points;
   const auto add = [&](double px, double py) {
     points.append(coordinate(x(px))).append(",").append(coordinate(y(py))).append(" ");
   };
   for (std::size_t i = 0; i < line.x.size(); ++i) add(line.x[i], line.y[i]);
   for (std::size_t i = line.high.size(); i-- > 0;) add(line.x[i], line.high[i]);
-  const std::string tag = line.high.empty() ? "polyline" : "polygon";
-  return "<" + tag + " class=\"" + line.style + "\" points=\"" + points + "\"/>\n";
+  return element(line.high.empty() ? "polyline" : "polygon",
+                 {{"class", line.style}, {"points", points}});
 }
 
-/// One row of entries a line of text.
-std::string Plot::legend() const {
-  constexpr double kSample = 26.0, kGap = 18.0, kLetter = 6.3;
-  std::string out;
-  double at = kLeft, row = 12.0;
-  const auto add = [&](const Line& line) {
-    if (line.name.empty()) return;
-    const double length =
-        kSample + 6.0 + kLetter * static_cast<double>(code_points(line.name)) + kGap;
-    if (out.empty()) {
-      out = "\n";
-    } else if (at + length - kGap > width_ - kRight) {
-      at = kLeft;
-      row += kLegendRow;
-      out += "\n";
-    }
-    if (line.high.empty())
-      out += "<line class=\"" + line.style + "\"" + attribute("x1", at) +
-             attribute("x2", at + kSample) + attribute("y1", row - 4.0) +
-             attribute("y2", row - 4.0) + "/>";
-    else
-      out += "<rect class=\"" + line.style + "\"" + attribute("x", at) + attribute("y", row - 9.0) +
-             attribute("width", kSample) + " height=\"10\"/>";
-    out += "<text class=\"key\"" + attribute("x", at + kSample + 6.0) + attribute("y", row) + ">" +
-           escaped(line.name) + "</text>";
-    at += length;
-  };
-  for (const Line& line : lines_) add(line);
-  for (const auto& [line, y] : levels_) add(line);
-  return out;
-}
-
-std::string Plot::svg() const {
-  const Axis x = axis(true), y = axis(false);
-  std::string out = "<svg role=\"img\" aria-labelledby=\"" + text_.id + "-t " + text_.id +
-                    "-d\" viewBox=\"0 0 " + coordinate(width_) + " " + coordinate(height_) +
-                    "\"><title id=\"" + text_.id + "-t\">" + escaped(text_.title) +
-                    "</title><desc id=\"" + text_.id + "-d\">" + escaped(text_.description) +
-                    "</desc>\n" + grid(x, y);
+Html Plot::svg() const {
+  const Legend names = legend();
+  const Axis x = axis(true, 0.0), y = axis(false, 6.0 + names.height);
+  Html content = element("title", {{"id", text_.id + "-t"}}, text_.title) +
+                 element("desc", {{"id", text_.id + "-d"}}, text_.description) + grid(x, y) +
+                 ticks(x, y);
   for (const Line& line : lines_)
-    if (!line.high.empty()) out += drawn(line, x, y);
+    if (!line.high.empty()) content += drawn(line, x, y);
   for (const auto& [line, value] : levels_)
-    out += "<line class=\"" + line.style + "\"" + attribute("x1", x.from) + attribute("x2", x.to) +
-           attribute("y1", y(value)) + attribute("y2", y(value)) + "/>\n";
+    content += straight(line.style, x.from, y(value), x.to, y(value));
   for (const Line& line : lines_)
-    if (line.high.empty()) out += drawn(line, x, y);
-  return out + legend() + "</svg>\n";
+    if (line.high.empty()) content += drawn(line, x, y);
+  return element("svg",
+                 {{"role", "img"},
+                  {"aria-labelledby", text_.id + "-t " + text_.id + "-d"},
+                  {"viewBox", "0 0 " + coordinate(width_) + " " + coordinate(height_)}},
+                 content + names.entries);
 }
 
 }  // namespace slideway

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "html.hpp"
+
 namespace slideway {
 
 /// A picture with axes as inline SVG, readable without scripts and by a screen reader.
@@ -20,15 +22,15 @@ class Plot {
   Plot& size(double width, double height);
   Plot& log_x();
   Plot& log_y();
-  /// @throws DataError  x and y differ in length
+  /// Points that are not finite are left out. @throws DataError  x and y differ in length
   Plot& line(std::string name, std::string style, std::vector<double> x, std::vector<double> y);
-  Plot& band(std::string name, std::string style, std::vector<double> x, std::vector<double> low,
-             std::vector<double> high);
+  Plot& band(std::string name, std::string style, const std::vector<double>& x,
+             const std::vector<double>& low, const std::vector<double>& high);
   Plot& level(std::string name, std::string style, double y);
 
   [[nodiscard]] bool empty() const { return lines_.empty(); }
-  /// @throws DataError  a number is beyond all measure
-  [[nodiscard]] std::string svg() const;
+  /// @throws DataError  the range of an axis is beyond what a number holds
+  [[nodiscard]] Html svg() const;
 
  private:
   struct Line {
@@ -37,10 +39,13 @@ class Plot {
   };
   struct Axis;
 
-  [[nodiscard]] Axis axis(bool horizontal) const;
-  [[nodiscard]] std::string grid(const Axis& x, const Axis& y) const;
-  [[nodiscard]] std::string drawn(const Line& line, const Axis& x, const Axis& y) const;
-  [[nodiscard]] std::string legend() const;
+  struct Legend;
+
+  [[nodiscard]] Axis axis(bool horizontal, double top) const;
+  [[nodiscard]] Html grid(const Axis& x, const Axis& y) const;
+  [[nodiscard]] Html ticks(const Axis& x, const Axis& y) const;
+  [[nodiscard]] static Html drawn(const Line& line, const Axis& x, const Axis& y);
+  [[nodiscard]] Legend legend() const;
 
   Text text_;
   double width_ = 720.0, height_ = 300.0;

@@ -1,56 +1,70 @@
+#include <algorithm>
+
 #include "html_page.hpp"
 #include "html_parts.hpp"
+#include "json_reader.hpp"
 #include "slideway/report/report.hpp"
+#include "slideway/trace/analysis_fields.hpp"
 
 namespace slideway {
 namespace {
 
 using Column = HtmlTable::Column;
 
-/// Links to the sections of the page.
-std::string contents(const std::string& main) {
-  const std::string opening = "<h2 id=\"", middle = "-h\">", end = "</h2>";
-  std::string out;
-  for (std::size_t at = 0; (at = main.find(opening, at)) != std::string::npos;) {
-    const std::size_t id = at + opening.size(), stop = main.find(middle, id);
-    const std::size_t title = stop + middle.size();
-    at = main.find(end, title);
-    out += "<li><a href=\"#" + main.substr(id, stop - id) + "\">" + main.substr(title, at - title) +
-           "</a></li>\n";
-  }
-  return "<nav aria-label=\"Contents\"><ol>\n" + out + "</ol></nav>\n";
+Html meta(const HtmlAttributes& attributes) { return element("meta", attributes) + "\n"; }
+
+Html head(const std::string& title, bool has_charts) {
+  Html style = "\n";
+  if (has_charts) style += Html::verbatim(page::kChartStyle);
+  style += Html::verbatim(page::kStyle);
+  return element("head",
+                 "\n" + meta({{"charset", "utf-8"}}) +
+                     meta({{"http-equiv", "Content-Security-Policy"},
+                           {"content",
+                            "default-src 'none'; style-src 'unsafe-inline'; script-src "
+                            "'unsafe-inline'"}}) +
+                     meta({{"name", "viewport"},
+                           {"content", "width=device-width, initial-scale=1"}}) +
+                     meta({{"name", "color-scheme"}, {"content", "light dark"}}) +
+                     element("title", title) + "\n" + element("style", style) + "\n");
 }
 
+Html script(std::string_view text) {
+  return element("script", "\n" + Html::verbatim(text)) + "\n";
+}
+
+/// A page of the sections that have a body, with links to them.
 std::string page_of(const std::string& title, const std::string& subtitle,
-                    const std::string& main) {
-  const bool charts = main.find("class=\"long\"") != std::string::npos;
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-      "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n<title>" +
-      title + "</title>\n<style>\n";
-  if (charts) out.append(page::kChartStyle);
-  out.append(page::kStyle) +=
-      "</style>\n</head>\n<body>\n<a class=\"skip\" href=\"#verdict\">Skip to the "
-      "verdict</a>\n<header>\n<h1>" +
-      title + "</h1>\n<p>" + subtitle + "</p>\n" + contents(main) + "</header>\n<main>\n" + main +
-      "</main>\n";
-  if (charts) {
-    out.append("<script>\n").append(page::kChartScript).append("</script>\n");
-    out.append("<script>\n").append(page::kScript).append("</script>\n");
+                    const HtmlSections& sections) {
+  Html links, main = "\n";
+  for (const HtmlSection& each : sections) {
+    if (each.body.empty()) continue;
+    const std::string heading = each.id + "-h";
+    links += element("li", element("a", {{"href", "#" + each.id}}, each.title));
+    main += element("section", {{"id", each.id}, {"aria-labelledby", heading}},
+                    "\n" + element("h2", {{"id", heading}}, each.title) + each.body);
   }
-  return out + "</body>\n</html>\n";
+  const bool has_charts = main.markup().find("class=\"long\"") != std::string::npos;
+  const Html header =
+      element("h1", title) + "\n" + element("p", subtitle) +
+      element("nav", {{"aria-label", "Contents"}}, element("ol", "\n" + links));
+  Html body = "\n" + element("a", {{"class", "skip"}, {"href", "#verdict"}}, "Skip to the verdict") +
+              "\n" + element("header", header) + "\n" + element("main", main) + "\n";
+  if (has_charts) body += script(page::kChartScript) + script(page::kScript);
+  return "<!DOCTYPE html>\n" +
+         element("html", {{"lang", "en"}},
+                 "\n" + head(title, has_charts) + "\n" + element("body", body) + "\n")
+             .markup() +
+         "\n";
 }
 
-std::string report_page(const Node& report) {
-  const std::string given = html_text(report["title"]);
-  const std::string title = given.empty() ? "Carriage errors from a turned face" : given;
-  return page_of(title,
-                 "Carriage errors of a lathe from the flatness of a turned face · slideway " +
-                     html_text(report["version"]),
-                 html_verdict(report) + html_pictures(report) + html_tables(report));
+std::string subject(const Result& result) {
+  const auto is_slide = [](const InputSummary& in) { return in.kind == Kind::slide; };
+  if (std::ranges::all_of(result.inputs, is_slide))
+    return "Straightness of a slide from readings along it";
+  return std::ranges::any_of(result.inputs, is_slide)
+             ? "Carriage errors of a lathe from turned faces and readings along the slide"
+             : "Carriage errors of a lathe from the flatness of a turned face";
 }
 
 std::string columns_page(const Node& document) {
@@ -62,22 +76,41 @@ std::string columns_page(const Node& document) {
                    {"at that lag", Column::number},
                    {"effective values", Column::number},
                    {"p", Column::number}});
+  const auto name = [](const Node& value) {
+    return value.is_number() ? html_number(value.number(), 6) : Html(value.verbatim());
+  };
   for (const Node& row : document["ranking"].entries())
-    table.add({html_text(row["candidate"]), html_cell(row["raw"], 3), html_cell(row["low_band"], 3),
-               html_cell(row["lag"], 3), html_cell(row["lag_coefficient"], 3),
-               html_cell(row["effective_observations"], 3),
+    table.add({name(row["candidate"]), html_number(row["raw"].number(), 3),
+               html_number(row["low_band"].number(), 3), html_number(row["lag"].number(), 3),
+               html_number(row["lag_coefficient"].number(), 3),
+               html_number(row["effective_observations"].number(), 3),
                html_probability(row["p_value"].number())});
-  return page_of("Correlation with column " + html_text(document["signal"]),
-                 html_text(document["file"]) + " · slideway",
-                 html_section("verdict", "Ranking", table.html()));
+  const Node signal = document["signal"];
+  const std::string of =
+      signal.is_number() ? std::to_string(signal.count()) : signal.verbatim();
+  return page_of("Correlation with column " + of, document["file"].verbatim() + " · slideway",
+                 {{"verdict", "Ranking", table.html()}});
 }
 
 }  // namespace
 
+std::string html_report(const Analysis& analysis) {
+  const Result& result = analysis.result;
+  const std::string what = subject(result);
+  return page_of(result.title.empty() ? what : result.title, what + " · slideway " + result.version,
+                 {html_verdict(analysis), html_profiles(analysis), html_straightness(analysis),
+                  html_correlation(analysis), html_residual(analysis), html_bands(analysis),
+                  html_what_if(analysis), html_uncertainty(analysis),
+                  html_identifiability(analysis), html_loop(analysis), html_data(analysis),
+                  html_method(analysis)});
+}
+
 std::string html_report(std::string_view json, const std::string& name) {
   return read_document(json, name, {kReportSchema, kColumnsSchema}, [](const Node& document) {
-    return document["schema"].verbatim() == kReportSchema ? report_page(document)
-                                                          : columns_page(document);
+    if (document["schema"].verbatim() == kColumnsSchema) return columns_page(document);
+    Analysis analysis;
+    read(document, analysis);
+    return html_report(analysis);
   });
 }
 

@@ -1,73 +1,28 @@
 #include <map>
 
 #include "html_parts.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/trace/analysis_fields.hpp"
 
 namespace slideway {
 namespace {
 
 using Column = HtmlTable::Column;
 
-// --- what-if --------------------------------------------------------------------------------
-
-std::string what_if(const Node& report) {
-  HtmlTable table("Flatness predicted if one source alone were corrected",
-                  {{"profile", Column::text},
-                   {"corrected", Column::text},
-                   {"peak to valley", Column::number},
-                   {"rms", Column::number},
-                   {"peak to valley, of the measured", Column::number}});
-  std::map<std::string, double> measured;
-  for (const Node& each : report["what_if"].entries()) {
-    const std::string& profile = each["profile"].verbatim();
-    const std::string& corrected = each["corrected"].verbatim();
-    const double pv = each[each.has("pv_um") ? "pv_um" : "pv_urad"].number();
-    if (corrected.empty()) measured[profile] = pv;
-    const double whole = measured[profile];
-    table.add({escaped(profile),
-               corrected.empty()    ? "nothing (as measured)"
-               : corrected == "all" ? "all sources of the final model"
-                                    : html_bold(corrected),
-               html_size(each, "pv"), html_size(each, "rms"),
-               whole > 0.0 ? html_number(100.0 * pv / whole, 3) + " %" : "–"});
-  }
-  if (table.empty()) return "";
-  return html_section(
-      "what-if", "What correcting each source would bring",
-      table.html() +
-          "<p class=\"hint\">In the low band, each trace levelled anew as the problem file allows. "
-          "A "
-          "source whose correction makes the face less flat hides another one: correct both or "
-          "neither. Where a parameter is not determined, the share of its effect is a "
-          "convention.</p>\n");
-}
-
 // --- data ---------------------------------------------------------------------------------------
 
-std::string closure(const Node& report) {
-  if (!report.has("closure")) return "";
-  const Node what = report["closure"];
-  HtmlTable table(
-      "Closure between lines: what each reads where it meets others, against what they "
-      "say; offsets and tilts are free",
-      {{"profile", Column::text},
-       {"x, mm", Column::number},
-       {"y, mm", Column::number},
-       {"as the data stand, µm", Column::number},
-       {"closure, µm", Column::number},
-       {"standard uncertainty, µm", Column::number}});
-  for (const Node& each : what["readings"].entries())
-    table.add({html_text(each["profile"]), html_cell(each["x_mm"]), html_cell(each["y_mm"]),
-               html_cell(each["difference_um"]), html_cell(each["closure_um"]),
-               html_cell(each["standard_uncertainty_um"])});
-  return table.html() + html_list(html_texts(what["notes"]));
-}
-
-std::string inputs(const Node& report) {
-  HtmlTable files("Files", {{"profile", Column::text},
+Html files(const Result& result) {
+  HtmlTable table("Files", {{"profile", Column::text},
                             {"file", Column::text},
                             {"format", Column::text},
                             {"SHA-256", Column::text}});
-  HtmlTable sizes("Profiles", {{"profile", Column::text},
+  for (const InputSummary& in : result.inputs)
+    table.add({in.name, in.file, in.format.empty() ? "–" : in.format, element("code", in.sha256)});
+  return table.html();
+}
+
+Html sizes(const Result& result) {
+  HtmlTable table("Profiles", {{"profile", Column::text},
                                {"kind", Column::text},
                                {"role", Column::text},
                                {"samples", Column::number},
@@ -77,33 +32,58 @@ std::string inputs(const Node& report) {
                                {"peak to valley", Column::number},
                                {"missing", Column::number},
                                {"left out", Column::number}});
-  HtmlTable outliers(
-      "Rows that their neighbours contradict (the largest of each profile); left out "
-      "only where the problem file says so",
+  for (const InputSummary& in : result.inputs)
+    table.add({in.name, Html(text_of(in.kind)) + " " + text_of(in.quantity), text_of(in.role),
+               std::to_string(in.samples), html_number(in.position_min_mm, 6),
+               html_number(in.position_max_mm, 6), html_size(in.rms_um, in.rms_urad),
+               html_size(in.pv_um, in.pv_urad), std::to_string(in.missing),
+               std::to_string(in.left_out)});
+  return table.html();
+}
+
+Html outliers(const Result& result) {
+  HtmlTable table(
+      "Rows that their neighbours contradict (the largest of each profile); left out only where "
+      "the problem file says so",
       {{"profile", Column::text},
        {"row", Column::number},
        {"kind", Column::text},
        {"value", Column::number},
        {"expected", Column::number},
        {"unit", Column::text}});
-  std::vector<std::string> remarks;
-  for (const Node& in : report["inputs"].entries()) {
-    const std::string name = html_text(in["name"]);
-    files.add({name, html_text(in["file"]), in.has("format") ? html_text(in["format"]) : "–",
-               "<code>" + html_text(in["sha256"]) + "</code>"});
-    sizes.add({name, html_text(in["kind"]) + " " + html_text(in["quantity"]), html_text(in["role"]),
-               html_cell(in["samples"], 9), html_cell(in["position_min_mm"], 6),
-               html_cell(in["position_max_mm"], 6), html_size(in, "rms"), html_size(in, "pv"),
-               html_cell(in["missing"], 9), html_cell(in["left_out"], 9)});
-    for (const Node& each : in["outliers"].entries())
-      outliers.add({name, html_cell(each["row"], 9), html_text(each["kind"]),
-                    html_cell(each["value"]), html_cell(each["expected"]), html_unit(each)});
-    for (const std::string& note : html_texts(in["notes"])) remarks.push_back(name + ": " + note);
-  }
-  return files.html() + sizes.html() + outliers.html() + html_list(remarks) + closure(report);
+  for (const InputSummary& in : result.inputs)
+    for (const OutlierSummary& each : in.outliers)
+      table.add({in.name, std::to_string(each.row), text_of(each.kind), html_number(each.value),
+                 html_number(each.expected), unit_name(each.unit)});
+  return table.html();
 }
 
-std::string setups(const Node& report) {
+Html closure(const Result& result) {
+  if (!result.closure) return {};
+  HtmlTable table(
+      "Closure between lines: what each reads where it meets others, against what they say; "
+      "offsets and tilts are free",
+      {{"profile", Column::text},
+       {"x, mm", Column::number},
+       {"y, mm", Column::number},
+       {"as the data stand, µm", Column::number},
+       {"closure, µm", Column::number},
+       {"standard uncertainty, µm", Column::number}});
+  for (const MisclosureSummary& each : result.closure->readings)
+    table.add({each.profile, html_number(each.x_mm), html_number(each.y_mm),
+               html_number(each.difference_um), html_number(each.closure_um),
+               html_number(each.standard_uncertainty_um)});
+  return table.html() + html_list(result.closure->notes);
+}
+
+Html input_notes(const Result& result) {
+  std::vector<std::string> remarks;
+  for (const InputSummary& in : result.inputs)
+    for (const std::string& note : in.notes) remarks.push_back(in.name + ": " + note);
+  return html_list(remarks);
+}
+
+Html setups(const Details& details) {
   HtmlTable table("How each profile was cut and measured", {{"profile", Column::text},
                                                             {"Z, mm", Column::number},
                                                             {"overhang, mm", Column::number},
@@ -113,18 +93,34 @@ std::string setups(const Node& report) {
                                                             {"cut", Column::text},
                                                             {"cut radius, mm", Column::number},
                                                             {"stylus, mm/s", Column::number}});
-  for (const Node& s : report["setups"].entries())
-    table.add({html_text(s["profile"]), html_cell(s["z_mm"]), html_cell(s["overhang_mm"]),
-               html_cell(s["center_mm"]), html_cell(s["feed_mm_per_min"]),
-               html_cell(s["spindle_rpm"]),
-               s.has("cut_direction") ? html_text(s["cut_direction"]) : "–",
-               html_cell(s["cut_radius_mm"]), html_cell(s["traverse_mm_per_s"])});
+  for (const ProfileSetup& each : details.setups) {
+    const Setup& s = each.setup;
+    table.add({each.profile, html_number(s.z_mm), html_number(s.overhang_mm),
+               html_number(s.center_mm), html_number(s.feed_mm_per_min), html_number(s.spindle_rpm),
+               s.cut_direction ? text_of(*s.cut_direction) : "–", html_number(s.cut_radius_mm),
+               html_number(s.traverse_mm_per_s)});
+  }
+  return table.html();
+}
+
+Html assumed(const Result& result) {
+  HtmlTable table(
+      "Assumed: what the problem file does not say",
+      {{"key", Column::text}, {"taken as", Column::text}, {"why", Column::text}});
+  for (const Assumption& each : result.assumed)
+    table.add({element("code", each.key), each.value.empty() ? "–" : each.value, each.why});
+  return table.html();
+}
+
+Html about(const Result& result) {
+  HtmlTable table("About the measurement", {{"", Column::text}, {"", Column::text}});
+  for (const auto& [key, value] : result.about) table.add({effect_title(key), value});
   return table.html();
 }
 
 // --- model and options --------------------------------------------------------------------------
 
-std::string model(const Node& report) {
+Html model(const Details& details) {
   HtmlTable table("height = sum of these effects + levelling of the trace + noise",
                   {{"effect", Column::text},
                    {"formula", Column::text},
@@ -133,89 +129,142 @@ std::string model(const Node& report) {
                    {"cause", Column::text},
                    {"confounded with", Column::text},
                    {"separated by", Column::text}});
-  for (const Node& e : report["model"].entries())
-    table.add({html_text(e["name"]) + (e["added"].truth() ? " <small>(added)</small>" : ""),
-               html_text(e["formula"]), html_text(e["source"]), html_text(e["standard_name"]),
-               html_text(e["cause"]), html_text(e["confounded_with"]),
-               html_text(e["separated_by"])});
+  for (const EffectInModel& e : details.effects)
+    table.add({Html(effect_title(e.name)) + (e.added ? small(" (added by the loop)") : Html()),
+               e.formula, e.source, e.standard_name, e.cause, with_titles(e.confounded_with),
+               with_titles(e.separated_by)});
   return table.html();
 }
 
-void add_options(const Node& report, HtmlTable& table) {
-  const Node given = report["options"];
+void add_options(const Analysis& analysis, HtmlTable& table) {
+  const OptionsSummary& given = *analysis.details.options;
   std::vector<std::string> bodies;
-  for (const Node& body : given["bodies"].entries())
-    bodies.push_back(html_text(body["name"]) + " along " + html_text(body["axis"]) + " on body " +
-                     html_text(body["lower"]));
+  for (const Body& body : given.bodies)
+    bodies.push_back(body.name + " along " + std::string(text_of(body.axis)) + " on body " +
+                     std::to_string(body.lower));
   table.add({"lower-body array, Eq. (1)", "0 bed, spindle, workpiece; " + joined(bodies)});
-  table.add({"lever", html_text(given["lever"])});
-  table.add({"closed loop", report.has("trace")
-                                ? "at most " + html_text(given["max_effects"]) +
-                                      " effects, significance " + html_text(given["significance"])
-                                : "not run"});
-  table.add({"candidates of the loop", joined(html_texts(given["candidates"]))});
-  for (const Node& prior : given["priors"].entries())
-    table.add({"prior on " + html_text(prior["parameter"]),
-               html_number(prior["value"].number(), 6) + ", standard uncertainty " +
-                   html_number(prior["standard_uncertainty"].number(), 3)});
-  if (!given.has("runout")) return;
-  const Node r = given["runout"];
+  table.add({"lever", text_of(given.lever)});
+  table.add({"closed loop", analysis.trace ? "at most " + Html(std::to_string(given.max_effects)) +
+                                                 " effects, significance " +
+                                                 html_number(given.significance)
+                                           : "not run"});
+  table.add({"candidates of the loop", effect_titles(given.candidates, ", ")});
+  for (const PriorSummary& prior : given.priors)
+    table.add({"prior on " + prior.parameter,
+               html_number(prior.value, 6) + ", standard uncertainty " +
+                   html_number(prior.standard_uncertainty, 3)});
+  if (!given.runout) return;
+  const Runout& r = *given.runout;
   table.add({"run-out, Eq. (21)",
-             "r = " + html_cell(r["r_um"]) + " µm, p = " + html_cell(r["p_um"]) +
-                 " µm over L = " + html_cell(r["diameter_mm"]) + " mm, standard uncertainty " +
-                 html_cell(r["standard_uncertainty_um"]) + " µm"});
+             "r = " + html_number(r.r_um) + " µm, p = " + html_number(r.p_um) + " µm over L = " +
+                 html_number(r.diameter_mm) + " mm, standard uncertainty " +
+                 html_number(r.standard_uncertainty_um) + " µm"});
 }
 
-std::string options(const Node& report) {
+Html options(const Analysis& analysis) {
+  const Result& result = analysis.result;
   HtmlTable table("Software and options", {{"option", Column::text}, {"value", Column::text}});
-  table.add({"software",
-             "slideway " + html_text(report["version"]) + ", " + html_text(report["schema"])});
-  for (const Node& low : report["low_band"].entries())
-    table.add({"low band of " + html_text(low["profile"]),
-               low["level"].number() == 0.0
-                   ? "none, the profile as it is"
-                   : html_text(low["wavelet"]) + ", level " + html_text(low["level"]) + ", ends " +
-                         html_text(low["boundary"]) + ", " + html_text(low["values"]) + " values"});
-  if (report.has("options")) add_options(report, table);
+  table.add({"software", "slideway " + result.version + ", " + analysis.schema});
+  for (const LowBandSummary& low : result.low_band)
+    table.add({"low band of " + low.profile,
+               (low.level == 0 ? "none, the profile as it is"
+                               : low.wavelet + ", level " + std::to_string(low.level) + ", ends " +
+                                     std::string(text_of(low.boundary))) +
+                   ", " + counted(low.values, "value")});
+  if (analysis.details.options) add_options(analysis, table);
   return table.html();
 }
 
-std::string conventions() {
-  return "<h3>Units and signs</h3>\n"
-         "<p>Positions in mm, heights and deviations in µm, angles in rad; 1 µm/m = "
-         "10<sup>−6</sup> rad "
-         "= 0.206″. Heights are positive out of the workpiece, along +Z (ISO 841). "
-         "Δβ<sub>xz</sub> turns the X motion about +Y and enters the height as "
-         "−Δβ<sub>xz</sub> p<sub>x</sub>, Eq. (15): where it is positive, the face falls from the "
-         "centre to the rim. Straightness is positive along +Z, from the stated reference line. "
-         "A run-out tells the size of the squareness, not its sign. "
-         "<i>U</i> = <i>k</i> <i>u</i> covers 95.45 %; <i>k</i> is Student's factor for the "
-         "effective "
-         "degrees of freedom (GUM G.4.1) and 2 for many.</p>\n";
+Html gates(const Analysis& analysis) {
+  if (!analysis.trace) return {};
+  HtmlTable table("Gates of the closed loop, [trace] of the problem file",
+                  {{"gate", Column::text}, {"value", Column::number}});
+  for (const auto& [gate, value] : analysis.trace->gates)
+    table.add({element("code", gate), html_number(value)});
+  Html out = table.html();
+  if (analysis.trace->fragile)
+    out += element("p", "With " + element("code", analysis.trace->fragile->gate) + " = " +
+                            html_number(analysis.trace->fragile->value) +
+                            " the verdict would be " +
+                            bold(text_of(analysis.trace->fragile->verdict)) + ".");
+  return out;
 }
 
-std::string to_fill_in() {
-  std::string rows;
+Html conventions() {
+  return element("h3", "Units and signs") +
+         element(
+             "p",
+             "Positions in mm, heights and deviations in µm, angles in rad; 1 µm/m = 10" +
+                 element("sup", "−6") +
+                 " rad = 0.206″. Heights are positive out of the workpiece, along +Z (ISO 841). " +
+                 html_symbol("Δβ_xz") + " turns the X motion about +Y and enters the height as −" +
+                 html_symbol("Δβ_xz") + " " + html_symbol("p_x") +
+                 ", Eq. (15): where it is positive, the face falls from the centre to the rim. "
+                 "Straightness is positive along +Z, from the stated reference line. A run-out "
+                 "tells the size of the squareness, not its sign. " +
+                 html_symbol("U") + " = " + html_symbol("k") + " " + html_symbol("u") +
+                 " covers 95.45 %; " + html_symbol("k") +
+                 " is Student's factor for the effective degrees of freedom (GUM G.4.1) and 2 for "
+                 "many.");
+}
+
+Html to_fill_in() {
+  Html rows;
   for (const char* what :
        {"Machine: type, serial number, axis configuration", "Date, operator, laboratory",
         "Instrument: make, serial number, calibration due, tip, filter",
         "Workpiece, clamping, tool; when measured after cutting",
         "Temperature at start and end, warm-up", "Compensation active in the control (yes/no)"})
-    rows += std::string("<tr><th scope=\"row\">") + what + "</th><td></td></tr>\n";
-  return html_scroll(
-             "<table class=\"fill\"><caption>Not in the files, to be filled in (ISO 230-1, ISO/IEC "
-             "17025)</caption><tbody>\n" +
-             rows + "</tbody></table>") +
-         "\n";
+    rows += element("tr", element("th", {{"scope", "row"}}, what) + element("td"));
+  return html_scroll(element(
+      "table", {{"class", "fill"}},
+      element("caption", "Not in the files, to be filled in (ISO 230-1, ISO/IEC 17025)") +
+          element("tbody", rows)));
+}
+
+std::string corrected(const std::string& effect) {
+  if (effect.empty()) return "nothing (as measured)";
+  return effect == "all" ? "all sources of the final model" : effect_title(effect);
 }
 
 }  // namespace
 
-std::string html_tables(const Node& report) {
-  return what_if(report) + html_uncertainty(report) + html_loop(report) +
-         html_section("data", "Data", inputs(report) + setups(report)) +
-         html_section("model", "Model and options",
-                      model(report) + options(report) + conventions() + to_fill_in());
+HtmlSection html_what_if(const Analysis& analysis) {
+  HtmlTable table("Flatness predicted if one source alone were corrected",
+                  {{"profile", Column::text},
+                   {"corrected", Column::text},
+                   {"peak to valley", Column::number},
+                   {"rms", Column::number},
+                   {"peak to valley, of the measured", Column::number}});
+  std::map<std::string, double> measured;
+  for (const PredictedFlatness& each : analysis.details.what_if) {
+    const double pv = (each.pv_um ? each.pv_um : each.pv_urad).value_or(0.0);
+    if (each.corrected.empty()) measured[each.profile] = pv;
+    const double whole = measured[each.profile];
+    table.add({each.profile, corrected(each.corrected), html_size(each.pv_um, each.pv_urad),
+               html_size(each.rms_um, each.rms_urad),
+               whole > 0.0 ? html_number(100.0 * pv / whole, 3) + " %" : "–"});
+  }
+  const Html hint = element(
+      "p", {{"class", "hint"}},
+      "In the low band, each trace levelled anew as the problem file allows. A source whose "
+      "correction makes the form larger hides another one: correct both or neither. Where a "
+      "parameter is not determined, the share of its effect is a convention.");
+  return {"what-if", "What correcting each source would bring",
+          table.empty() ? Html() : table.html() + hint};
+}
+
+HtmlSection html_data(const Analysis& analysis) {
+  const Result& result = analysis.result;
+  return {"data", "Data",
+          about(result) + files(result) + sizes(result) + outliers(result) + input_notes(result) +
+              closure(result) + setups(analysis.details) + assumed(result)};
+}
+
+HtmlSection html_method(const Analysis& analysis) {
+  return {"model", "Model and options",
+          model(analysis.details) + options(analysis) + gates(analysis) + conventions() +
+              (analysis.result.about.empty() ? to_fill_in() : Html())};
 }
 
 }  // namespace slideway

@@ -4,6 +4,9 @@
 #include <span>
 
 #include "html_parts.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/identify/result_fields.hpp"
+#include "text_parts.hpp"
 
 namespace slideway {
 namespace {
@@ -11,31 +14,26 @@ namespace {
 using Column = HtmlTable::Column;
 constexpr std::size_t kLargest = 20;  // correlations listed
 
-std::string budget_heading(const Node& line) {
-  return html_text(line["source"]) + " <small>(type " + html_text(line["type"]) + ")</small>";
-}
-
 /// A parameter a row, a source a column; every parameter has the same sources.
-std::string budget(const Node& report) {
-  const std::vector<Node> budgets = report["final"]["uncertainty_budget"].entries();
-  if (budgets.empty()) return "";
-  const std::vector<Node> sources = budgets.front()["lines"].entries();
-  std::vector<std::pair<std::string, Column>> columns{{"parameter", Column::text},
-                                                      {"unit", Column::text}};
-  for (const Node& line : sources) columns.emplace_back(budget_heading(line), Column::number);
+Html budget(const ModelResult& model) {
+  if (model.budget.empty()) return {};
+  const std::vector<BudgetLine>& sources = model.budget.front().lines;
+  std::vector<std::pair<Html, Column>> columns{{"parameter", Column::text},
+                                               {"unit", Column::text}};
+  for (const BudgetLine& line : sources)
+    columns.emplace_back(Html(line.source) + " " + small("(type " + Html(text_of(line.type)) + ")"),
+                         Column::number);
   columns.emplace_back("combined u", Column::number);
   HtmlTable table("Uncertainty budget: contribution to u, and its share of u²", columns);
-  for (const Node& each : budgets) {
-    const std::vector<Node> lines = each["lines"].entries();
-    if (lines.size() != sources.size()) each["lines"].fail("as many sources as the first has");
+  for (const Budget& each : model.budget) {
     double total = 0.0;
-    for (const Node& line : lines) total += std::pow(line["standard_uncertainty"].number(), 2);
-    std::vector<std::string> cells{html_text(each["parameter"]), html_unit(each)};
-    for (const Node& line : lines) {
-      const double u = line["standard_uncertainty"].number();
+    for (const BudgetLine& line : each.lines) total += std::pow(line.standard_uncertainty, 2);
+    std::vector<Html> cells{each.parameter, html_unit(each.unit)};
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      const double u = i < each.lines.size() ? each.lines[i].standard_uncertainty : NAN;
       const double share = total > 0.0 ? 100.0 * u * u / total : 0.0;
-      cells.push_back(html_number(u, 2) + "<br><small>" +
-                      html_number(std::round(10.0 * share) / 10.0, 3) + " %</small>");
+      cells.push_back(html_number(u, 2) + element("br") +
+                      small(html_number(std::round(10.0 * share) / 10.0, 3) + " %"));
     }
     cells.push_back(html_number(std::sqrt(total), 2));
     table.add(cells);
@@ -43,10 +41,10 @@ std::string budget(const Node& report) {
   return table.html();
 }
 
-std::string noise(const Node& fit) {
+Html noise(const ModelResult& model) {
   HtmlTable table(
-      "How the uncertainties were scaled: noise of one low-band value, AR(p) "
-      "correlation of the residual",
+      "How the uncertainties were scaled: noise of one low-band value, AR(p) correlation of the "
+      "residual",
       {{"profile", Column::text},
        {"standard uncertainty", Column::text},
        {"p", Column::number},
@@ -54,101 +52,104 @@ std::string noise(const Node& fit) {
        {"correlation length, mm", Column::number},
        {"effective values", Column::number},
        {"Ljung-Box p", Column::number}});
-  for (const Node& n : fit["noise"].entries())
-    table.add({html_text(n["profile"]), html_text(n["scaling"]), html_cell(n["order"]),
-               html_size(n, "standard_deviation"), html_cell(n["correlation_mm"], 3),
-               html_cell(n["effective_observations"], 3),
-               html_probability(n["ljung_box_p"].number())});
+  for (const NoiseSummary& n : model.noise)
+    table.add({n.profile, text_of(n.scaling), std::to_string(n.order),
+               html_size(n.standard_deviation_um, n.standard_deviation_urad),
+               html_number(n.correlation_mm, 3), html_number(n.effective_observations, 3),
+               html_probability(n.ljung_box_p)});
   return table.html();
 }
 
-std::string correlations(const Node& fit) {
-  std::vector<ParameterCorrelation> pairs = fit["correlations"].list([](const Node& each) {
-    const std::vector<Node> parts = each.entries();
-    if (parts.size() != 3) each.fail("two names and a coefficient");
-    return ParameterCorrelation(parts[0].text(), parts[1].text(), parts[2].number());
-  });
-  std::ranges::stable_sort(pairs, std::greater(), [](const ParameterCorrelation& pair) {
-    return std::abs(std::get<2>(pair));
-  });
+Html correlations(const ModelResult& model) {
+  std::vector<ParameterCorrelation> pairs = model.correlations;
+  std::ranges::stable_sort(
+      pairs, std::greater(),
+      [](const ParameterCorrelation& pair) { return std::abs(std::get<2>(pair)); });
   const std::size_t listed = std::min(kLargest, pairs.size());
-  HtmlTable table(
-      "Correlation of the estimates, the " + std::to_string(listed) + " largest of " +
-          std::to_string(pairs.size()) + " above 0.1",
-      {{"parameter", Column::text}, {"parameter", Column::text}, {"ρ", Column::number}});
+  HtmlTable table("Correlation of the estimates, the " + std::to_string(listed) + " largest of " +
+                      std::to_string(pairs.size()) + " above 0.1",
+                  {{"parameter", Column::text}, {"parameter", Column::text}, {"ρ", Column::number}});
   for (const auto& [a, b, coefficient] : std::span(pairs).first(listed))
-    table.add({escaped(a), escaped(b), html_number(coefficient, 4)});
+    table.add({a, b, html_number(coefficient, 4)});
   return table.html();
 }
 
-std::string covered() {
-  return "<p class=\"hint\">Covered: noise of the profiles, its correlation, and the priors of the "
-         "problem file. <b>Not covered:</b> calibration of the instrument (scale, datum, tip), "
-         "temperature, clamping, change of the workpiece between cutting and measuring, and "
-         "whatever the model leaves out without a trace in the residual. Put these into the "
-         "combined uncertainty by hand (GUM 5; ISO/TR 230-9).</p>\n";
+Html covered() {
+  return element("p", {{"class", "hint"}},
+                 "Covered: noise of the profiles, its correlation, and the priors of the problem "
+                 "file. " +
+                     bold("Not covered:") +
+                     " calibration of the instrument (scale, datum, tip), temperature, clamping, "
+                     "change of the workpiece between cutting and measuring, and whatever the "
+                     "model leaves out without a trace in the residual. Put these into the "
+                     "combined uncertainty by hand (GUM 5; ISO/TR 230-9).");
 }
 
-std::string levelling(const Node& fit) {
+Html levelling(const ModelResult& model) {
   HtmlTable table("Levelling of the traces, found with the parameters",
                   {{"trace", Column::text}, {"value ± U", Column::number}, {"unit", Column::text}});
-  for (const Node& p : fit["nuisances"].entries()) {
-    const auto value = p["value"].number_or_null(), U = p["expanded_uncertainty"].number_or_null();
-    if (value && U) table.add({html_text(p["name"]), html_pair(*value, *U), html_unit(p)});
-  }
+  for (const FittedParameter& p : model.nuisances)
+    table.add({p.name, html_value(p), html_unit(p.unit)});
   return table.html();
 }
 
-std::string uncertainty(const Node& report) {
-  std::string out = budget(report);
-  if (report.has("final")) {
-    const Node fit = report["final"];
-    const std::string notes = html_list(html_texts(fit["notes"]));
-    out += noise(fit) + correlations(fit) + levelling(fit) + covered() +
-           (notes.empty() ? "" : "<h3>Notes of the fit</h3>\n" + notes);
-  }
-  return html_section("uncertainty", "Uncertainty", out);
-}
-
-// --- what cannot be determined -----------------------------------------------------------------
-
-std::string in_words(const Node& combination) {
-  std::string out;
-  for (const auto& [name, value] : combination.named_numbers()) {
-    out += out.empty() ? (value < 0.0 ? "−" : "") : (value < 0.0 ? " − " : " + ");
-    const std::string size = html_number(std::abs(value), 3);
-    out += (size == "1" ? "" : size + " ") + escaped(name);
-  }
-  return out;
-}
-
-std::string identifiability(const Node& report) {
-  if (!report.has("final")) return "";
-  const Node what = report["final"]["identifiability"];
-  HtmlTable lost("Directions in which no prediction changes",
-                 {{"combination", Column::text}, {"what would determine it", Column::text}});
-  for (const Node& direction : what["unidentifiable"].entries())
-    lost.add({in_words(direction["combination"]), html_text(direction["advice"])});
-  HtmlTable found(
-      "What the data determine instead",
-      {{"combination", Column::text}, {"value ± U", Column::number}, {"unit", Column::text}});
-  for (const Node& sum : what["determined"].entries())
-    found.add({in_words(sum["combination"]),
-               html_pair(sum["value"].number(), sum["expanded_uncertainty"].number()),
-               html_unit(sum)});
-  return html_section(
-      "identifiability", "What cannot be determined",
-      "<p>" +
-          std::string(lost.empty() ? "All parameters of the final model are determined: rank "
-                                   : "The final model has rank ") +
-          html_text(what["rank"]) + " of " + html_text(what["parameters"]) + ", condition " +
-          html_number(what["condition"].number(), 3) + ".</p>\n" + lost.html() + found.html());
+Html held_out(const Crosscheck& checks) {
+  HtmlTable table("Profiles held out: measured against predicted",
+                  {{"profile", Column::text},
+                   {"chi-square per value", Column::number},
+                   {"p", Column::number},
+                   {"largest difference", Column::number},
+                   {"at, mm", Column::number},
+                   {"verdict", Column::text}});
+  for (const HeldOutCheck& check : checks.held_out)
+    table.add({check.profile, html_number(check.chi2, 3), html_probability(check.p_value),
+               html_size(check.largest_um, check.largest_urad), html_number(check.at_mm),
+               bold(text_of(check.verdict))});
+  HtmlTable among("The same quantity from several profiles",
+                  {{"what", Column::text},
+                   {"profiles", Column::text},
+                   {html_symbol("E_n"), Column::number},
+                   {"verdict", Column::text}});
+  for (const ProfileCheck& check : checks.profiles)
+    among.add({check.what, joined(check.profiles, " and "), html_number(check.En, 2),
+               bold(text_of(check.verdict))});
+  return table.html() + among.html();
 }
 
 }  // namespace
 
-std::string html_uncertainty(const Node& report) {
-  return uncertainty(report) + identifiability(report);
+HtmlSection html_uncertainty(const Analysis& analysis) {
+  const Result& result = analysis.result;
+  if (!result.final) return {};
+  const ModelResult& model = *result.final;
+  std::vector<std::string> remarks = result.notes;
+  remarks.insert(remarks.end(), model.notes.begin(), model.notes.end());
+  for (std::string& each : remarks) each = with_titles(each);
+  Html body = budget(model) + noise(model) + correlations(model) + levelling(model) +
+              held_out(result.crosscheck) + covered();
+  if (!remarks.empty()) body += element("h3", "Notes") + html_list(remarks);
+  return {"uncertainty", "Uncertainty", body};
+}
+
+HtmlSection html_identifiability(const Analysis& analysis) {
+  if (!analysis.result.final) return {};
+  const ModelResult& model = *analysis.result.final;
+  const Identifiability& what = model.identifiability;
+  HtmlTable lost("Directions in which no prediction changes",
+                 {{"combination", Column::text}, {"what would determine it", Column::text}});
+  for (const UndeterminedDirection& direction : what.unidentifiable)
+    lost.add({in_words(direction.combination, model), with_titles(direction.advice)});
+  HtmlTable found(
+      "What the data determine instead",
+      {{"combination", Column::text}, {"value ± U", Column::number}, {"unit", Column::text}});
+  for (const DeterminedCombination& sum : what.determined)
+    found.add({in_words(sum.combination, model), html_value(sum), html_unit(sum.unit)});
+  const std::string rank = std::to_string(what.rank) + " of " + std::to_string(what.parameters);
+  return {"identifiability", "What cannot be determined",
+          element("p", (lost.empty() ? "All parameters of the final model are determined: rank "
+                                     : "The final model has rank ") +
+                           rank + ", condition " + html_number(what.condition, 3) + ".") +
+              lost.html() + found.html()};
 }
 
 }  // namespace slideway

@@ -62,6 +62,17 @@ RoundedPair rounded(double value, double uncertainty) {
   return {at_place(value, place), at_place(uncertainty, place)};
 }
 
+bool is_known(const QuantityValue& result) {
+  return result.value && std::isfinite(*result.value) && result.expanded_uncertainty &&
+         std::isfinite(*result.expanded_uncertainty);
+}
+
+std::string value_text(const QuantityValue& result, double unit) {
+  if (!result.value || !std::isfinite(*result.value)) return "not determined";
+  if (!is_known(result)) return to_digits(*result.value / unit, 4) + " (no uncertainty)";
+  return with_uncertainty(*result.value / unit, *result.expanded_uncertainty / unit);
+}
+
 std::string fixed_point(double value, int decimals) {
   if (!std::isfinite(value)) throw std::logic_error("fixed_point: the value is not finite");
   return at_place(value, -decimals);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "slideway/trace/analysis.hpp"
 
@@ -13,11 +15,24 @@ std::string note(const std::string& text);
 /// "-" where it is not finite.
 std::string number(double value, int digits);
 std::string probability(double p);
-/// "um" as µm.
+/// "um" as µm, "urad" as µrad, "1" as nothing.
 std::string unit_text(const std::string& unit);
+/// Of a pair of numbers such as rms_um and rms_urad the one that is there, with its unit.
+std::string size_text(const std::optional<double>& um, const std::optional<double>& urad,
+                      int digits = 3);
 
-/// The closed loop. REQUIRES that it was run.
-std::string trace_text(const Analysis& analysis);
+/// "0.71 c1 - 0.71 dbeta_xz": parameters without their effect where that leaves no two alike.
+std::string in_words(const Combination& terms, const ModelResult& model);
+
+/// The final parameters; the declared model's values beside those that are another there.
+/// @param most  rows at most; of more parameters the last line says how many are not shown
+std::string parameter_table(const Result& result, std::size_t most);
+
+/// What `--full` prints after the short report.
+std::string full_text(const Analysis& analysis);
+
+/// The closed loop of `--full`.
+std::string trace_text(const TraceResult& trace);
 
 /// The residual of the profile in which the loop has lowered it most, before and after; "" where it
 /// has not.

@@ -1,16 +1,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
-#include <stdexcept>
 
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/result_fields.hpp"
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "slideway/report/report.hpp"
-#include "slideway/trace/analysis_fields.hpp"
+#include "summary.hpp"
 #include "text_parts.hpp"
 
 namespace slideway {
@@ -24,351 +23,263 @@ std::string number(double value, int digits) {
 }
 
 std::string unit_text(const std::string& unit) {
+  if (unit == "1") return "";
   return unit == "um" ? "µm" : unit == "urad" ? "µrad" : unit;
 }
 
 std::string probability(double p) { return p < 1e-4 ? "< 1e-4" : number(p, 2); }
 
+std::string size_text(const std::optional<double>& um, const std::optional<double>& urad,
+                      int digits) {
+  std::vector<std::string> out;
+  if (um) out.push_back(number(*um, digits) + " µm");
+  if (urad) out.push_back(number(*urad, digits) + " µrad");
+  return out.empty() ? "-" : joined(out);
+}
+
 namespace {
 
 using Column = TextTable::Column;
-constexpr std::size_t kLargest = 3;  // correlations listed
-constexpr double kBetter = 0.05;     // a coefficient at a lag worth telling
+constexpr std::size_t kBoxLines = 6, kAllLines = 40;
+constexpr std::size_t kParameterRows = 18, kAssumedLines = 3, kStations = 11;
 
-std::string coefficient(double value) {
-  if (!std::isfinite(value)) return "-";
-  return (value < 0.0 ? "-" : "+") + fixed_point(std::abs(value), 4);
-}
-
-std::string size_in(const std::optional<double>& um, const std::optional<double>& urad) {
-  if (um) return number(*um, 3) + " µm";
-  if (urad) return number(*urad, 3) + " µrad";
-  return "-";
-}
-
-/// With a capital and a full stop; REQUIRES a first letter of ASCII.
-std::string sentence(std::string text) {
-  if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
-  return text.back() == '.' ? text : text + ".";
-}
-
-std::string title(const Result& result) {
-  const std::string line = paragraph(
-      "", "slideway " + result.version + (result.title.empty() ? "" : ": " + result.title));
-  const std::size_t width = std::min(code_points(line) - 1, kLineWidth);
-  return line + std::string(width, '=') + "\n";
-}
-
-std::string inputs(const Result& result) {
-  TextTable table({"profile", "kind", "role", "samples", "range, mm", "rms", "p-v"},
-                  {Column::name, Column::text, Column::text, Column::number, Column::number,
-                   Column::number, Column::number});
-  std::string notes;
-  for (const InputSummary& in : result.inputs) {
-    table.add({in.name, std::string(text_of(in.kind)) + " " + std::string(text_of(in.quantity)),
-               std::string(text_of(in.role)), std::to_string(in.samples),
-               number(in.position_min_mm, 5) + " to " + number(in.position_max_mm, 5),
-               size_in(in.rms_um, in.rms_urad), size_in(in.pv_um, in.pv_urad)});
-    notes += note(in.name + ": " + in.file + ", sha256 " + in.sha256.substr(0, 16) +
-                  (in.missing > 0 ? ", " + counted(in.missing, "missing value") : "") +
-                  (in.left_out > 0 ? ", " + std::to_string(in.left_out) + " left out" : ""));
-    for (const std::string& text : in.notes) notes += note(in.name + ": " + text);
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    lines.push_back(text.substr(at, end - at));
+    at = end + 1;
   }
-  return heading("Inputs") + table.text() + notes;
+  return lines;
 }
 
-std::string closure(const ClosureSummary& closure) {
-  std::string text = heading("Closure between lines: " + std::string(text_of(closure.verdict)));
-  for (const std::string& line : closure.notes) text += note(line);
+std::string in_lines(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const std::string& line : lines) text += line + "\n";
   return text;
 }
 
-std::string low_band(const Result& result) {
-  std::string text;
-  for (const LowBandSummary& band : result.low_band) {
-    const std::string what = band.level == 0
-                                 ? "none (level 0), the profile as it is"
-                                 : band.wavelet + ", level " + std::to_string(band.level) +
-                                       ", ends " + std::string(text_of(band.boundary));
-    text += note(band.profile + ": " + what + ", " + counted(band.values, "value"));
-  }
-  return text.empty() ? "" : heading("Low band") + text;
+/// The first lines of a text; where there are more the last one ends in an ellipsis.
+std::vector<std::string> first_lines(std::vector<std::string> lines, std::size_t most) {
+  if (lines.size() <= most) return lines;
+  lines.resize(most);
+  std::string& last = lines.back();
+  while (code_points(last) + 2 > kLineWidth) last.erase(last.rfind(' '));
+  last += " …";
+  return lines;
 }
 
-std::string candidate_correlations(std::vector<CandidateCorrelation> pairs) {
-  const auto larger = [](const auto& a, const auto& b) {
-    return std::abs(a.coefficient) > std::abs(b.coefficient);
+// --- the box ---------------------------------------------------------------------------------
+
+/// Up to six lines; long entries give way from the last one up, the verdict and the numbers last.
+std::string box(const Summary& summary, const std::string& page) {
+  std::vector<std::vector<std::string>> entries;
+  const auto add = [&](const char* label, const std::string& words) {
+    std::string first = "│ " + std::string(label);
+    first.append(16 - code_points(first), ' ');
+    std::vector<std::string> lines = lines_of(paragraph(first, words));
+    for (std::size_t i = 1; i < lines.size(); ++i) lines[i].replace(0, 1, "│");
+    entries.push_back(std::move(lines));
   };
-  std::stable_sort(pairs.begin(), pairs.end(), larger);
-  if (pairs.empty()) return "";
-  std::string text = item("Largest correlations of the candidates among themselves:");
-  TextTable table({"effect", "effect", "profile", "r"},
-                  {Column::effect, Column::effect, Column::name, Column::number});
-  for (std::size_t i = 0; i < std::min(kLargest, pairs.size()); ++i)
-    table.add({pairs[i].a, pairs[i].b, pairs[i].profile, coefficient(pairs[i].coefficient)});
-  return text + table.text();
-}
-
-std::string better_when_shifted(const std::vector<Ranking>& entries) {
+  add("Verdict", summary.badge + ": " + summary.verdict + ".");
+  add("Straightness", summary.straightness + "; squareness " + summary.squareness);
+  add("Cross-check", summary.crosscheck);
+  add("Was missing", summary.missing);
+  add("Next step", summary.next);
+  add("Page", page.empty() ? "none was written; --html FILE writes it" : page);
+  std::size_t count = 0;
+  for (const auto& lines : entries) count += lines.size();
+  for (const std::size_t give : {4U, 5U, 3U, 2U, 0U, 1U})
+    while (count > kBoxLines && entries[give].size() > 1) {
+      entries[give] = first_lines(entries[give], entries[give].size() - 1);
+      --count;
+    }
   std::string text;
-  for (const Ranking& entry : entries)
-    if (std::abs(entry.lag_coefficient) > std::abs(entry.low_band) + kBetter)
-      text += " " + entry.effect + " on " + entry.profile + " " +
-              coefficient(entry.lag_coefficient) + " by " + number(entry.lag_mm, 3) + " mm,";
-  if (text.empty()) return text;
-  text.back() = '.';
-  return item("Correlation is larger when shifted:" + text);
-}
-
-std::string ranking(const RankingResult& ranking) {
-  if (ranking.entries.empty()) return "";
-  TextTable table({"effect", "profile", "raw", "low band", "N_eff", "p"},
-                  {Column::effect, Column::name, Column::number, Column::number, Column::number,
-                   Column::number});
-  for (const Ranking& entry : ranking.entries)
-    table.add({entry.effect, entry.profile, coefficient(entry.raw), coefficient(entry.low_band),
-               number(entry.effective_observations, 3), probability(entry.p_value)});
-  std::string text = heading("Ranking by correlation, Eqs. (6), (19), (20)") + table.text() +
-                     better_when_shifted(ranking.entries) +
-                     candidate_correlations(ranking.among_candidates);
-  for (const std::string& line : ranking.notes) text += note(line);
+  for (const auto& lines : entries) text += in_lines(lines);
   return text;
 }
 
-std::string dominant(const Dominant& dominant) {
-  if (!dominant.by_correlation && !dominant.by_fit) return "";
-  if (!dominant.doubt.empty()) return heading("Dominant effect: " + dominant.doubt + ".");
-  std::string text;
-  if (dominant.by_correlation) text += " by correlation " + *dominant.by_correlation + ",";
-  if (dominant.by_fit) text += " by fit " + *dominant.by_fit + ",";
-  text.back() = dominant.agree ? ':' : '.';
-  if (dominant.agree) text += *dominant.agree ? " the two agree." : " the two do not agree.";
-  return heading("Dominant effect:" + text);
+// --- parameters ---------------------------------------------------------------------------------
+
+/// k, with ν where it is finite; "" for the 2 of many degrees of freedom.
+std::string coverage(const FittedParameter& p) {
+  if (!is_known(p) || !p.coverage_factor) return "";
+  const std::string k = fixed_point(*p.coverage_factor, 2);
+  if (k == "2.00") return "";
+  return k + (p.degrees_of_freedom ? " (ν " + number(*p.degrees_of_freedom, 2) + ")" : "");
 }
 
 std::string value_of(const FittedParameter& p) {
-  if (!p.identifiable || !p.value) return "not determined";
-  if (!p.expanded_uncertainty) return number(*p.value, 6) + " (no uncertainty)";
-  return with_uncertainty(*p.value, *p.expanded_uncertainty);
+  return value_text(p) + (p.at_bound ? ", at its bound" : "");
 }
 
-void add_parameter(TextTable& table, const FittedParameter& p) {
-  const bool known = p.identifiable && p.value;
-  table.add({p.symbol, p.name, value_of(p), unit_text(p.unit),
-             known && p.coverage_factor ? fixed_point(*p.coverage_factor, 2) : "",
-             p.at_bound ? "at its bound" : ""});
-  const bool is_squareness = motion_error_of(p.name) == MotionError::squareness;
-  if (!known || !p.expanded_uncertainty || !is_squareness) return;
-  table.add({"", "  in µm/m", with_uncertainty(*p.value * 1e6, *p.expanded_uncertainty * 1e6),
-             "µm/m", "", ""});
-  table.add({"", "  in arcsec",
-             with_uncertainty(*p.value / kArcsecond, *p.expanded_uncertainty / kArcsecond),
-             "arcsec", "", ""});
+/// What the declared model gave, where that is another number.
+std::string declared_value(const Result& result, const FittedParameter& p) {
+  const FittedParameter* const before =
+      result.declared ? result.declared->find(p.name) : nullptr;
+  return before == nullptr || value_text(*before) == value_text(p) ? "" : value_text(*before);
 }
 
-std::string parameters(const std::vector<FittedParameter>& all, const std::string& name) {
-  if (all.empty()) return "";
-  TextTable table(
-      {"", name, "value ± U", "unit", "k", ""},
-      {Column::text, Column::name, Column::text, Column::text, Column::number, Column::text});
-  for (const FittedParameter& p : all) add_parameter(table, p);
-  return table.text();
+std::string model_heading(const ModelResult& model) {
+  return heading("Final model: " + effect_titles(model.effects, ", ") + "; " +
+                 counted(model.observations, "value") + " (" +
+                 number(model.effective_observations, 3) + " effective), residual " +
+                 size_text(model.rms_um, model.rms_urad) + " rms");
 }
 
-std::string standard_terms(const ModelResult& fit) {
-  std::string text;
-  std::set<std::pair<std::string, std::string>> seen;
-  for (const FittedParameter& p : fit.parameters) {
-    const std::string effect = p.name.substr(0, p.name.rfind('.'));
-    if (p.standard_name.empty() || !seen.emplace(effect, p.standard_name).second) continue;
-    text += note(effect + ": " + p.standard_name);
+// --- stations, assumptions, tolerances, notes -----------------------------------------------------
+
+std::string stations(const Result& result) {
+  if (!result.final || !result.final->straightness) return "";
+  const std::vector<StraightnessStation>& all = result.final->straightness->stations;
+  if (all.size() < 2) return "";
+  const std::size_t count = std::min(kStations, all.size());
+  std::vector<std::string> x{"x, mm"}, deviation{"E_ZX, µm"}, U{"± U, µm"};
+  for (std::size_t i = 0; i < count; ++i) {
+    const StraightnessStation& at = all[i * (all.size() - 1) / (count - 1)];
+    x.push_back(fixed_point(at.position_mm, 0));
+    const RoundedPair pair = rounded(at.deviation_um, at.expanded_uncertainty_um.value_or(0.0));
+    deviation.push_back(pair.uncertainty == "0" ? number(at.deviation_um, 3) : pair.value);
+    U.push_back(pair.uncertainty);
   }
-  return text;
+  TextTable table(std::move(x), std::vector<Column>(count + 1, Column::number));
+  table.add(std::move(deviation));
+  table.add(std::move(U));
+  return heading("Station heights, deviation from the line through the end points" +
+                 (count < all.size() ? " (" + std::to_string(count) + " of " +
+                                           std::to_string(all.size()) + " stations)"
+                                     : std::string())) +
+         table.text();
 }
 
-std::string parameter_correlations(const ModelResult& fit) {
-  auto pairs = fit.correlations;
-  std::stable_sort(pairs.begin(), pairs.end(), [](const auto& a, const auto& b) {
-    return std::abs(std::get<2>(a)) > std::abs(std::get<2>(b));
-  });
-  if (pairs.empty()) return "";
-  std::string text = "Largest correlations of the estimates:";
-  for (std::size_t i = 0; i < std::min(kLargest, pairs.size()); ++i)
-    text += " " + std::get<0>(pairs[i]) + " and " + std::get<1>(pairs[i]) + " " +
-            coefficient(std::get<2>(pairs[i])) + ",";
-  text.back() = '.';
-  return item(text);
-}
-
-std::string fit_table(const ModelResult& fit) {
-  std::string head = fit.converged ? "Fit: converged" : "Fit: NOT CONVERGED";
-  if (!fit.converged && !fit.message.empty()) head += " (" + fit.message + ")";
-  head += ", " + counted(fit.observations, "value") + " (" + number(fit.effective_observations, 4) +
-          " effective)";
-  if (fit.rms_um) head += ", residual rms " + number(*fit.rms_um, 4) + " µm";
-  const bool declared = std::all_of(fit.noise.begin(), fit.noise.end(), [](const auto& n) {
-    return n.scaling == NoiseScaling::declared;
-  });
-  if (declared)  // where noise is estimated, the two are equal by construction
-    head += ", chi-square " + number(fit.chi_square, 4) + " at " +
-            number(fit.degrees_of_freedom, 4) + " degrees of freedom";
-  std::string text = heading(head) + parameters(fit.parameters, "parameter") +
-                     parameters(fit.nuisances, "levelling of the traces") + standard_terms(fit) +
-                     parameter_correlations(fit);
-  if (fit.neglected_um)
-    text += item("Largest term of second order left out at these values: " +
-                 number(*fit.neglected_um, 2) + " µm.");
-  return text;
-}
-
-std::string noise(const ModelResult& fit) {
-  if (fit.noise.empty()) return "";
-  TextTable table(
-      {"profile", "uncertainty", "AR", "std. dev.", "corr., mm", "N_eff", "Ljung-Box p"},
-      {Column::name, Column::text, Column::number, Column::number, Column::number, Column::number,
-       Column::number});
-  std::string notes;
-  for (const NoiseSummary& n : fit.noise) {
-    const std::string scaling(text_of(n.scaling));
-    const std::size_t colon = scaling.find(": ");
-    table.add({n.profile, scaling.substr(0, colon), std::to_string(n.order),
-               size_in(n.standard_deviation_um, n.standard_deviation_urad),
-               number(n.correlation_mm, 3), number(n.effective_observations, 3),
-               probability(n.ljung_box_p)});
-    if (colon != std::string::npos) notes += note(n.profile + ": " + scaling.substr(colon + 2));
-  }
-  return heading(
-             "How the uncertainties were scaled: standard deviation of one low-band value, "
-             "AR(p) correlation of the residual") +
-         table.text() + notes;
-}
-
-/// Names without their effect where that leaves no two alike.
-std::map<std::string, std::string> short_names(const ModelResult& fit) {
-  const auto last = [](const std::string& name) { return name.substr(name.rfind('.') + 1); };
-  std::map<std::string, int> count;
-  for (const FittedParameter& p : fit.parameters) ++count[last(p.name)];
-  std::map<std::string, std::string> names;
-  for (const FittedParameter& p : fit.parameters)
-    if (count[last(p.name)] == 1) names[p.name] = last(p.name);
-  return names;
-}
-
-std::string in_words(const Combination& terms, const std::map<std::string, std::string>& names) {
-  std::string text;
-  for (const auto& [name, factor] : terms) {
-    if (text.empty())
-      text = factor < 0.0 ? "-" : "";
-    else
-      text += factor < 0.0 ? " - " : " + ";
-    const std::string size = number(std::abs(factor), 2);
-    if (size != "1") text += size + " ";
-    const auto found = names.find(name);
-    text += found == names.end() ? name : found->second;
-  }
-  return text;
-}
-
-std::string identifiability(const ModelResult& fit) {
-  const Identifiability& what = fit.identifiability;
-  const std::string rank = "rank " + std::to_string(what.rank) + " of " +
-                           counted(what.parameters, "parameter") + ", condition " +
-                           number(what.condition, 3);
-  if (what.unidentifiable.empty()) return heading("All parameters are determined (" + rank + ")");
-  const auto names = short_names(fit);
-  std::string text = heading("What these data cannot determine (" + rank + ")");
-  for (const UndeterminedDirection& direction : what.unidentifiable) {
-    text += item(in_words(direction.combination, names));
-    if (!direction.advice.empty()) text += paragraph("    ", direction.advice);
-  }
-  if (!what.determined.empty()) text += heading("What they determine instead");
-  for (const DeterminedCombination& sum : what.determined)
-    text += item(in_words(sum.combination, names) + " = " +
-                 (sum.value && sum.expanded_uncertainty
-                      ? with_uncertainty(*sum.value, *sum.expanded_uncertainty)
-                      : std::string("unknown")) +
-                 " " + sum.unit);
-  return text;
-}
-
-std::string residuals(const ModelResult& fit) {
-  std::string text;
-  if (!fit.contributions.empty()) {
-    TextTable shares({"effect", "profile", "rms", "share"},
-                     {Column::effect, Column::name, Column::number, Column::number});
-    for (const Contribution& c : fit.contributions)
-      shares.add(
-          {c.effect, c.profile, size_in(c.rms_um, c.rms_urad), number(100.0 * c.share, 3) + " %"});
-    text += heading("Share of each effect in the low band at the fitted values") + shares.text();
-  }
-  if (!fit.residuals.empty()) {
-    TextTable table({"profile", "role", "rms", "p-v"},
-                    {Column::name, Column::text, Column::number, Column::number});
-    for (const ResidualSummary& r : fit.residuals) {
-      table.add({r.profile, r.role == Role::holdout ? "held out" : "fit",
-                 size_in(r.rms_um, r.rms_urad), size_in(r.pv_um, r.pv_urad)});
+/// Keys of profiles without the profile's name, equal ones of several profiles once.
+std::string assumed(const Result& result) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> entries;
+  for (const Assumption& each : result.assumed) {
+    std::string key = each.key, profile;
+    for (const InputSummary& in : result.inputs) {
+      const std::string prefix = "profile." + in.name + ".";
+      if (!key.starts_with(prefix)) continue;
+      profile = in.name;
+      key.erase(0, prefix.size());
+      break;
     }
-    text += heading("Residual in the low band") + table.text();
+    if (!each.value.empty()) key += " = " + each.value;
+    auto found = std::ranges::find(entries, key, [](const auto& entry) { return entry.first; });
+    if (found == entries.end()) found = entries.insert(found, {key, {}});
+    if (!profile.empty()) found->second.push_back(profile);
   }
-  return text;
+  std::vector<std::string> out;
+  for (const auto& [key, profiles] : entries) {
+    const bool some = !profiles.empty() && profiles.size() < result.inputs.size();
+    out.push_back(key + (some ? " (" + joined(profiles) + ")" : ""));
+  }
+  if (out.empty()) return "";
+  const std::string text = paragraph("Assumed: ", joined(out, "; ") + ".");
+  return "\n" + in_lines(first_lines(lines_of(text), kAssumedLines));
 }
 
-std::string squareness_of(const std::optional<double>& rad, const std::optional<double>& U_rad) {
-  if (!rad) return "none";
-  const std::string unit = " µm/m";
-  return (U_rad ? with_uncertainty(*rad * 1e6, *U_rad * 1e6) : number(*rad * 1e6, 4)) + unit;
+std::string tolerances(const Result& result) {
+  std::string out;
+  for (const Conformity& each : result.conformity) {
+    QuantityValue value;
+    const bool angle = each.limit_um_per_m.has_value();
+    value.value = angle ? each.value_um_per_m : each.value_um;
+    value.expanded_uncertainty = angle ? each.U_um_per_m : each.U_um;
+    const double limit = (angle ? each.limit_um_per_m : each.limit_um).value_or(NAN);
+    out += item("Tolerance of " + each.what + ": " + value_text(value) + ", limit " +
+                number(limit, 4) + (angle ? " µm/m: " : " µm: ") +
+                std::string(text_of(each.verdict)));
+  }
+  return out.empty() ? "" : "\n" + out;
 }
 
-std::string crosscheck(const SquarenessCheck& check) {
-  if (!check.fit_rad && !check.indirect_rad) return "";
-  std::string text =
-      "Squareness by the fit: " + squareness_of(check.fit_rad, check.fit_U_rad) +
-      "; by the run-out, Eq. (21): " + squareness_of(check.indirect_rad, check.indirect_U_rad) +
-      ". ";
-  if (check.En) text += "E_n = " + number(*check.En, 2) + ": ";
-  if (check.verdict == Consistency::consistent)
-    text += "consistent (E_n is not above 1). ";
-  else if (check.verdict == Consistency::inconsistent)
-    text += "INCONSISTENT (E_n is above 1). ";
-  else
-    text += "No cross-check. ";
-  if (!check.reason.empty()) text += sentence(check.reason) + " ";
-  const auto amplitude = [](const std::optional<double>& um) {
-    return um ? number(*um, 4) + " µm" : std::string("unknown");
+std::vector<std::string> all_notes(const Analysis& analysis) {
+  std::vector<std::string> out;
+  const auto add = [&](const std::vector<std::string>& notes) {
+    for (const std::string& each : notes) out.push_back(with_titles(each));
   };
-  const bool told = check.verdict == Consistency::inconsistent;  // in the reason
-  if (!told && check.travel_mm && (check.fit_amplitude_um || check.indirect_amplitude_um))
-    text += "Over the travel of " + number(*check.travel_mm, 5) + " mm that is " +
-            amplitude(check.fit_amplitude_um) + " by the fit and " +
-            amplitude(check.indirect_amplitude_um) + " by the run-out.";
-  return heading("Cross-check") + item(text);
+  if (analysis.trace)
+    for (const LeftEffect& each : analysis.trace->left)
+      out.push_back(effect_title(each.effect) + " was accepted and left again: " +
+                    with_titles(each.reason));
+  add(analysis.result.notes);
+  if (analysis.trace) add(analysis.trace->notes);
+  if (analysis.result.final) add(analysis.result.final->notes);
+  return out;
 }
 
-std::string notes(const ModelResult& fit) {
-  std::string text = fit.notes.empty() ? "" : heading("Notes");
-  for (const std::string& line : fit.notes) text += note(line);
-  return text;
+/// As many notes as there is room for, and how many there are besides.
+std::string notes(const Analysis& analysis, std::size_t room) {
+  const std::vector<std::string> all = all_notes(analysis);
+  if (all.empty() || room < 3) return "";
+  std::string out;
+  std::size_t left = room - 2;  // a blank line, the last line
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string next = note(all[i]);
+    const std::size_t size = lines_of(next).size();
+    if (size > left + (i + 1 == all.size() ? 1 : 0)) {
+      out += item(counted(all.size() - i, "more note") + ": --full");
+      break;
+    }
+    out += next;
+    left -= std::min(left, size);
+  }
+  return "\n" + out;
+}
+
+std::string short_text(const Analysis& analysis, std::string text) {
+  const Result& result = analysis.result;
+  const std::string more = stations(result) + assumed(result) + tolerances(result);
+  if (result.final) {
+    text += model_heading(*result.final);
+    const std::size_t used = lines_of(text + more).size() + 4;  // headings, a note
+    text += parameter_table(result,
+                            std::min(kParameterRows, kAllLines - std::min(kAllLines - 4, used)));
+  }
+  text += more;
+  const std::size_t used = lines_of(text).size();
+  return text + notes(analysis, used < kAllLines ? kAllLines - used : 0);
 }
 
 }  // namespace
 
-std::string data_text(const Result& result) {
-  return title(result) + inputs(result) + (result.closure ? closure(*result.closure) : "");
+std::string parameter_table(const Result& result, std::size_t most) {
+  const std::vector<FittedParameter>& all = result.final->parameters;
+  std::vector<std::vector<std::string>> rows;
+  bool has_k = false, has_declared = false;
+  for (const FittedParameter& p : all) {
+    if (rows.size() + 1 >= most && rows.size() + 1 < all.size()) break;
+    rows.push_back({parameter_title(p), value_of(p), unit_text(p.unit), coverage(p),
+                    declared_value(result, p)});
+    has_k = has_k || !rows.back()[3].empty();
+    has_declared = has_declared || !rows.back()[4].empty();
+  }
+  if (all.empty()) return "";
+  std::vector<std::string> headings{"parameter", "value ± U", "unit", has_k ? "k" : "",
+                                    has_declared ? "declared model" : ""};
+  TextTable table(std::move(headings),
+                  {Column::name, Column::text, Column::text, Column::text, Column::text});
+  for (std::vector<std::string>& row : rows) table.add(std::move(row));
+  if (rows.size() == all.size()) return table.text();
+  return table.text() + item(counted(all.size() - rows.size(), "more parameter") + ": --full");
 }
 
-std::string text_report(const Analysis& analysis) {
+std::string text_report(const Analysis& analysis, const TextOptions& options) {
   const Result& result = analysis.result;
-  std::string text =
-      data_text(result) + low_band(result) + ranking(result.ranking) + dominant(result.dominant);
+  std::string text = box(summary_of(analysis), options.page);
+  text += in_lines(first_lines(
+      lines_of(heading("slideway " + result.version +
+                       (result.title.empty() ? "" : ": " + result.title))),
+      2));
+  if (!options.full) return short_text(analysis, std::move(text));
   if (result.final)
-    text += fit_table(*result.final) + noise(*result.final) + identifiability(*result.final) +
-            residuals(*result.final);
-  if (result.crosscheck.squareness) text += crosscheck(*result.crosscheck.squareness);
-  if (analysis.trace) text += trace_text(analysis);
-  if (analysis.details.curves) text += residual_pictures(*analysis.details.curves);
-  if (result.final) text += notes(*result.final);
-  for (const std::string& line : result.notes) text += note(line);
-  return text;
+    text += model_heading(*result.final) +
+            parameter_table(result, result.final->parameters.size() + 1);
+  text += stations(result) + tolerances(result) + full_text(analysis);
+  std::string notes;
+  for (const std::string& each : all_notes(analysis)) notes += note(each);
+  return text + (notes.empty() ? "" : heading("Notes") + notes);
 }
 
 }  // namespace slideway

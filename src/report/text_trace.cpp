@@ -2,8 +2,10 @@
 #include <cmath>
 
 #include "slideway/base/text.hpp"
-#include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
+#include "slideway/trace/analysis_fields.hpp"
+#include "slideway/report/layout.hpp"
+#include "summary.hpp"
 #include "text_parts.hpp"
 
 namespace slideway {
@@ -11,91 +13,53 @@ namespace {
 
 using Column = TextTable::Column;
 
-std::string unit_of(const FittedParameter& p) { return p.unit == "1" ? "" : " " + p.unit; }
-
-std::string value_of(const FittedParameter& p) {
-  if (!p.value) return "not determined";
-  const auto& uncertainty =
-      p.expanded_uncertainty ? p.expanded_uncertainty : p.standard_uncertainty;
-  if (!uncertainty) return number(*p.value, 4) + unit_of(p);
-  return with_uncertainty(*p.value, *uncertainty) + unit_of(p);
-}
-
 std::string last_name(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
-std::string change(double before, double after, const std::string& unit) {
-  return number(before, 4) + " -> " + number(after, 4) + unit;
-}
-
-std::string residual_change(const TraceRound& round) {
-  std::vector<std::string> out;
-  if (round.before_rms_um && round.after_rms_um)
-    out.push_back(change(*round.before_rms_um, *round.after_rms_um, " µm"));
-  if (round.before_rms_urad && round.after_rms_urad)
-    out.push_back(change(*round.before_rms_urad, *round.after_rms_urad, " µrad"));
-  return joined(out);
-}
-
 std::string verdict(const TraceResult& trace) {
-  if (trace.verdict == TraceVerdict::nothing_missing)
-    return "nothing is missing that these data tell from noise (lack of fit p = " +
-           probability(trace.lack_of_fit_p) + "; structure is what is below 0.001).";
-  if (trace.verdict == TraceVerdict::explained) return "an effect was missing and is named:";
-  if (trace.verdict == TraceVerdict::ambiguous)
-    return "an effect is missing, and these data cannot tell it from its rivals:";
-  if (trace.verdict == TraceVerdict::not_identifiable)
-    return "the form is there, but these data cannot tell what makes it:";
-  return trace.rounds.empty()
-             ? "structure is left that no effect of the catalogue explains: UNNAMED."
-             : "structure is left that no effect of the catalogue explains: UNNAMED, beside:";
+  switch (trace.verdict) {
+    case TraceVerdict::nothing_missing:
+      return "nothing is missing that these data tell from noise (lack of fit p = " +
+             probability(trace.lack_of_fit_p) + ").";
+    case TraceVerdict::explained:
+      return "an effect was missing and is named:";
+    case TraceVerdict::ambiguous:
+      return "an effect is missing, and these data cannot tell it from its rivals:";
+    case TraceVerdict::not_identifiable:
+      return "a form is there, but these data cannot tell what makes it:";
+    case TraceVerdict::unnamed:
+      break;
+  }
+  return std::string("structure is left that no effect of the catalogue explains") +
+         (trace.rounds.empty() ? "." : ", beside:");
 }
 
 std::string round(const TraceRound& round, std::size_t index) {
-  std::string text = item(
-      std::to_string(index + 1) + ". " + round.accepted +
-      (round.ambiguous_with.empty() ? "" : " or " + joined(round.ambiguous_with, " or ")) +
-      ": residual " + residual_change(round) + ", difference in BIC " + number(round.delta_bic, 3) +
-      ", p " + (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value));
-  if (round.before_holdout_rms_um && round.after_holdout_rms_um)
-    text += paragraph("     ",
-                      "on profiles left out of the fit " +
-                          change(*round.before_holdout_rms_um, *round.after_holdout_rms_um, " µm"));
+  std::vector<std::string> names{round.accepted};
+  names.insert(names.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
+  std::string text =
+      item(std::to_string(index + 1) + ". " + effect_titles(names, " or ") + ": residual " +
+           residual_change(round.before_rms_um, round.after_rms_um, round.before_rms_urad,
+                           round.after_rms_urad) +
+           ", difference in BIC " + number(round.delta_bic, 3) + ", p " +
+           (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value));
+  if (const std::string change = residual_change(round.before_holdout_rms_um,
+                                                 round.after_holdout_rms_um, {}, {});
+      !change.empty())
+    text += paragraph("     ", "on profiles left out of the fit " + change);
   for (const FittedParameter& p : round.parameters)
-    text += paragraph("     ", last_name(p.name) + " = " + value_of(p));
+    text += paragraph("     ", last_name(p.name) + " = " + value_text(p) + " " + unit_text(p.unit));
   return text;
 }
 
-/// How far the missing effects had bent the parameters, in units of their final uncertainty.
-std::string bent(const Result& result) {
-  TextTable table({"parameter", "before", "after", "shift / U"},
-                  {Column::name, Column::number, Column::number, Column::number});
-  bool any = false;
-  for (const FittedParameter& before : result.declared->parameters) {
-    const FittedParameter* after = result.final->find(before.name);
-    if (!after || !before.value || !after->value || !after->expanded_uncertainty ||
-        !(*after->expanded_uncertainty > 0.0))
-      continue;
-    any = true;
-    const double shift = (*before.value - *after->value) / *after->expanded_uncertainty;
-    table.add({before.name, number(*before.value, 4), number(*after->value, 4),
-               number(std::round(1000.0 * shift) / 1000.0 + 0.0, 2)});  // no -0
-  }
-  return any ? item("What that had done to the declared parameters:") + table.text() : "";
-}
-
 std::string left_over(const Unnamed& left) {
-  const std::string unit = left.rms_um ? " µm" : " µrad";
-  const auto size = [&](const std::optional<double>& um, const std::optional<double>& urad) {
-    return number(um.value_or(urad.value_or(NAN)), 3) + unit;
-  };
-  std::string text = "Left without a name: " + size(left.rms_um, left.rms_urad) + " rms, " +
-                     size(left.pv_um, left.pv_urad) + " peak to valley on " + left.profile +
+  std::string text = "Left without a name: " + size_text(left.rms_um, left.rms_urad) + " rms, " +
+                     size_text(left.pv_um, left.pv_urad) + " peak to valley on " + left.profile +
                      " (lack of fit p " + (left.p_value < 1e-4 ? "" : "= ") +
                      probability(left.p_value) + "), largest from " + number(left.from_mm, 4) +
                      " to " + number(left.to_mm, 4) + " mm";
   if (!left.clock.empty())
-    text += "; most alike on the clock " + left.clock + ", correlation length " +
-            number(left.correlation_length, 2) + " " + left.correlation_unit;
+    text += "; most alike over " + left.clock + ", correlation length " +
+            number(left.correlation_length, 2) + " " + unit_text(left.correlation_unit);
   if (left.dominant_period_mm)
     text += "; dominant period " + number(*left.dominant_period_mm, 3) + " mm";
   if (left.odd_share)
@@ -103,61 +67,65 @@ std::string left_over(const Unnamed& left) {
   return item(text + ". It is not counted as an improvement.");
 }
 
+std::string extremes(const DetectionLimit& limit) {
+  std::vector<double> sizes;
+  for (const LimitAtShape& each : limit.by_shape)
+    if (each.value) sizes.push_back(*each.value);
+  if (sizes.empty()) return "";
+  const auto [least, most] = std::ranges::minmax(sizes);
+  return number(least, 2) + " to " + number(most, 2);
+}
+
 std::string limits(const TraceResult& trace) {
   if (trace.detection_limits.empty()) return "";
-  const auto extremes = [](const DetectionLimit& limit) -> std::string {
-    if (limit.by_shape.empty()) return "";
-    const auto by_size = [](const LimitAtShape& a, const LimitAtShape& b) {
-      return a.value.value_or(HUGE_VAL) < b.value.value_or(HUGE_VAL);
-    };
-    const auto [least, most] =
-        std::minmax_element(limit.by_shape.begin(), limit.by_shape.end(), by_size);
-    return number(least->value.value_or(NAN), 2) + " to " + number(most->value.value_or(NAN), 2);
-  };
   TextTable table({"effect", "found from", "other shapes", "at"},
                   {Column::effect, Column::number, Column::number, Column::name});
   for (const DetectionLimit& limit : trace.detection_limits)
-    table.add({limit.effect, limit.value ? number(*limit.value, 2) + " " + limit.unit : "none",
+    table.add({effect_title(limit.effect),
+               limit.value ? number(*limit.value, 2) + " " + unit_text(limit.unit) : "at no size",
                extremes(limit), limit.at});
   return item("Sizes found with 80 % probability:") + table.text();
 }
 
 /// One line for each thing that is needed.
 std::string untestable(const TraceResult& trace) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> by_need;
-  for (const auto& entry : trace.not_testable) {
-    const auto found = std::find_if(by_need.begin(), by_need.end(),
-                                    [&](const auto& known) { return known.first == entry.needs; });
-    if (found == by_need.end())
-      by_need.push_back({entry.needs, {entry.effect}});
-    else
-      found->second.push_back(entry.effect);
-  }
+  std::vector<std::string> needs;
+  for (const NotTestable& each : trace.not_testable)
+    if (std::ranges::find(needs, each.needs) == needs.end()) needs.push_back(each.needs);
   std::string text;
-  for (const auto& [needs, effects] : by_need)
-    text += note("Not testable: " + joined(effects) + "; needs " + needs + ".");
+  for (const std::string& need : needs) {
+    std::vector<std::string> effects;
+    for (const NotTestable& each : trace.not_testable)
+      if (each.needs == need) effects.push_back(each.effect);
+    text += note("Not testable: " + effect_titles(effects, ", ") + "; needs " + need + ".");
+  }
+  return text;
+}
+
+std::string gates(const TraceResult& trace) {
+  std::vector<std::string> values;
+  for (const auto& [gate, value] : trace.gates) values.push_back(gate + " " + number(value, 4));
+  std::string text = values.empty() ? "" : item("Gates: " + joined(values) + ".");
+  if (trace.fragile)
+    text += item("With " + trace.fragile->gate + " = " + number(trace.fragile->value, 4) +
+                 " the verdict would be " + std::string(text_of(trace.fragile->verdict)) + ".");
   return text;
 }
 
 }  // namespace
 
-std::string trace_text(const Analysis& analysis) {
-  const TraceResult& trace = *analysis.trace;
+std::string trace_text(const TraceResult& trace) {
   std::string text = heading("Closed loop: " + verdict(trace));
   for (std::size_t i = 0; i < trace.rounds.size(); ++i) text += round(trace.rounds[i], i);
-  if (!trace.rounds.empty() && analysis.result.final) text += bent(analysis.result);
   if (trace.unnamed) text += left_over(*trace.unnamed);
-  for (const std::string& line : trace.advice) text += note(line);
-  for (const std::string& line : trace.notes) text += note(line);
-  for (const auto& [effect, same] : trace.not_separable)
-    text += note(effect + " and " + same + " are one column here: not separable");
-  for (const TriedEffect& effect : trace.refused)
-    if (effect.refused && effect.delta_bic < -10.0)
-      text += note(effect.effect + " was refused: " + *effect.refused);
-  for (const LeftEffect& effect : trace.left)
-    text += note(effect.effect + " has left the model: " + effect.reason);
-  text += untestable(trace);
-  return text + limits(trace);
+  for (const std::string& line : trace.advice) text += note(with_titles(line));
+  for (const NotSeparable& each : trace.not_separable)
+    text += note(effect_title(each.effect) + " and " + with_titles(each.same_as) +
+                 " are one column here: not separable");
+  for (const TriedEffect& tried : trace.refused)
+    if (tried.refused && tried.delta_bic < -10.0)
+      text += note(effect_title(tried.effect) + " was refused: " + with_titles(*tried.refused));
+  return text + untestable(trace) + limits(trace) + gates(trace);
 }
 
 }  // namespace slideway

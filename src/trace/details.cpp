@@ -247,16 +247,17 @@ OptionsSummary options_of(const Problem& problem) {
 
 }  // namespace
 
-Details make_details(const Problem& problem, const FittedModel& before, const FittedModel* after) {
+Details make_details(const Problem& problem, const FittedModel& before, const FittedModel* after,
+                     bool with_curves) {
   const FittedModel& last = after ? *after : before;
   Details out;
-  out.curves.emplace();
+  if (with_curves) out.curves.emplace();
   for (std::size_t i = 0; i < before.model.observations.size(); ++i) {
     const View declared(before, i);
     const std::optional<View> extended = after ? std::optional(View(*after, i)) : std::nullopt;
     out.setups.push_back({declared.profile().name, declared.profile().setup});
     predict_flatness(last, extended ? *extended : declared, out.what_if);
-    out.curves->profiles.push_back(curves_of(last, declared, extended));
+    if (out.curves) out.curves->profiles.push_back(curves_of(last, declared, extended));
   }
   for (const ModelTerm& term : last.model.terms)
     out.effects.push_back(in_model(term, before.model));

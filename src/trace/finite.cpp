@@ -1,3 +1,4 @@
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -82,7 +83,52 @@ class NonFinite {
   std::string path_;
 };
 
+/// Rounds every number of the fields that are drawn.
+template <Recorded T>
+void round_fields(T& object);
+
+void round_all(std::vector<double>& numbers, int digits) {
+  for (double& number : numbers) {
+    char buffer[32];
+    const auto end = std::to_chars(buffer, std::end(buffer), number, std::chars_format::general,
+                                   digits).ptr;
+    std::from_chars(buffer, end, number);
+  }
+}
+
+template <typename T>
+void round_all(std::vector<T>& values, int digits) {
+  for (T& value : values) {
+    if constexpr (Recorded<T>)
+      round_fields(value);
+    else if constexpr (std::is_same_v<T, std::vector<double>>)
+      round_all(value, digits);
+  }
+}
+
+template <typename T>
+void round_all(std::optional<T>& value, int /*digits*/) {
+  if constexpr (Recorded<T>)
+    if (value) round_fields(*value);
+}
+
+template <typename T>
+void round_all(T& value, int /*digits*/) {
+  if constexpr (Recorded<T>) round_fields(value);
+}
+
+template <Recorded T>
+void round_fields(T& object) {
+  for_each_field<T>([&](const auto& field) {
+    auto& member = std::invoke(field.access, object);
+    constexpr bool is_numbers = std::is_same_v<decltype(member), std::vector<double>&>;
+    if (!is_numbers || field.digits > 0) round_all(member, field.digits);
+  });
+}
+
 }  // namespace
+
+void round_drawn(Analysis& analysis) { round_fields(analysis); }
 
 void leave_out_non_finite(Analysis& analysis) { NonFinite().leave_out(analysis); }
 

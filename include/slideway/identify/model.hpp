@@ -78,6 +78,9 @@ struct Model {
   [[nodiscard]] const ModelTerm* find_term(MotionError error) const;
 };
 
+/// What the fitted profiles measured of the slide, a bridge from foot to foot. REQUIRES one.
+SlideRange measured_travel(const Model& model);
+
 /// Builds effects (with an inner basis for the travel of the profiles) and the low bands. The
 /// profiles must outlive the model.
 /// @param most_values  of a profile's low band: its level is raised until it has no more

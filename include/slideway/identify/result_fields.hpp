@@ -222,11 +222,25 @@ inline constexpr auto kRecord<StraightnessError> =
 
 template <>
 inline constexpr auto kRecord<StraightnessCurve> =
-    record("StraightnessCurve", "The slide's form over the travel the profiles cover.",
+    record("StraightnessCurve",
+           "The slide's form over the travel that was measured, from the end-point line.",
            drawn("position_mm", &StraightnessCurve::position_mm, "slide coordinate x", 7),
-           drawn("deviation_um", &StraightnessCurve::deviation_um, "from the least-squares line"),
+           drawn("deviation_um", &StraightnessCurve::deviation_um),
            drawn("expanded_uncertainty_um", &StraightnessCurve::expanded_uncertainty_um,
-                 "of the deviation"));
+                 "of the deviation"),
+           drawn("tip_um", &StraightnessCurve::tip_um,
+                 "of faces: at the tool tip, with the pitch on its lever"),
+           drawn("tip_expanded_uncertainty_um", &StraightnessCurve::tip_expanded_uncertainty_um),
+           field("tip_slope_rad", &StraightnessCurve::tip_slope_rad,
+                 "of the line through the ends of the tip's curve"));
+
+template <>
+inline constexpr auto kRecord<StraightnessStation> =
+    record("StraightnessStation", "Height of the slide where it was read.",
+           field("position_mm", &StraightnessStation::position_mm,
+                 "of a reading, or of a foot of a bridge"),
+           field("deviation_um", &StraightnessStation::deviation_um, "from the end-point line"),
+           field("expanded_uncertainty_um", &StraightnessStation::expanded_uncertainty_um));
 
 template <>
 inline constexpr auto kRecord<Straightness> = record(
@@ -235,6 +249,7 @@ inline constexpr auto kRecord<Straightness> = record(
     field("least_squares_um", &Straightness::least_squares_um),
     field("minimum_zone_um", &Straightness::minimum_zone_um),
     field("expanded_uncertainty_um", &Straightness::expanded_uncertainty_um, "of end_point_um"),
+    field("stations", &Straightness::stations, "of slides"),
     field("errors", &Straightness::errors, "one for each reference line"),
     field("curve", &Straightness::curve),
     field("reason", &Straightness::reason, "why there is none"));

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <string>
 
+#include "slideway/identify/result.hpp"
+
 namespace slideway {
 
 struct RoundedPair {
@@ -20,6 +22,13 @@ RoundedPair rounded(double value, double uncertainty);
 /// is below 1e-3 or above 1e5: "(2.8000 ± 0.0022)e-06".
 /// @throws std::logic_error  as rounded()
 std::string with_uncertainty(double value, double uncertainty);
+
+/// How every output writes a result: "2.80 ± 0.20", "2.8 (no uncertainty)", "not determined".
+/// @param unit  what it is counted in, in its own unit: 1e-6 writes rad as µrad
+std::string value_text(const QuantityValue& result, double unit = 1.0);
+
+/// Whether a result has a finite value and a finite uncertainty.
+bool is_known(const QuantityValue& result);
 
 /// `value` with that many digits behind the point (0 or more); never "-0".
 /// @throws std::logic_error  it is not finite

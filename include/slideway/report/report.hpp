@@ -15,11 +15,14 @@ std::string json_report(const Analysis& analysis);
 /// The same on one line, without the final newline: part of a longer JSON text.
 std::string json_line(const Analysis& analysis);
 
-/// A JSON report as one self-contained page; the same JSON always makes the same page. A report
-/// without curves makes a page without pictures of them.
+/// A report as one self-contained page; the same report always makes the same page. One without
+/// curves makes a page without pictures of them.
+std::string html_report(const Analysis& analysis);
+
+/// The same of what json_report() or `rank` on columns wrote.
 /// @param name  what the JSON goes by in messages
 /// @throws DataError  as read_report()
-std::string html_report(std::string_view json, const std::string& name = "report");
+std::string html_report(std::string_view json, const std::string& name);
 
 /// What the profiles are, the report's `inputs` and `closure` alone: schema "slideway.data/1".
 std::string data_json(const Result& result);
@@ -27,8 +30,14 @@ std::string data_json(const Result& result);
 /// The same for people: the report down to there.
 std::string data_text(const Result& result);
 
-/// The report for people: aligned plain text in at most 80 columns, values with units, at most two
-/// digits of uncertainty.
-std::string text_report(const Analysis& analysis);
+struct TextOptions {
+  bool full = false;  // all that was found
+  std::string page;   // where the page is; "": none was written
+};
+
+/// The report for people in at most 80 columns: first a box of at most six lines with the verdict,
+/// then the parameters of the final model, the station heights of a slide, what was assumed, and
+/// notes; at most 40 lines unless `full`.
+std::string text_report(const Analysis& analysis, const TextOptions& options = {});
 
 }  // namespace slideway

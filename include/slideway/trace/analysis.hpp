@@ -16,6 +16,7 @@ struct AnalysisOptions {
   Scope scope = Scope::identify;
   bool closes_loop = true;
   bool with_details = false;
+  bool with_curves = false;  // of the details
   bool with_evidence = false;
 };
 
@@ -38,6 +39,10 @@ Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
 /// Takes the numbers that are not finite out of an analysis: a value that may be absent becomes
 /// absent, any other NaN, and the notes of the part it belongs to name it.
 void leave_out_non_finite(Analysis& analysis);
+
+/// Rounds what is there to be drawn to the digits that are written of it, so that a picture is the
+/// same before and after the report has been written and read.
+void round_drawn(Analysis& analysis);
 
 /// True if either part is negative for `--strict`.
 bool is_negative(const Analysis& analysis);

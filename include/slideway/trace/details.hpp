@@ -84,6 +84,7 @@ struct Details {
 
 /// @param before  the declared model
 /// @param after   with the effects the loop has added; null: none
-Details make_details(const Problem& problem, const FittedModel& before, const FittedModel* after);
+Details make_details(const Problem& problem, const FittedModel& before, const FittedModel* after,
+                     bool with_curves);
 
 }  // namespace slideway

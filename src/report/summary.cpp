@@ -1,0 +1,257 @@
+#include "summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/base/text.hpp"
+#include "slideway/base/units.hpp"
+#include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/identifiability.hpp"
+#include "slideway/report/number.hpp"
+#include "text_parts.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr double kHarmless = 0.1;  // of U: a shift that changes no digit that is printed
+
+std::string found(const TraceResult& trace) {
+  std::vector<std::string> out;
+  for (const TraceRound& round : trace.rounds) {
+    std::vector<std::string> names{round.accepted};
+    names.insert(names.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
+    out.push_back(effect_titles(names, " or "));
+  }
+  return joined(out, " and ");
+}
+
+std::string left_over(const TraceResult& trace) {
+  if (!trace.unnamed) return "";
+  const Unnamed& left = *trace.unnamed;
+  return ": " + size_text(left.rms_um, left.rms_urad) + " rms on " + left.profile;
+}
+
+void say_verdict(const Analysis& analysis, Summary& out) {
+  const auto say = [&](Alarm alarm, const char* badge, std::string sentence) {
+    out.alarm = alarm;
+    out.badge = badge;
+    out.verdict = std::move(sentence);
+  };
+  const std::optional<ModelResult>& model = analysis.result.final;
+  if (!model)
+    return say(Alarm::plain, "Ranking only", "effects were ranked by correlation, none was fitted");
+  if (!model->converged)
+    return say(Alarm::bad, "Not converged", "no number of this report can be relied on");
+  if (!analysis.trace)
+    return say(Alarm::plain, "Fitted", "the declared model; no missing effect was looked for");
+  const TraceResult& trace = *analysis.trace;
+  const std::string beside = trace.rounds.empty() ? "" : ", beside " + found(trace);
+  const std::optional<Shift> shift = largest_shift(analysis.result);
+  switch (trace.verdict) {
+    case TraceVerdict::nothing_missing:
+      return say(Alarm::good, "Nothing missing", "the model explains the profiles down to noise");
+    case TraceVerdict::explained:
+      return say(Alarm::good, "Explained", found(trace) + " was missing and is in the model now");
+    case TraceVerdict::ambiguous:
+      if (shift && std::abs(shift->in_U) <= kHarmless)
+        return say(Alarm::plain, "Ambiguous, without harm",
+                   found(trace) + " is missing and moves nothing by more than " +
+                       to_digits(std::max(std::abs(shift->in_U), 0.01), 1) + " U");
+      return say(Alarm::warn, "Ambiguous",
+                 found(trace) + " is missing; these data cannot tell which");
+    case TraceVerdict::not_identifiable:
+      return say(Alarm::bad, "Not identifiable",
+                 "a form is there, but these data cannot tell what makes it" + beside);
+    case TraceVerdict::unnamed:
+      break;
+  }
+  say(Alarm::bad, "Unnamed",
+      "structure is left that no known effect explains" + left_over(trace) + beside);
+}
+
+std::string straightness_of(const Result& result) {
+  if (!result.final || !result.final->straightness) return "none in the model";
+  const Straightness& form = *result.final->straightness;
+  for (const StraightnessError& error : form.errors)
+    if (error.line == ReferenceLineKind::end_point && is_known(error))
+      return "E_ZX " + value_text(error) + " µm";
+  return form.reason.empty() ? "not determined" : form.reason;
+}
+
+const FittedParameter* squareness_parameter(const Result& result) {
+  if (!result.final) return nullptr;
+  const auto found = std::ranges::find_if(result.final->parameters, is_squareness);
+  return found == result.final->parameters.end() ? nullptr : &*found;
+}
+
+std::string squareness_of(const Result& result) {
+  if (const FittedParameter* const p = squareness_parameter(result))
+    return is_known(*p) ? value_text(*p, kMicroradian) + " µm/m" : "not determined by these data";
+  const auto is_face = [](const InputSummary& in) { return in.kind == Kind::face; };
+  return std::ranges::any_of(result.inputs, is_face) ? "not in the model" : "needs a face";
+}
+
+void say_crosscheck(const Result& result, Summary& out) {
+  const Crosscheck& checks = result.crosscheck;
+  std::vector<std::string> parts;
+  const auto& angle = checks.squareness;
+  if (angle && angle->En) {
+    QuantityValue indirect;
+    indirect.value = angle->indirect_rad;
+    indirect.expanded_uncertainty = angle->indirect_U_rad;
+    parts.push_back(
+        std::string(angle->verdict == Consistency::inconsistent ? "INCONSISTENT" : "consistent") +
+        " with the run-out, Eq. (21): " + value_text(indirect, kMicroradian) +
+        " µm/m, E_n = " + number(*angle->En, 2));
+  }
+  for (const ProfileCheck& check : checks.profiles)
+    if (check.verdict == Consistency::inconsistent)
+      parts.push_back("INCONSISTENT: " + check.what + " of " + joined(check.profiles, " and ") +
+                      (check.En ? ", E_n = " + number(*check.En, 2) : ""));
+  for (const HeldOutCheck& check : checks.held_out)
+    parts.push_back(check.profile + ", held out, " +
+                    (check.verdict == HeldOutVerdict::fits ? "fits" : "DOES NOT FIT"));
+  out.has_crosscheck = !parts.empty();
+  if (parts.empty())
+    parts.push_back("none" + (angle && !angle->reason.empty() ? ": " + angle->reason : ""));
+  out.crosscheck = joined(parts, "; ");
+}
+
+void say_missing(const Analysis& analysis, Summary& out) {
+  out.missing = "nothing that these data show";
+  if (!analysis.trace) out.missing = "not looked for";
+  if (!was_extended(analysis)) return;
+  out.has_missing = true;
+  out.missing = found(*analysis.trace);
+  const Result& result = analysis.result;
+  if (const std::string fall = residual_change(result.declared->rms_um, result.final->rms_um,
+                                               result.declared->rms_urad, result.final->rms_urad);
+      !fall.empty())
+    out.missing += ": residual " + fall;
+  if (const auto shift = largest_shift(result))
+    out.missing += "; it had moved " + shift->what + " by " +
+                   to_digits(std::round(100.0 * shift->in_U) / 100.0 + 0.0, 2) + " U";
+}
+
+std::string next_step(const Analysis& analysis) {
+  const Result& result = analysis.result;
+  if (!result.final) return "slideway identify, which fits and looks for what is missing";
+  for (const UndeterminedDirection* direction : open_directions(*result.final))
+    if (!direction->advice.empty()) return with_titles(direction->advice);
+  if (analysis.trace && !analysis.trace->advice.empty())
+    return with_titles(analysis.trace->advice.front());
+  const auto& angle = result.crosscheck.squareness;
+  if (angle && angle->verdict == Consistency::inconsistent) return with_titles(angle->reason);
+  if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
+  if (analysis.trace->verdict == TraceVerdict::unnamed)
+    return "look at the residual on the page: where the structure is, and over what it repeats";
+  return "none is needed for these numbers";
+}
+
+}  // namespace
+
+std::string effect_title(const std::string& name) {
+  std::string title = name;
+  std::ranges::replace(title, '_', ' ');
+  return title;
+}
+
+std::string effect_titles(const std::vector<std::string>& names, const std::string& separator) {
+  std::vector<std::string> out;
+  for (const std::string& name : names) out.push_back(effect_title(name));
+  return joined(out, separator);
+}
+
+std::string parameter_title(const FittedParameter& parameter) {
+  const std::size_t dot = parameter.name.rfind('.');
+  if (dot == std::string::npos) return parameter.name;
+  return effect_title(parameter.name.substr(0, dot)) + " " +
+         (parameter.symbol.empty() ? parameter.name.substr(dot + 1) : parameter.symbol);
+}
+
+std::string with_titles(std::string text) {
+  const auto is_word = [](char c) { return c == '_' || c == '.' || (c >= 'a' && c <= 'z'); };
+  for (const std::string& name : effect_names()) {
+    if (name.find('_') == std::string::npos) continue;
+    for (std::size_t at = 0; (at = text.find(name, at)) != std::string::npos; at += name.size()) {
+      const std::size_t end = at + name.size();
+      const bool alone = (at == 0 || !is_word(text[at - 1])) &&
+                         (end == text.size() || text[end] != '_') &&
+                         (end + 1 >= text.size() || text[end] != '.' || !is_word(text[end + 1]));
+      if (alone) text.replace(at, name.size(), effect_title(name));
+    }
+  }
+  return text;
+}
+
+bool is_squareness(const FittedParameter& parameter) {
+  return parameter.name.starts_with("squareness.");
+}
+
+std::string in_sentence(std::string text) {
+  if (text.empty()) return text;
+  if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
+  return text.back() == '.' ? text : text + ".";
+}
+
+std::optional<Shift> largest_shift(const Result& result) {
+  if (!result.declared || !result.final) return std::nullopt;
+  std::optional<Shift> most;
+  const auto compare = [&](const std::string& what, const QuantityValue& before,
+                           const QuantityValue& after) {
+    if (!is_known(after) || !before.value || !(*after.expanded_uncertainty > 0.0)) return;
+    const double shift = (*before.value - *after.value) / *after.expanded_uncertainty;
+    if (!most || std::abs(shift) > std::abs(most->in_U)) most = {what, shift};
+  };
+  for (const FittedParameter& before : result.declared->parameters)
+    if (const FittedParameter* const after = result.final->find(before.name))
+      compare(parameter_title(before), before, *after);
+  if (result.declared->straightness && result.final->straightness) {
+    const auto &before = result.declared->straightness->errors,
+               &after = result.final->straightness->errors;
+    for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i)
+      if (after[i].line == ReferenceLineKind::end_point) compare("E_ZX", before[i], after[i]);
+  }
+  return most;
+}
+
+bool was_extended(const Analysis& analysis) {
+  return analysis.trace && !analysis.trace->rounds.empty() && analysis.result.declared &&
+         analysis.result.final;
+}
+
+std::string residual_change(const std::optional<double>& before_um,
+                            const std::optional<double>& after_um,
+                            const std::optional<double>& before_urad,
+                            const std::optional<double>& after_urad) {
+  const auto change = [](double before, double after, const char* unit) {
+    return number(before, 3) + " → " + number(after, 3) + unit;
+  };
+  std::vector<std::string> out;
+  if (before_um && after_um) out.push_back(change(*before_um, *after_um, " µm"));
+  if (before_urad && after_urad) out.push_back(change(*before_urad, *after_urad, " µrad"));
+  return joined(out);
+}
+
+std::vector<const UndeterminedDirection*> open_directions(const ModelResult& model) {
+  std::vector<const UndeterminedDirection*> out;
+  for (const UndeterminedDirection& direction : model.identifiability.unidentifiable)
+    if (!std::ranges::all_of(direction.combination, [](const auto& term) {
+          return fixed_by_convention(term.first);
+        }))
+      out.push_back(&direction);
+  return out;
+}
+
+Summary summary_of(const Analysis& analysis) {
+  Summary out;
+  say_verdict(analysis, out);
+  out.straightness = straightness_of(analysis.result);
+  out.squareness = squareness_of(analysis.result);
+  say_crosscheck(analysis.result, out);
+  say_missing(analysis, out);
+  out.next = next_step(analysis);
+  return out;
+}
+
+}  // namespace slideway

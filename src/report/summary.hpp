@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slideway/trace/analysis.hpp"
+
+namespace slideway {
+
+/// How much a verdict asks of who reads it.
+enum class Alarm { good, plain, warn, bad };
+
+/// What a report says first, in words: the box of the text, the head of the page.
+struct Summary {
+  Alarm alarm = Alarm::plain;
+  std::string badge;         // the verdict in a word or two
+  std::string verdict;       // in a sentence
+  std::string straightness;  // "E_ZX 24.4 ± 6.8 µm", or why there is none
+  std::string squareness;    // "2.797 ± 0.029 µm/m", or why there is none
+  std::string crosscheck;
+  std::string missing;  // what was missing and what that had done
+  std::string next;
+  bool has_crosscheck = false, has_missing = false;
+};
+
+Summary summary_of(const Analysis& analysis);
+
+/// An effect's name for people: "thermal_drift" as "thermal drift".
+std::string effect_title(const std::string& name);
+std::string effect_titles(const std::vector<std::string>& names, const std::string& separator);
+/// "straightness.b2" with its symbol: "straightness b_2".
+std::string parameter_title(const FittedParameter& parameter);
+/// A sentence of the program with the effects of the catalogue named for people.
+std::string with_titles(std::string text);
+
+/// Whether a parameter is the squareness of the X carriage to the spindle.
+bool is_squareness(const FittedParameter& parameter);
+
+/// With a capital and a full stop.
+std::string in_sentence(std::string text);
+
+/// The declared quantity that the missing effects had moved most.
+struct Shift {
+  std::string what;  // for people
+  double in_U = 0.0;  // declared minus final, in expanded uncertainties of the final
+};
+
+/// None where the loop has added nothing or nothing can be compared.
+std::optional<Shift> largest_shift(const Result& result);
+
+/// True if the loop has added effects to the declared model.
+bool was_extended(const Analysis& analysis);
+
+/// "0.2 -> 0.05 µm", "" where one of the two is not known.
+std::string residual_change(const std::optional<double>& before_um,
+                            const std::optional<double>& after_um,
+                            const std::optional<double>& before_urad,
+                            const std::optional<double>& after_urad);
+
+/// Directions that the data leave open and no convention closes.
+std::vector<const UndeterminedDirection*> open_directions(const ModelResult& model);
+
+}  // namespace slideway
