@@ -1,6 +1,8 @@
 #include "topics.hpp"
 
+#include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/gates.hpp"
 #include "slideway/report/layout.hpp"
 
 namespace slideway {
@@ -109,7 +111,7 @@ const std::vector<Section>& sections() {
        "The closed loop.",
        {{"candidates", "[\"all\"], or names of effects"},
         {"max_effects", "how many may enter; default 3"},
-        {"significance", "chance of finding one in noise; default 0.01"}}},
+        {"GATE", "a number that decides the verdict: slideway help trace lists all"}}},
       {"[truth]",
        "What `simulate` makes the profiles from.",
        {{"seed", "of the noise; default 1"},
@@ -172,15 +174,33 @@ std::string effects_text() {
   return text;
 }
 
+std::string gates_text() {
+  std::string text = paragraph(
+      "",
+      "Every number that decides what the closed loop says is a gate: a key of [trace] with a "
+      "default, a range and a reason. The report lists the values used, and which smallest change "
+      "of one gate within its range would have changed the verdict.");
+  const Gates defaults;
+  for (const Gate& gate : gate_table()) {
+    text += "\n" + std::string(gate.name) + " = " + shortest(defaults.*gate.value) +
+            (gate.unit.empty() ? "" : " " + std::string(gate.unit)) + ", from " +
+            shortest(gate.lower) + " to " + shortest(gate.upper) + "\n";
+    text += paragraph("    ", std::string(gate.decides));
+    text += paragraph("    ", "Source: " + std::string(gate.source) + ".");
+  }
+  return text;
+}
+
 }  // namespace
 
 const std::vector<std::string>& topics() {
-  static const std::vector<std::string> kTopics{"effects", "problem-file"};
+  static const std::vector<std::string> kTopics{"effects", "problem-file", "trace"};
   return kTopics;
 }
 
 std::string topic_text(const std::string& topic) {
-  return topic == "effects" ? effects_text() : problem_file_text();
+  if (topic == "effects") return effects_text();
+  return topic == "trace" ? gates_text() : problem_file_text();
 }
 
 }  // namespace slideway

@@ -11,6 +11,8 @@
 #include "slideway/base/units.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/linear_algebra.hpp"
+#include "slideway/signal/spectrum.hpp"
+#include "slideway/signal/view.hpp"
 
 namespace slideway {
 namespace {
@@ -67,9 +69,8 @@ double sharpened(const Eigen::VectorXd& values, Eigen::Index middle, double freq
 double outstanding_line(const Eigen::VectorXd& values, Eigen::Index middle, double false_line) {
   const Eigen::Index n = values.size(), count = (n - 1) / 2;
   if (count < 4 * kNeighbours) return 0.0;
-  Eigen::VectorXd spectrum(count);
-  for (Eigen::Index k = 0; k < count; ++k)
-    spectrum[k] = power(values, 0, static_cast<double>(k + 1) / static_cast<double>(n));
+  const std::vector<double> from_mean = power_spectrum(view(values));
+  const Eigen::Map<const Eigen::VectorXd> spectrum(from_mean.data() + 1, count);
   double best = std::log(static_cast<double>(count) / false_line);
   Eigen::Index peak = -1;
   for (Eigen::Index k = 0; k < count; ++k) {

@@ -185,7 +185,7 @@ std::string with_titles(std::string text) {
 }
 
 bool is_squareness(const FittedParameter& parameter) {
-  return parameter.name.starts_with("squareness.");
+  return motion_error_of(parameter.name) == MotionError::squareness;
 }
 
 std::string in_sentence(std::string text) {

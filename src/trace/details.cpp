@@ -241,7 +241,7 @@ OptionsSummary options_of(const Problem& problem) {
   out.runout = problem.runout;
   out.candidates = problem.trace.candidates;
   out.max_effects = problem.trace.max_effects;
-  out.significance = problem.trace.significance;
+  out.significance = problem.trace.gates.significance;
   return out;
 }
 

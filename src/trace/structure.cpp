@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "slideway/identify/linear_algebra.hpp"
+#include "slideway/signal/spectrum.hpp"
+#include "slideway/signal/view.hpp"
 
 namespace slideway {
 namespace {
@@ -118,19 +120,12 @@ std::optional<double> odd_share(const Profile& profile, const Eigen::VectorXd& v
 
 /// Period with most power if it holds a third of it, over at least two cycles.
 std::optional<double> dominant_period(const Profile& profile, const Eigen::VectorXd& values) {
-  const Eigen::Index n = values.size();
+  const std::vector<double> spectrum = power_spectrum(view(values));
   double best = 0.0, total = 0.0;
-  Eigen::Index cycles = 0;
-  for (Eigen::Index k = 1; k <= n / 2; ++k) {
-    double c = 0.0, s = 0.0;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double angle = 2.0 * kPi * static_cast<double>(k * i % n) / static_cast<double>(n);
-      c += values[i] * std::cos(angle);
-      s += values[i] * std::sin(angle);
-    }
-    const double power = c * c + s * s;
-    total += power;
-    if (power > best) best = power, cycles = k;
+  std::size_t cycles = 0;
+  for (std::size_t k = 1; k < spectrum.size(); ++k) {
+    total += spectrum[k];
+    if (spectrum[k] > best) best = spectrum[k], cycles = k;
   }
   if (cycles < 2 || best < total / 3.0) return std::nullopt;
   return (profile.setup.last_mm - profile.setup.first_mm) / static_cast<double>(cycles);

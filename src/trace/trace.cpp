@@ -59,9 +59,9 @@ class Loop {
   void tell_rounds(std::vector<AcceptedEffect>& effects) {
     std::vector<AcceptedEffect> so_far;
     for (AcceptedEffect& effect : effects) {
-      const FitResult& before = extender_.summary(so_far);
+      const ModelResult& before = extender_.summary(so_far);
       so_far.push_back(effect);
-      const FitResult& after = extender_.summary(so_far);
+      const ModelResult& after = extender_.summary(so_far);
       effect.round.before_rms_um = before.rms_um;
       effect.round.after_rms_um = after.rms_um;
       effect.round.before_rms_urad = before.rms_urad;
@@ -74,13 +74,11 @@ class Loop {
   }
 
   void report_effects(const Selection& selection, TraceResult& out) {
-    const FitResult& after = extender_.summary(selection.effects);
     out.notes = selection.notes;
-    out.left = selection.left;
+    for (const auto& [effect, reason] : selection.left) out.left.push_back({effect, reason});
     for (std::size_t i = 0; i < selection.effects.size(); ++i) {
       const AcceptedEffect& effect = selection.effects[i];
       out.rounds.push_back(effect.round);
-      out.rounds.back().parameters = parameters_of(after, effect.name());
       if (effect.candidate->raises_degree)
         out.notes.push_back(effect.name() + ": raised to degree " +
                             std::to_string(*effect.candidate->options.degree));
@@ -113,7 +111,7 @@ class Loop {
     const SearchRound& last = extender_.search(selection.effects);
     out.refused = tried(last, gates, nullptr, extender_.summary({}).rms_um);
     for (TriedEffect& effect : out.refused)
-      if (effect.refused.empty())
+      if (!effect.refused)
         effect.refused = std::ssize(selection.effects) >= problem_.trace.max_effects
                              ? "max_effects effects are in the model"
                              : "beside the others it does not help";
@@ -127,7 +125,7 @@ class Loop {
 
   void report_limits(const Selection& selection, TraceResult& out) {
     for (const Untestable& effect : extender_.dictionary().not_testable)
-      out.not_testable.emplace_back(effect.effect, effect.needs);
+      out.not_testable.push_back({effect.effect, effect.needs});
     const FittedModel& fitted = extender_.extended(selection.effects);
     const Whitened& data = extender_.search(selection.effects).data;
     out.not_separable = inseparable(fitted.model, fitted.fit, data,
@@ -158,7 +156,8 @@ ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profil
 }
 
 bool is_negative(const TraceResult& trace) {
-  return trace.verdict == "unnamed" || trace.verdict == "not_identifiable";
+  return trace.verdict == TraceVerdict::unnamed ||
+         trace.verdict == TraceVerdict::not_identifiable;
 }
 
 }  // namespace slideway

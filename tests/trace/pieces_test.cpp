@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "background.hpp"
 #include "calibration.hpp"
 #include "detection.hpp"
 #include "refine.hpp"
 #include "search.hpp"
 #include "slideway/base/units.hpp"
-#include "structure.hpp"
+#include "slideway/identify/lack_of_fit.hpp"
+#include "slideway/identify/noise_model.hpp"
 #include "trace/faces.hpp"
 
 namespace slideway {
@@ -42,7 +42,7 @@ struct Bench {
   }
 
   [[nodiscard]] Whitened white(const Noise& noise) const {
-    return {fitted.linear, {noise}, loose_values(model, fitted, {noise})};
+    return {fitted.linear, {noise}};
   }
   [[nodiscard]] Whitened white() const { return white(first_order(0.4, 5e-5)); }
 
@@ -92,7 +92,7 @@ const double kLowBandNoise = [] {
 
 // A line that is left free only in part makes a noise of it; one that is left free leaves the noise
 // model a gap in the spectrum it may put any noise into. Both made a cut count for nothing.
-TEST(BackgroundNoise, IsTheInstrumentsBesideFeedMarksAndAStrongLine) {
+TEST(NoiseBeside, IsTheInstrumentsBesideFeedMarksAndAStrongLine) {
   for (const std::uint64_t seed : {111U, 114U, 3U, 4U})
     for (const char* name : {"clean", "slide_periodic"}) {
       RandomStream random(seed, name);
@@ -100,8 +100,7 @@ TEST(BackgroundNoise, IsTheInstrumentsBesideFeedMarksAndAStrongLine) {
       const Problem problem = turning::face_problem();
       const std::vector<Profile> profiles = turning::make_faces(hidden, 3, kSharp, seed);
       const FittedModel declared = fit_declared(problem, profiles);
-      const Eigen::MatrixXd loose = loose_values(declared.model, declared.fit, declared.fit.noise);
-      for (const Noise& noise : background_noise(declared.fit, loose)) {
+      for (const Noise& noise : noise_beside(declared.fit.linear, declared.model.gates)) {
         const double found = noise.standard_deviation() / std::sqrt(32.0);
         EXPECT_GT(found, 0.7 * kLowBandNoise) << name << ' ' << seed;  // some 100 free values
         // What the nose makes of the line stays.
@@ -194,7 +193,7 @@ TEST(NullResiduals, HaveTheSizeOfWhiteNoise) {
 }
 
 // Kolmogorov-Smirnov on 60 p-values of pure noise with known correlation: distance 0.21 is exceeded
-// with a probability of 1 % if they are uniform. The p-values themselves come from 99 resamples.
+// with a probability of 1 % if they are uniform.
 TEST(LackOfFit, HasUniformPValuesWhereNothingIsMissing) {
   const Bench bench;
   const Noise noise = first_order(0.4, 5e-5);
@@ -206,8 +205,7 @@ TEST(LackOfFit, HasUniformPValuesWhereNothingIsMissing) {
     for (double& value : rows.reshaped()) value = noise.innovation * random.normal();
     noise.correlation.colour(rows);
     linear.residuals[0] = rows.col(0);
-    const Whitened data(linear, {noise}, Eigen::MatrixXd(rows.rows(), 0));
-    p_values.push_back(lack_of_fit(data, linear).p_value);
+    p_values.push_back(lack_of_fit(linear, {noise}).p_value);
   }
   std::sort(p_values.begin(), p_values.end());
   double distance = 0.0;
@@ -227,8 +225,7 @@ TEST(LackOfFit, SeesASlowWave) {
   for (Eigen::Index i = 0; i < n; ++i)
     linear.residuals[0][i] =
         5e-4 * std::cos(10.0 * kPi * static_cast<double>(i) / static_cast<double>(n));
-  const LackOfFit found = lack_of_fit(Whitened(linear, {noise}, Eigen::MatrixXd(n, 0)), linear);
-  EXPECT_TRUE(found.significant());
+  EXPECT_TRUE(lack_of_fit(linear, {noise}).significant({}));
 }
 
 /// Limits of one cut whose noise has this innovation.
@@ -237,8 +234,7 @@ std::vector<DetectionLimit> limits_at(const Bench& bench, const Dictionary& dict
   Candidates candidates;
   for (const Candidate& candidate : dictionary.candidates) candidates.push_back(&candidate);
   const Whitened data = bench.white(first_order(0.4, innovation));
-  return detection_limits({bench.model, bench.fitted}, data, data.noise(), candidates, {20.0, 2.0},
-                          0.01);
+  return detection_limits({bench.model, bench.fitted}, data, candidates, {20.0, 2.0});
 }
 
 TEST(DetectionLimit, IsTheSizeWhoseGainPassesTheGateInFourOfFive) {

@@ -86,6 +86,7 @@ inline constexpr auto kRecord<TraceResult> = record(
     field("refused", &TraceResult::refused, "of the last search, best first"),
     field("left", &TraceResult::left), field("detection_limits", &TraceResult::detection_limits),
     field("lack_of_fit_p", &TraceResult::lack_of_fit_p, "of the final residual"),
+    field("searches", &TraceResult::searches, "sets of effects whose residual was searched"),
     field("notes", &TraceResult::notes));
 
 template <>

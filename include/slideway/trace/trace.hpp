@@ -112,6 +112,7 @@ struct TraceResult {
   std::vector<LeftEffect> left;
   std::vector<DetectionLimit> detection_limits;
   double lack_of_fit_p = 1.0;  // of the final residual
+  std::size_t searches = 0;    // sets of effects whose residual was searched, each once
   std::vector<std::string> notes;
 };
 
