@@ -114,7 +114,8 @@ const BadInput kWholes[] = {
     bad("MetadataMissing", {.effect = "[[effect]]\nname = \"thermal_drift\"\n"},
         {"problem.toml: effect 'thermal_drift' needs feed_mm_per_min", "of profile 'face'"}),
     bad("TraceBeyondTheCut", {.profile_more = "cut_radius_mm = 1.0\n"},
-        {"problem.toml:12: profile.cut_radius_mm: 'face': 1, but", "r = 63", "give the outer radius"}),
+        {"problem.toml:12: profile.cut_radius_mm: 'face': 1, but", "r = 63",
+         "give the outer radius"}),
 };
 INSTANTIATE_TEST_SUITE_P(BadWhole, Problem, testing::ValuesIn(kWholes),
                          [](const auto& input) { return input.param.name; });

@@ -106,9 +106,10 @@ TEST_F(Identify, GivesTheSameBytesASecondTime) {
 }
 
 TEST_F(Identify, KeepsItsTextWithin80Columns) {
-  for (const char* problem : {"paper-600mm/problem.toml", "paper-600mm/paper.toml",
-                              "paper-face-10mm/problem.toml", "three-levels/problem.toml",
-                              "three-levels/split.toml", "milling-machine-way/problem.toml"}) {
+  for (const char* problem :
+       {"paper-600mm/problem.toml", "paper-600mm/paper.toml", "paper-face-10mm/problem.toml",
+        "three-levels/problem.toml", "three-levels/split.toml", "milling-machine-way/problem.toml",
+        "paper-experiment/problem.toml"}) {
     const ProgramRun done =
         run({"identify", shipped(std::string("problems/") + problem), "--no-trace"});
     EXPECT_EQ(done.exit_code, 0) << done.err;

@@ -87,7 +87,8 @@ TEST_F(ProblemFile, TakesALoss) {
 TEST_F(ProblemFile, RefusesNumbersThatLeaveNoDigits) {
   for (const char* key : {"center_mm", "z_mm", "start_s"})
     for (const char* value : {" = 1e18", " = -1e300"})
-      EXPECT_THAT(profile_refusal(std::string(key) + value), HasSubstr("from -1e9 to 1e9")) << key;
+      EXPECT_THAT(profile_refusal(std::string(key) + value), HasSubstr("from -1e+09 to 1e+09"))
+          << key;
   for (const char* key : {"feed_mm_per_min", "spindle_rpm", "cut_radius_mm", "traverse_mm_per_s",
                           "nose_radius_mm", "standard_uncertainty"})
     for (const char* value : {" = 1e18", " = 1e-300"})

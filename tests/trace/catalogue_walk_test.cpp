@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct Reading {
   const char* quantity;
   const char* unit;
 };
+void PrintTo(const Reading& reading, std::ostream* out) { *out << reading.name; }
+
 constexpr Reading kReadings[] = {{"Face", "face", "height", "um"},
                                  {"Slide", "slide", "height", "um"},
                                  {"Slope", "slide", "slope", "urad"}};
