@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/bad_input.hpp"
+#include "slideway/base/sanitizer.hpp"
 
 namespace slideway {
 namespace {
@@ -68,6 +69,16 @@ class Batch : public ProgramTest {
     return report.dump();
   }
 };
+
+// 1e6 samples take 16 MB as numbers alone; the program keeps a heap of 1 GB for itself.
+TEST_F(Batch, AnItemBeyondTheMemoryFailsAlone) {
+  if (kHasShadow) GTEST_SKIP() << "memory is not limited under a sanitizer";
+  folder_.file("large.csv", face_csv(1'000'000));
+  add("large,problem.toml,large.csv\n");
+  EXPECT_EQ(batch("out.jsonl", {"--jobs", "1", "--memory", "12"}).exit_code, 5);
+  EXPECT_EQ(result("out.jsonl", "large")["status"], "out_of_memory");
+  EXPECT_EQ(result("out.jsonl", "face3")["status"], "ok");
+}
 
 TEST_F(Batch, EveryReportIsThatOfIdentifyAlone) {
   const ProgramRun done = batch("out.jsonl");
