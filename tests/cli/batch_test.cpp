@@ -125,10 +125,10 @@ TEST_F(Batch, OneBadItemStopsAndChangesNoOther) {
   const std::vector<std::string> good = lines("good.jsonl");
   folder_.file("broken.csv", "x_mm,z_um\n0,1\n1,two\n");
   folder_.file("broken.toml", "title = \n");
-  ASSERT_EQ(::mkfifo(path("endless.csv").c_str(), 0666), 0);
+  ASSERT_EQ(::mkfifo(path("endless.toml").c_str(), 0666), 0);
   add("missing,problem.toml,nowhere.csv\nbroken,problem.toml,broken.csv\n"
       "noproblem,nowhere.toml,\nbadproblem,broken.toml,face0.csv\n"
-      "endless,problem.toml,endless.csv\n");
+      "endless,endless.toml,\n");
   const ProgramRun done = batch("out.jsonl", {"--timeout", "3", "--json", "summary.json"});
   EXPECT_EQ(done.exit_code, 5);
   EXPECT_THAT(done.out, HasSubstr("17 items in out.jsonl: 12 ok, 5 failed"));
@@ -287,9 +287,9 @@ TEST_P(BatchRanks, FailedItemsAreTheExitCode) {
 // The last process that was started is the one that is ended.
 TEST_P(BatchRanks, AProcessThatDiesLosesNoFinishedResult) {
   ASSERT_EQ(batch("alone.jsonl").exit_code, 0);
-  ASSERT_EQ(::mkfifo(path("endless.csv").c_str(), 0666), 0);
+  ASSERT_EQ(::mkfifo(path("endless.toml").c_str(), 0666), 0);
   const std::string good = contents(path("list.csv"));
-  add("endless,problem.toml,endless.csv\n");
+  add("endless,endless.toml,\n");
   EXPECT_NE(
       mpirun(
           "out.jsonl",
