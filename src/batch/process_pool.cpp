@@ -72,6 +72,20 @@ void limit_memory(std::uint64_t bytes) {
   ::setrlimit(RLIMIT_DATA, &limit);
 }
 
+/// Checked before any worker is started: without a free descriptor the unwinder cannot work.
+void require_descriptors(std::size_t workers) {
+  constexpr rlim_t kOthers = 32;  // files that the program and its libraries keep open
+  struct rlimit limit {};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  const rlim_t needed = workers + kOthers;
+  if (limit.rlim_cur >= needed) return;
+  limit.rlim_cur = std::min(needed, limit.rlim_max);
+  if (limit.rlim_cur == needed && ::setrlimit(RLIMIT_NOFILE, &limit) == 0) return;
+  throw std::runtime_error(std::to_string(workers) + " worker processes need " +
+                           std::to_string(needed) + " open files; the system allows " +
+                           std::to_string(limit.rlim_max) + " (ulimit -n)");
+}
+
 std::string described(int status) {
   if (!WIFSIGNALED(status)) return "ended with exit code " + std::to_string(WEXITSTATUS(status));
   return "ended by signal " + std::to_string(WTERMSIG(status)) + " (" +
@@ -82,6 +96,7 @@ std::string described(int status) {
 
 ProcessPool::ProcessPool(std::size_t count, Work work, const WorkerLimits& limits)
     : work_(std::move(work)), limits_(limits), workers_(count) {
+  require_descriptors(count);
   for (Worker& worker : workers_) start(worker);
 }
 

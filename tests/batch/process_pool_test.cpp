@@ -1,11 +1,13 @@
 #include "slideway/batch/process_pool.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <fstream>
+#include <iostream>
 #include <map>
 #include <new>
 #include <thread>
@@ -97,6 +99,22 @@ TEST(ProcessPool, MemoryIsLimited) {
   const auto done = results_of(workers, {"1000000000", "1000"});
   EXPECT_EQ(done.at("1000000000").reply, "no");
   EXPECT_EQ(done.at("1000").reply, "1000");
+}
+
+TEST(ProcessPool, MoreWorkersThanOpenFilesAreRefused) {
+  const auto refusal = [] {
+    const rlimit limit{64, 64};
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+    try {
+      const ProcessPool workers(100, work, {});
+    } catch (const std::runtime_error& error) {
+      std::cerr << error.what();
+      ::_exit(1);
+    }
+    ::_exit(0);
+  };
+  EXPECT_EXIT(refusal(), testing::ExitedWithCode(1),
+              "100 worker processes need 132 open files; the system allows 64 \\(ulimit -n\\)");
 }
 
 TEST(ProcessPool, EndWithTheirParent) {

@@ -63,7 +63,7 @@ const BadInput kFiles[] = {
         {"face.csv: no column '3'", "the file has: x_mm, z_um"}, {.columns = "value_column = 3\n"}),
     bad("ColumnTwice", "x_mm,z_um,z_um\n0,1,2\n1,2,3\n",
         {"face.csv: has more than one column 'z_um'", "by its number"}),
-    bad("Binary", every_byte(), {"face.csv: no column 'x_mm'", "the file has:"}),
+    bad("Binary", every_byte(), {"face.csv: line 2: a carriage return inside the line"}),
     bad("HalfACharacter", std::string("\xff\xfex\0,\0z\0\n", 9),
         {"face.csv: byte 7: half a character of UTF-16"}),
 };

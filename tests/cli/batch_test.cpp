@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/bad_input.hpp"
+#include "slideway/base/sanitizer.hpp"
 
 namespace slideway {
 namespace {
@@ -73,6 +74,16 @@ class Batch : public ProgramTest {
   }
 };
 
+// 1e6 samples take 16 MB as numbers alone; the program keeps a heap of 1 GB for itself.
+TEST_F(Batch, AnItemBeyondTheMemoryFailsAlone) {
+  if (kHasShadow) GTEST_SKIP() << "memory is not limited under a sanitizer";
+  folder_.file("large.csv", face_csv(1'000'000));
+  add("large,problem.toml,large.csv\n");
+  EXPECT_EQ(batch("out.jsonl", {"--jobs", "1", "--memory", "12"}).exit_code, 5);
+  EXPECT_EQ(result("out.jsonl", "large")["status"], "out_of_memory");
+  EXPECT_EQ(result("out.jsonl", "face3")["status"], "ok");
+}
+
 TEST_F(Batch, EveryReportIsThatOfIdentifyAlone) {
   const ProgramRun done = batch("out.jsonl");
   ASSERT_EQ(done.exit_code, 0) << done.err;
@@ -118,10 +129,10 @@ TEST_F(Batch, OneBadItemStopsAndChangesNoOther) {
   const std::vector<std::string> good = lines("good.jsonl");
   folder_.file("broken.csv", "x_mm,z_um\n0,1\n1,two\n");
   folder_.file("broken.toml", "title = \n");
-  ASSERT_EQ(::mkfifo(path("endless.csv").c_str(), 0666), 0);
+  ASSERT_EQ(::mkfifo(path("endless.toml").c_str(), 0666), 0);
   add("missing,problem.toml,nowhere.csv\nbroken,problem.toml,broken.csv\n"
       "noproblem,nowhere.toml,\nbadproblem,broken.toml,face0.csv\n"
-      "endless,problem.toml,endless.csv\n");
+      "endless,endless.toml,\n");
   const ProgramRun done = batch("out.jsonl", {"--timeout", "3", "--json", "summary.json"});
   EXPECT_EQ(done.exit_code, 5);
   EXPECT_THAT(done.out, HasSubstr("17 items in out.jsonl: 12 ok, 5 failed"));
@@ -280,9 +291,9 @@ TEST_P(BatchRanks, FailedItemsAreTheExitCode) {
 // The last process that was started is the one that is ended.
 TEST_P(BatchRanks, AProcessThatDiesLosesNoFinishedResult) {
   ASSERT_EQ(batch("alone.jsonl").exit_code, 0);
-  ASSERT_EQ(::mkfifo(path("endless.csv").c_str(), 0666), 0);
+  ASSERT_EQ(::mkfifo(path("endless.toml").c_str(), 0666), 0);
   const std::string good = contents(path("list.csv"));
-  add("endless,problem.toml,endless.csv\n");
+  add("endless,endless.toml,\n");
   EXPECT_NE(
       mpirun(
           "out.jsonl",
