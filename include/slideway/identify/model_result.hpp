@@ -105,11 +105,24 @@ struct StraightnessError : QuantityValue {
   double highest_um = 0.0, highest_at_mm = 0.0, lowest_um = 0.0, lowest_at_mm = 0.0;
 };
 
-/// The slide's form, over the travel the profiles cover.
+/// The slide's form over the travel that the fitted profiles measured, each bridge from foot to
+/// foot. Deviations are from the line through the end points.
 struct StraightnessCurve {
-  std::vector<double> position_mm;              // slide coordinate x
-  std::vector<double> deviation_um;             // from the least-squares line
+  std::vector<double> position_mm;  // slide coordinate x
+  std::vector<double> deviation_um;
   std::vector<double> expanded_uncertainty_um;  // of the deviation
+  /// Of a face: what the form does to the tool tip, with the pitch that follows from it on its
+  /// lever; from the line through its own end points, whose slope is tip_slope_rad (none: the data
+  /// do not determine it).
+  std::vector<double> tip_um, tip_expanded_uncertainty_um;
+  std::optional<double> tip_slope_rad;
+};
+
+/// Height of the slide where it was read: a position of a reading, or of a foot of a bridge.
+struct StraightnessStation {
+  double position_mm = 0.0;
+  double deviation_um = 0.0;  // from the line through the end points
+  std::optional<double> expanded_uncertainty_um;
 };
 
 /// Straightness of the slide the fit has found, E_ZX, with its uncertainty.
@@ -117,6 +130,7 @@ struct Straightness {
   std::optional<double> end_point_um, least_squares_um, minimum_zone_um;  // by reference line
   std::optional<double> expanded_uncertainty_um;                          // of end_point_um
   std::vector<StraightnessError> errors;                                  // one for each line
+  std::vector<StraightnessStation> stations;                              // of slides, 50 at most
   StraightnessCurve curve;
   std::string reason;  // why there is none; then all else is empty
 };
