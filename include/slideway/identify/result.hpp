@@ -228,7 +228,8 @@ struct StraightnessCurve {
   std::vector<double> deviation_um;
   std::vector<double> expanded_uncertainty_um;  // of the deviation
   /// Of a face: what the form does to the tool tip, with the pitch that follows from it on its
-  /// lever; from the line through its own end points, whose slope is tip_slope_rad.
+  /// lever; from the line through its own end points, whose slope is tip_slope_rad (none: the data
+  /// do not determine it).
   std::vector<double> tip_um, tip_expanded_uncertainty_um;
   std::optional<double> tip_slope_rad;
 };
