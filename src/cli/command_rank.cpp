@@ -8,6 +8,7 @@
 #include "slideway/identify/ranking.hpp"
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
+#include "slideway/report/report.hpp"
 
 namespace slideway {
 namespace {

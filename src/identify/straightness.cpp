@@ -115,6 +115,17 @@ class Locus {
     return reported_.spread(row);
   }
 
+  /// Whether a weighted sum is the same along every direction that the data leave open.
+  [[nodiscard]] bool is_determined(const Eigen::RowVectorXd& weighted) const {
+    const Eigen::MatrixXd along =
+        fit_.null.amplitudes.middleRows(term_.first_amplitude, weighted.size());
+    constexpr double kRounding = 1e-9;
+    for (Eigen::Index j = 0; j < along.cols(); ++j)
+      if (std::abs(weighted.dot(along.col(j))) > kRounding * weighted.norm() * along.col(j).norm())
+        return false;
+    return true;
+  }
+
   /// Deviation at each x from the line through those at the ends of `travel`, µm.
   [[nodiscard]] std::vector<QuantityValue> deviations(const Eigen::VectorXd& x,
                                                       const SlideRange& travel) const {
@@ -204,7 +215,9 @@ void add_tip(const Locus& tip, const Eigen::VectorXd& x, const SlideRange& trave
              StraightnessCurve& out) {
   append(tip.deviations(x, travel), out.tip_um, out.tip_expanded_uncertainty_um);
   const Eigen::MatrixXd ends = tip.columns(Eigen::Vector2d(travel.least, travel.greatest));
-  out.tip_slope_rad = tip.value(ends.row(1) - ends.row(0)) / (travel.greatest - travel.least);
+  const Eigen::RowVectorXd rise = ends.row(1) - ends.row(0);
+  if (tip.is_determined(rise))
+    out.tip_slope_rad = tip.value(rise) / (travel.greatest - travel.least);
 }
 
 void add_error(const ReferenceLine& line, const Eigen::VectorXd& x, const Spread& spread,

@@ -1,15 +1,13 @@
 #include "slideway/report/compensation.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <functional>
-#include <map>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/report/number.hpp"
+#include "summary.hpp"
 
 namespace slideway {
 namespace {
@@ -17,52 +15,28 @@ namespace {
 constexpr double kPieces = 50.0;  // of the travel, where no step is asked for
 constexpr double kMost = 5000.0;
 
-using Parameters = std::vector<FittedParameter>;
-
-bool is_determined(const FittedParameter& p) { return p.identifiable && p.value; }
-
-/// The tool tip's deviation in Z that straightness makes: Σ b_k (x^k - p_x k x^(k-1)), mm.
-class TipLocus {
+/// The form of the report at any position of its travel: a cubic through the four points about it.
+class Form {
  public:
-  TipLocus(const Parameters& parameters, const TravelSummary& travel) : travel_(&travel) {
-    constexpr std::string_view kPrefix = "straightness.b";
-    for (const FittedParameter& p : parameters) {
-      if (!p.name.starts_with(kPrefix)) continue;
-      std::size_t k = 0;
-      std::from_chars(p.name.data() + kPrefix.size(), p.name.data() + p.name.size(), k);
-      b_[k] = &p;
-    }
-  }
-
-  [[nodiscard]] bool is_declared() const { return !b_.empty(); }
-
-  /// Names of b_first and above that the data do not determine.
-  [[nodiscard]] std::vector<std::string> undetermined(std::size_t first) const {
-    std::vector<std::string> names;
-    for (const auto& [k, p] : b_)
-      if (k >= first && !is_determined(*p)) names.push_back(p->symbol);
-    return names;
-  }
+  Form(const std::vector<double>& x, const std::vector<double>& y) : x_(x), y_(y) {}
 
   [[nodiscard]] double operator()(double x) const {
-    long double sum = 0.0L;
-    for (const auto& [k, p] : b_) {
-      if (!is_determined(*p)) continue;
-      const long double below = k == 0 ? 0.0L : std::pow(static_cast<long double>(x), k - 1.0L);
-      sum += *p->value * (k == 0 ? 1.0L : (x - lever(x) * static_cast<double>(k)) * below);
+    const std::size_t last = x_.size() - 1;
+    const double place = (x - x_.front()) / (x_.back() - x_.front()) * static_cast<double>(last);
+    const auto below = static_cast<std::size_t>(std::clamp(place, 0.0, static_cast<double>(last)));
+    const std::size_t first = std::min(below == 0 ? 0 : below - 1, last - 3);
+    double sum = 0.0;
+    for (std::size_t i = first; i < first + 4; ++i) {
+      double weight = 1.0;
+      for (std::size_t j = first; j < first + 4; ++j)
+        if (j != i) weight *= (x - x_[j]) / (x_[i] - x_[j]);
+      sum += weight * y_[i];
     }
-    return static_cast<double>(sum);
+    return sum;
   }
 
  private:
-  [[nodiscard]] double lever(double x) const {
-    if (!travel_->spindle_position_mm) return 0.0;  // read along the slide itself
-    return travel_->lever == Lever::paper ? x - *travel_->spindle_position_mm
-                                          : travel_->overhang_mm.value_or(0.0);
-  }
-
-  const TravelSummary* travel_;
-  std::map<std::size_t, const FittedParameter*> b_;
+  const std::vector<double>&x_, &y_;
 };
 
 std::vector<double> evenly(const TravelSummary& travel, double step_mm) {
@@ -110,71 +84,77 @@ std::string drowned(const Analysis& analysis, const Compensation& table,
 
 void refuse_whole(const Analysis& analysis) {
   const auto refuse = [](const std::string& why) { throw DataError("no table: " + why); };
-  if (!analysis.result.final) refuse("the report holds no fit; accepted: one of identify or fit");
-  if (!analysis.result.final->converged) refuse("the fit did not converge");
-  if (!analysis.result.travel)
-    refuse("the report says no travel, being of an older slideway; identify the problem again");
-  for (const FittedParameter& p : analysis.result.final->parameters)
-    if (p.name.starts_with("straightness[") || p.name.starts_with("squareness["))
+  const auto& model = analysis.result.final;
+  if (!model) refuse("the report holds no fit; accepted: one of identify or fit");
+  if (!model->converged) refuse("the fit did not converge");
+  if (!analysis.result.travel) refuse("the report says no travel");
+  for (const FittedParameter& p : model->parameters)  // "straightness[upper].b2"
+    if (p.name.find('[') != std::string::npos)
       refuse("several carriages move along X; accepted: a machine with one");
   if (analysis.trace && analysis.trace->verdict == TraceVerdict::not_identifiable)
     refuse(
         "the closed loop's verdict is not_identifiable: the data cannot tell what made the form");
 }
 
-/// Sets E_ZX, or says why not. @return the slope of its reference line.
-double add_straightness(const Analysis& analysis, const TipLocus& locus, Compensation& out) {
+/// Sets E_ZX, or says why not.
+void add_straightness(const Analysis& analysis, Compensation& out) {
   const auto leave_out = [&](const std::string& why) {
     out.left_out.push_back("EZX is left out: " + why);
-    return 0.0;
   };
+  const ModelResult& model = *analysis.result.final;
   const TravelSummary& travel = *analysis.result.travel;
-  if (!locus.is_declared()) return leave_out("the model has no straightness");
-  if (const auto names = locus.undetermined(2); !names.empty())
-    return leave_out("the data do not determine " + joined(names));
-  if (travel.spindle_position_mm && travel.lever == Lever::split && !travel.overhang_mm)
+  if (!model.straightness) return leave_out("the model has no straightness");
+  const StraightnessCurve& curve = model.straightness->curve;
+  if (curve.position_mm.size() < 4)
+    return leave_out(model.straightness->reason.empty() ? "the report holds no form"
+                                                        : model.straightness->reason);
+  const bool at_tip = travel.spindle_position_mm.has_value();
+  if (at_tip && curve.tip_um.size() != curve.position_mm.size())
     return leave_out("the faces were cut at several overhangs, and its pitch acts on each");
-  const std::string& implausible = analysis.result.final->implausible;
-  if (!implausible.empty() && (!analysis.trace || analysis.trace->rounds.empty()))
-    return leave_out(implausible);
+  if (!model.implausible.empty() && !was_extended(analysis)) return leave_out(model.implausible);
 
-  const double first = out.positions_mm.front(), last = out.positions_mm.back();
-  const double slope = (locus(last) - locus(first)) / (last - first);
-  const auto deviation = [&](double x) { return locus(x) - locus(first) - slope * (x - first); };
-  std::vector<double> form;
-  for (const double x : out.positions_mm) form.push_back(deviation(x));
-  form.front() = form.back() = 0.0;
-  for (std::size_t i = 0; i + 1 < form.size(); ++i) {
+  const Form form(curve.position_mm, at_tip ? curve.tip_um : curve.deviation_um);
+  const Form U(curve.position_mm,
+               at_tip ? curve.tip_expanded_uncertainty_um : curve.expanded_uncertainty_um);
+  std::vector<double> heights;
+  for (const double x : out.positions_mm) heights.push_back(form(x) * kMicrometre);
+  heights.front() = heights.back() = 0.0;
+  for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
     const double x = (out.positions_mm[i] + out.positions_mm[i + 1]) / 2.0;
-    out.interpolation_mm =
-        std::max(out.interpolation_mm, std::abs(deviation(x) - (form[i] + form[i + 1]) / 2.0));
+    const double between = (heights[i] + heights[i + 1]) / 2.0;
+    out.interpolation_mm = std::max(out.interpolation_mm, std::abs(form(x) * kMicrometre - between));
   }
-  if (const std::string why = drowned(analysis, out, form); !why.empty()) return leave_out(why);
-  out.straightness_mm = std::move(form);
-  const std::string lever = !travel.spindle_position_mm ? ", of the carriage"
+  if (const std::string why = drowned(analysis, out, heights); !why.empty()) return leave_out(why);
+  out.straightness_mm = std::move(heights);
+  for (const double x : out.positions_mm)
+    out.straightness_U_mm.push_back(std::max(0.0, U(x)) * kMicrometre);
+  const std::string lever = !at_tip ? ", of the carriage"
                             : travel.lever == Lever::paper
                                 ? ", at the tool tip, with the pitch on the lever p_x = r"
                                 : ", at the tool tip, with the pitch on the overhang of " +
-                                      significant(*travel.overhang_mm, 6) + " mm";
+                                      significant(travel.overhang_mm.value_or(0.0), 6) + " mm";
   out.basis.push_back("EZX: straightness error motion of X in the direction Z, mm" + lever +
                       "; reference line: through the end points of the travel");
-  return slope;
+  for (const StraightnessError& error : model.straightness->errors)
+    if (error.line == ReferenceLineKind::end_point)
+      out.basis.push_back("E_ZX of the carriage over this travel: " + value_text(error) +
+                          " µm (U, end-point line)");
 }
 
-void add_squareness(const Analysis& analysis, const TipLocus& locus, double slope,
-                    Compensation& out) {
+void add_squareness(const Analysis& analysis, Compensation& out) {
   const auto leave_out = [&](const std::string& why) {
     out.left_out.push_back("B0X is left out: " + why);
   };
-  const Parameters& parameters = analysis.result.final->parameters;
-  const auto found = std::ranges::find(parameters, "squareness.dbeta_xz", &FittedParameter::name);
-  if (found == parameters.end()) return leave_out("the model has no squareness");
-  if (!is_determined(*found)) return leave_out("the data do not determine " + found->symbol);
-  const bool needs_b1 =
-      analysis.result.travel->lever == Lever::split && !out.straightness_mm.empty();
-  if (needs_b1)
-    if (const auto names = locus.undetermined(1); !names.empty())
-      return leave_out("the data do not determine " + joined(names));
+  const ModelResult& model = *analysis.result.final;
+  const auto found = std::ranges::find_if(model.parameters, is_squareness);
+  if (found == model.parameters.end()) return leave_out("the model has no squareness");
+  if (!is_known(*found)) return leave_out("the data do not determine " + found->symbol);
+  double slope = 0.0;
+  if (!out.straightness_mm.empty()) {
+    const std::optional<double>& tip = model.straightness->curve.tip_slope_rad;
+    if (!tip) return leave_out("the data do not determine the slope of EZX's reference line");
+    slope = *tip;
+  }
   const auto& check = analysis.result.crosscheck.squareness;
   if (check && check->verdict == Consistency::inconsistent)
     return leave_out("the cross-check with the run-out is inconsistent (E_n " +
@@ -186,10 +166,8 @@ void add_squareness(const Analysis& analysis, const TipLocus& locus, double slop
   out.squareness_rad = angle;
   out.basis.push_back(
       "B0X: squareness of X to the spindle axis average line, E_B(0C)X, rad: Δβxz = " +
-      (found->expanded_uncertainty
-           ? with_uncertainty(*found->value, *found->expanded_uncertainty) +
-                 " (U, k = " + fixed_point(found->coverage_factor.value_or(2.0), 2) + ")"
-           : significant(*found->value, 6)) +
+      value_text(*found) + " (U, k = " + fixed_point(found->coverage_factor.value_or(2.0), 2) +
+      ")" +
       (out.straightness_mm.empty()
            ? ""
            : " minus " + significant(slope, 6) + ", the slope of EZX's reference line"));
@@ -200,11 +178,9 @@ void add_squareness(const Analysis& analysis, const TipLocus& locus, double slop
 Compensation compensation(const Analysis& analysis, double step_mm) {
   refuse_whole(analysis);
   Compensation out;
-  const TravelSummary& travel = *analysis.result.travel;
-  out.positions_mm = evenly(travel, step_mm);
-  const TipLocus locus(analysis.result.final->parameters, travel);
-  const double slope = add_straightness(analysis, locus, out);
-  add_squareness(analysis, locus, slope, out);
+  out.positions_mm = evenly(*analysis.result.travel, step_mm);
+  add_straightness(analysis, out);
+  add_squareness(analysis, out);
   if (out.straightness_mm.empty() && !out.squareness_rad)
     throw DataError("no table: " + joined(out.left_out, "; "));
   if (!analysis.trace)
@@ -214,11 +190,9 @@ Compensation compensation(const Analysis& analysis, double step_mm) {
     out.left_out.emplace_back(
         "in doubt: the closed loop's verdict is ambiguous, and its rivals would leave other "
         "numbers");
-  const auto is_pitch_of_z = [](const FittedParameter& p) {
-    return p.name.starts_with("vertical_straightness.");
-  };
-  if (std::ranges::any_of(analysis.result.final->parameters, is_pitch_of_z))
-    out.left_out.emplace_back("not in this table: vertical_straightness of the report (E_BZ)");
+  for (const std::string& effect : analysis.result.final->effects)
+    if (is_vertical(effect))
+      out.left_out.push_back("not in this table: " + effect + " of the report (E_BZ)");
   return out;
 }
 

@@ -51,13 +51,28 @@ std::vector<std::string> common_lines(const Compensation& table, const std::stri
       "Axes as in ISO 841: +Z from the workpiece to the tool, +X away from the spindle axis;",
       "angles right-handed about +Y: B0X above 0 takes the tool to -Z as X grows.",
       "X: slide coordinate x of the problem file, a radius, mm. Where the machine coordinate is",
-      "another, shift the positions. Measured travel " + significant(x.front(), 9) + " to " +
+      "another, shift the positions. Measured travel (a bridge from foot to foot) " + significant(x.front(), 9) + " to " +
           significant(x.back(), 9) + " mm, " + std::to_string(x.size()) + " positions " +
           significant(x[1] - x[0], 9) + " mm apart;",
       "a line between two of them is off by up to " +
           significant(table.interpolation_mm / kMicrometre, 2) + " µm."};
   lines.insert(lines.end(), table.basis.begin(), table.basis.end());
+  if (!table.straightness_U_mm.empty())
+    lines.push_back("EZX: U up to " +
+                    significant(std::ranges::max(table.straightness_U_mm) / kMicrometre, 2) +
+                    " µm over this travel");
   lines.insert(lines.end(), table.left_out.begin(), table.left_out.end());
+  return lines;
+}
+
+/// U at each position: none of the formats has a column for it.
+std::vector<std::string> uncertainty_lines(const Compensation& table) {
+  std::vector<std::string> lines;
+  if (table.straightness_U_mm.empty()) return lines;
+  lines.emplace_back("Expanded uncertainty U of EZX: X in mm, U in um");
+  for (std::size_t i = 0; i < table.positions_mm.size(); ++i)
+    lines.push_back(millimetres(table.positions_mm[i]) + " " +
+                    significant(table.straightness_U_mm[i] / kMicrometre, 2));
   return lines;
 }
 
@@ -66,6 +81,7 @@ std::vector<std::string> volumetric_lines(const Compensation& table, const std::
   lines.emplace_back(
       "To set: the axis numbers of X and Z, and `negate` if the control adds errors");
   lines.emplace_back("instead of taking them off. Check the sign with a second face before use.");
+  for (std::string& line : uncertainty_lines(table)) lines.push_back(std::move(line));
   return lines;
 }
 
@@ -112,6 +128,7 @@ std::string cec(const Compensation& table, const std::string& source) {
         std::string("set it to 1, and SD41300 $SN_CEC_TABLE_ENABLE[0] = 1. Check the sign with a"),
         std::string("second face; SD41310 $SN_CEC_TABLE_WEIGHT[0] = -1 turns all values round.")})
     lines.push_back(line);
+  for (const std::string& line : uncertainty_lines(table)) lines.push_back(line);
   std::string text = "%_N_NC_CEC_INI\nCHANDATA(1)\n" + commented("; ", lines);
   for (std::size_t i = 0; i < x.size(); ++i)
     text += "$AN_CEC[0," + std::to_string(i) + "]=" + fine(-error_in_z(table, i)) + "\n";

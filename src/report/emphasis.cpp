@@ -11,12 +11,14 @@ constexpr std::string_view kBold = "\033[1m", kNotBold = "\033[22m", kNoColour =
 constexpr std::string_view kGreen = "\033[32m", kYellow = "\033[33m", kRed = "\033[31m";
 
 constexpr std::pair<std::string_view, std::string_view> kVerdicts[] = {
-    {"nothing is missing", kGreen},
-    {"an effect was missing and is named", kGreen},
-    {"an effect is missing", kYellow},
-    {"the form is there", kRed},
-    {"UNNAMED", kRed},
+    {"Nothing missing:", kGreen},
+    {"Explained:", kGreen},
+    {"Ambiguous:", kYellow},
+    {"Not identifiable:", kRed},
+    {"Not converged:", kRed},
+    {"Unnamed:", kRed},
     {"INCONSISTENT", kRed},
+    {"DOES NOT FIT", kRed},
     {"NOT CONVERGED", kRed},
 };
 
@@ -38,7 +40,7 @@ std::string with_emphasis(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string_view line = std::string_view(text).substr(at, end - at);
-    const bool is_heading = !line.empty() && line.front() != ' ';
+    const bool is_heading = !line.empty() && line.front() != ' ' && !line.starts_with("│");
     if (is_heading) out += kBold;
     out += coloured(line);
     if (is_heading) out += kNotBold;

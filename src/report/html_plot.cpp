@@ -20,11 +20,12 @@ constexpr double kMostDecades = 5.0;  // of a logarithmic axis, below its larges
 std::string coordinate(double value) { return fixed_point(value, 1); }
 
 Html straight(const std::string& style, double x1, double y1, double x2, double y2) {
-  return element("line", {{"class", style},
-                          {"x1", coordinate(x1)},
-                          {"x2", coordinate(x2)},
-                          {"y1", coordinate(y1)},
-                          {"y2", coordinate(y2)}});
+  HtmlAttributes attributes{{"x1", coordinate(x1)},
+                            {"x2", coordinate(x2)},
+                            {"y1", coordinate(y1)},
+                            {"y2", coordinate(y2)}};
+  if (!style.empty()) attributes.emplace_back("class", style);
+  return element("line", attributes);
 }
 
 Html text_at(double x, double y, const char* anchor, const std::string& text) {

@@ -188,6 +188,8 @@ bool is_squareness(const FittedParameter& parameter) {
   return motion_error_of(parameter.name) == MotionError::squareness;
 }
 
+bool is_vertical(const std::string& effect) { return effect == "vertical_straightness"; }
+
 std::string in_sentence(std::string text) {
   if (text.empty()) return text;
   if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';

@@ -36,6 +36,8 @@ std::string with_titles(std::string text);
 
 /// Whether a parameter is the squareness of the X carriage to the spindle.
 bool is_squareness(const FittedParameter& parameter);
+/// Whether an effect is the pitch that the form of the vertical guideway makes.
+bool is_vertical(const std::string& effect);
 
 /// With a capital and a full stop.
 std::string in_sentence(std::string text);

@@ -107,11 +107,12 @@ std::string ranking(const RankingResult& ranking) {
 }
 
 std::string dominant(const Dominant& dominant) {
+  if (!dominant.doubt.empty())
+    return heading("Dominant effect: " + with_titles(dominant.doubt) + ".");
   std::vector<std::string> names;
   if (dominant.by_correlation)
     names.push_back("by correlation " + effect_title(*dominant.by_correlation));
   if (dominant.by_fit) names.push_back("by fit " + effect_title(*dominant.by_fit));
-  if (!dominant.doubt.empty()) names.push_back(with_titles(dominant.doubt));
   if (dominant.agree) names.emplace_back(*dominant.agree ? "the two agree" : "they do not agree");
   return names.empty() ? "" : heading("Dominant effect: " + joined(names) + ".");
 }

@@ -175,7 +175,7 @@ std::string assumed(const Result& result) {
     out.push_back(key + (some ? " (" + joined(profiles) + ")" : ""));
   }
   if (out.empty()) return "";
-  const std::string text = paragraph("Assumed: ", joined(out, "; ") + ".");
+  const std::string text = paragraph("  Assumed: ", joined(out, "; ") + ".");
   return "\n" + in_lines(first_lines(lines_of(text), kAssumedLines));
 }
 

@@ -91,8 +91,8 @@ TEST_F(OnTerminal, HeadingsAndVerdictsAreColouredAndTheTextIsTheSame) {
   const std::string plain = run(arguments).out;
   const std::string coloured = shown(arguments, {{"TERM", "xterm"}, {"NO_COLOR", ""}});
   EXPECT_THAT(plain, Not(HasSubstr("\033")));
-  EXPECT_THAT(coloured, HasSubstr("\033[1mInputs\033[22m\n"));
-  EXPECT_THAT(coloured, ContainsRegex("Closed loop: \033\\[3[123]m"));
+  EXPECT_THAT(coloured, HasSubstr("\033[1mFinal model: straightness"));
+  EXPECT_THAT(coloured, ContainsRegex("│ Verdict +\033\\[3[123]m"));
   EXPECT_EQ(without_colours(coloured), plain);
   EXPECT_EQ(shown(arguments, {{"TERM", "xterm"}, {"NO_COLOR", "1"}}), plain);
   EXPECT_EQ(shown(arguments, {{"TERM", "dumb"}, {"NO_COLOR", ""}}), plain);

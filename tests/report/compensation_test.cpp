@@ -24,10 +24,40 @@ constexpr double kSquareness = 2.8e-6;
 constexpr double kSpindle = 20.0;
 constexpr double kWritten = 1e-12;  // mm: half a digit of each of two numbers
 
+constexpr double kEnd = kSpindle + 600.0;
+
+/// Σ b_k (x^k - p_x k x^(k-1)), mm
+double tip(double x, double lever) {
+  double z = 0.0;
+  for (std::size_t k = 0; k < kB.size(); ++k)
+    z += kB[k] * std::pow(x, k) -
+         (k == 0 ? 0.0 : lever * static_cast<double>(k) * kB[k] * std::pow(x, k - 1));
+  return z;
+}
+
+/// The form as a report has it, from the lines through its ends.
+StraightnessCurve curve(Lever lever, double overhang) {
+  const auto at = [&](double x) { return lever == Lever::paper ? x - kSpindle : overhang; };
+  const double first = tip(kSpindle, at(kSpindle)), last = tip(kEnd, at(kEnd));
+  StraightnessCurve out;
+  out.tip_slope_rad = (last - first) / (kEnd - kSpindle);
+  for (int i = 0; i <= 200; ++i) {
+    const double x = kSpindle + (kEnd - kSpindle) * i / 200.0, share = i / 200.0;
+    out.position_mm.push_back(x);
+    out.tip_um.push_back((tip(x, at(x)) - first - *out.tip_slope_rad * (x - kSpindle)) * 1e3);
+    out.tip_expanded_uncertainty_um.push_back(share * (1.0 - share));
+    out.deviation_um.push_back(
+        (tip(x, 0.0) - (1.0 - share) * tip(kSpindle, 0.0) - share * tip(kEnd, 0.0)) * 1e3);
+    out.expanded_uncertainty_um.push_back(2.0 * share * (1.0 - share));
+  }
+  return out;
+}
+
 Analysis analysis(Lever lever, double overhang = 0.0) {
   Analysis out;
   ModelResult fit;
   fit.converged = true;
+  fit.straightness.emplace().curve = curve(lever, overhang);
   for (std::size_t k = 0; k < kB.size(); ++k)
     fit.parameters.push_back(fitted("straightness.b" + std::to_string(k), "b_" + std::to_string(k),
                                     "mm", kB[k], std::abs(kB[k]) / 100.0));
@@ -41,13 +71,7 @@ FittedParameter& parameter(Analysis& analysis, const std::string& name) {
   return *std::ranges::find(analysis.result.final->parameters, name, &FittedParameter::name);
 }
 
-double height(double x, double lever) {
-  double z = -kSquareness * (x - kSpindle);
-  for (std::size_t k = 0; k < kB.size(); ++k)
-    z += kB[k] * std::pow(x, k) -
-         (k == 0 ? 0.0 : lever * static_cast<double>(k) * kB[k] * std::pow(x, k - 1));
-  return z;
-}
+double height(double x, double lever) { return tip(x, lever) - kSquareness * (x - kSpindle); }
 
 struct Read {
   std::map<double, double> points;
@@ -191,35 +215,45 @@ TEST(Compensation, StraightnessIsZeroAtBothEndsOfTheReferenceLine) {
   EXPECT_EQ(table.straightness_mm.back(), 0.0);
 }
 
-TEST(Compensation, StraightnessNeedsNoConvention) {
-  // b_0 and b_1 are gauge: what they are, or that they are unknown, changes no deviation.
-  Analysis shifted = analysis(Lever::paper);
-  const Compensation whole = compensation(shifted);
-  parameter(shifted, "straightness.b0").identifiable = false;
-  parameter(shifted, "straightness.b1").identifiable = false;
-  const Compensation rest = compensation(shifted);
-  for (std::size_t i = 0; i < whole.straightness_mm.size(); ++i)
-    EXPECT_NEAR(whole.straightness_mm[i], rest.straightness_mm[i], 1e-15);
-  EXPECT_NEAR(*whole.squareness_rad, *rest.squareness_rad, 1e-18);
+TEST(Compensation, IsOfTheCarriageWhereTheSlideItselfWasRead) {
+  Analysis slide = analysis(Lever::paper);
+  slide.result.travel->spindle_position_mm.reset();
+  std::erase_if(slide.result.final->parameters,
+                [](const auto& p) { return p.name.starts_with("squareness"); });
+  const Compensation table = compensation(slide);
+  const StraightnessCurve& form = slide.result.final->straightness->curve;
+  for (std::size_t i = 1; i < 50; ++i)  // every fourth point of the form
+    EXPECT_NEAR(table.straightness_mm[i], form.deviation_um[4 * i] * 1e-3, kWritten);
+}
+
+TEST(Compensation, GivesTheUncertaintyOfTheReportAtEachPosition) {
+  const Compensation table = compensation(analysis(Lever::split));
+  ASSERT_EQ(table.straightness_U_mm.size(), 51U);
+  EXPECT_NEAR(table.straightness_U_mm[25], 0.25e-3, kWritten);  // share (1 - share) in the middle
+  EXPECT_NEAR(table.straightness_U_mm.front(), 0.0, kWritten);
+  for (const char* format : {"isg", "etalon", "cec"})
+    EXPECT_THAT(compensation_table(table, format, "test"), HasSubstr("320.000000 0.25\n"));
 }
 
 TEST(Compensation, LeavesOutWhatIsNotDetermined) {
   Analysis given = analysis(Lever::split);
-  parameter(given, "straightness.b1").identifiable = false;
+  given.result.final->straightness->curve.tip_slope_rad.reset();
   const Compensation no_squareness = compensation(given);
   EXPECT_FALSE(no_squareness.squareness_rad);
   EXPECT_THAT(no_squareness.left_out,
-              Contains(HasSubstr("B0X is left out: the data do not determine b_1")));
+              Contains(HasSubstr("B0X is left out: the data do not determine the slope")));
   EXPECT_THAT(compensation_table(no_squareness, "cec", "test"), HasSubstr("; B0X is left out"));
 
-  parameter(given, "straightness.b3").value = std::nullopt;
+  given.result.final->straightness = Straightness{};
+  given.result.final->straightness->reason = "told by no one";
   const Compensation no_straightness = compensation(given);
   EXPECT_TRUE(no_straightness.straightness_mm.empty());
+  EXPECT_THAT(no_straightness.left_out, Contains(HasSubstr("told by no one")));
   EXPECT_EQ(*no_straightness.squareness_rad, kSquareness);
   const Read cone = read_cec(compensation_table(no_straightness, "cec", "test"));
   EXPECT_NEAR(cone.points.rbegin()->second, kSquareness * 600.0, kWritten);
 
-  parameter(given, "squareness.dbeta_xz").identifiable = false;
+  parameter(given, "squareness.dbeta_xz").value.reset();
   EXPECT_THROW(compensation(given), DataError);
 }
 
@@ -267,7 +301,7 @@ TEST(Compensation, LeavesOutASquarenessTheRunOutContradicts) {
 
 TEST(Compensation, LeavesOutStraightnessAcrossOverhangs) {
   Analysis given = analysis(Lever::split);
-  given.result.travel->overhang_mm.reset();
+  given.result.final->straightness->curve.tip_um.clear();
   EXPECT_TRUE(compensation(given).straightness_mm.empty());
 }
 

@@ -33,7 +33,7 @@ TEST(Emphasis, HasAColourForEveryVerdict) {
   Result result = sample_result();
   EXPECT_THAT(with_emphasis(text_report({result})), Not(HasSubstr("\033[31m")));
   result.final->converged = false;
-  EXPECT_THAT(with_emphasis(text_report({result})), HasSubstr("\033[31mNOT CONVERGED\033[39m"));
+  EXPECT_THAT(with_emphasis(text_report({result})), HasSubstr("\033[31mNot converged:\033[39m"));
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ std::string sample_json() { return json_report(sample_analysis()); }
 
 std::string refusal(const std::string& json) {
   try {
-    html_report(json);
+    html_report(json, "report");
   } catch (const DataError& error) {
     return error.what();
   }
@@ -72,23 +72,37 @@ std::string refusal(const std::string& json) {
 }
 
 TEST(HtmlReport, SaysWhatWasMissingAndWhatItHadBent) {
-  const std::string page = html_report(sample_json());
-  EXPECT_THAT(page, HasSubstr("lacked <b>thermal_drift</b>"));
-  EXPECT_THAT(page, HasSubstr("from 0.2 → 0.05 µm rms"));
-  EXPECT_THAT(page, HasSubstr("<b>squareness.dbeta_xz</b> by 10 U"));  // (3.0 - 2.8)e-6 / 2e-8
+  const std::string page = html_report(sample_analysis());
+  EXPECT_THAT(page, HasSubstr("Thermal drift was missing and is in the model now."));
+  // (3.0 - 2.8)e-6 / 2e-8
+  EXPECT_THAT(page, HasSubstr("thermal drift: residual 0.2 → 0.05 µm; it had moved squareness "
+                              "Δβxz by 10 U"));
+  EXPECT_THAT(page, HasSubstr("(3.000 ± 0.020)\u00a0×\u00a010<sup>−6</sup>"));  // declared
   EXPECT_THAT(page, HasSubstr("the joint fit does not bear it out"));
   EXPECT_THAT(page, HasSubstr("measure a second feed"));
 }
 
 TEST(HtmlReport, GivesTheSquarenessInThreeUnitsWithTwoDigitsOfUncertainty) {
-  const std::string page = html_report(sample_json());
-  EXPECT_THAT(page, HasSubstr("(2.800 ± 0.020)&nbsp;×&nbsp;10<sup>−6</sup> rad"));
+  const std::string page = html_report(sample_analysis());
+  EXPECT_THAT(page, HasSubstr("(2.800 ± 0.020)\u00a0×\u00a010<sup>−6</sup> rad"));
   EXPECT_THAT(page, HasSubstr("2.800 ± 0.020 µm/m"));
   EXPECT_THAT(page, HasSubstr("0.5775 ± 0.0041 ″"));  // 2.8 µm/m * 0.206265
 }
 
+TEST(HtmlReport, IsTheSamePageFromTheJson) {
+  EXPECT_EQ(html_report(sample_analysis()), html_report(sample_json(), "report"));
+}
+
+TEST(HtmlReport, OfASlideSpeaksOfNoFace) {
+  Analysis analysis = sample_analysis();
+  for (InputSummary& in : analysis.result.inputs) in.kind = Kind::slide;
+  const std::string page = html_report(analysis);
+  EXPECT_THAT(page, HasSubstr("Straightness of a slide from readings along it"));
+  EXPECT_THAT(page, Not(HasSubstr("turned face")));
+}
+
 TEST(HtmlReport, AsksForNothingFromOutside) {
-  const std::string page = html_report(sample_json());
+  const std::string page = html_report(sample_analysis());
   for (const char* asks : {"<link", " src=\"", "url(", "@import", "sourceMappingURL"})
     EXPECT_EQ(page.find(asks), std::string::npos) << asks;
 }
@@ -101,18 +115,18 @@ TEST(HtmlReport, EscapesWhatComesFromOutside) {
   result.final->parameters[0].symbol = result.final->notes[0] = evil;
   ProfileCurves& curves = analysis.details.curves->profiles[0];
   curves.profile = curves.effects[0] = evil;
-  const std::string page = html_report(json_report(analysis));
+  const std::string page = html_report(analysis);
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
   EXPECT_THAT(page, Not(HasSubstr("\x01")));
   EXPECT_THAT(page, HasSubstr("&lt;/script&gt;&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt;"));
 }
 
 TEST(HtmlReport, IsMadeWithoutCurvesAndWithoutAFitToo) {
-  EXPECT_THAT(html_report(json_report({sample_result()})), HasSubstr("Squareness"));
+  EXPECT_THAT(html_report(Analysis{sample_result()}), HasSubstr("Squareness"));
   Result ranked = sample_result();
   ranked.declared = ranked.final = std::nullopt;
   ranked.crosscheck.squareness = std::nullopt;
-  EXPECT_THAT(html_report(json_report({ranked})), HasSubstr("Ranking only"));
+  EXPECT_THAT(html_report(Analysis{ranked}), HasSubstr("Ranking only"));
 }
 
 TEST(HtmlReport, RefusesWhatIsNoReportInOneLine) {
@@ -122,7 +136,7 @@ TEST(HtmlReport, RefusesWhatIsNoReportInOneLine) {
               HasSubstr("report: schema: is \"other/2\"; accepted: \"slideway.report/2\" or "
                         "\"slideway.columns/1\""));
   EXPECT_EQ(refusal(R"({"schema": "slideway.report/2"})"),
-            "report: title: is missing; accepted: a text");
+            "report: version: is missing; accepted: a text");
   EXPECT_THAT(refusal(std::string(1'000'000, '[')), HasSubstr("deep"));
 }
 

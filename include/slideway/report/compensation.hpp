@@ -12,9 +12,12 @@ namespace slideway {
 /// tool tip), axes as in ISO 841, mm and rad. The tool is off in Z by
 /// E_ZX(x) - B0X (x - x_0), up to a constant.
 struct Compensation {
-  std::vector<double> positions_mm;  // slide coordinate, evenly spaced over the measured travel
+  /// Slide coordinate, evenly spaced over the travel that was measured: the report's own, where a
+  /// bridge counts from foot to foot.
+  std::vector<double> positions_mm;
   /// E_ZX at the positions, from the line through its end points; empty: left out.
   std::vector<double> straightness_mm;
+  std::vector<double> straightness_U_mm;  // expanded uncertainty, of each
   /// B0X: squareness of X to the spindle axis, of that line: Δβxz minus the line's slope.
   std::optional<double> squareness_rad;
   double interpolation_mm = 0.0;      // largest error of linear interpolation between positions
