@@ -10,6 +10,7 @@
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
+#include "slideway/base/text.hpp"
 #include "slideway/report/emphasis.hpp"
 
 namespace slideway {

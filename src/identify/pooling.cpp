@@ -6,6 +6,7 @@
 
 #include "slideway/base/distribution.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/gates.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/uncertainty.hpp"
 #include "trend.hpp"
@@ -59,7 +60,7 @@ struct LeastSquares {
     triangle.topRows(height) =
         qr.matrixQR().topRows(height).triangularView<Eigen::Upper>().toDenseMatrix();
     const MatrixXd left = triangle.topLeftCorner(p, p);
-    rank = analyse_rank(left, a.colwise().norm().transpose());
+    rank = analyse_rank(left, a.colwise().norm().transpose(), Gates{}.rank_tolerance);
     values = rank.basis * (rank.basis.transpose() * (left.transpose() * triangle.col(p).head(p)));
     covariance = rank.basis * rank.basis.transpose();
   }

@@ -226,7 +226,7 @@ EffectInModel in_model(const ModelTerm& term, const Model& declared) {
           what.formula,
           what.source,
           what.cause,
-          std::string(symbol(what.clock)),
+          std::string(symbol(what.variable)),
           what.confounded_with,
           what.separated_by,
           added};
