@@ -21,7 +21,8 @@ std::vector<Source> sources_of(const Solution& fit) {
     const bool declared = fit.noise[i].declared;
     out.push_back({"noise of " + fit.linear.observations[i]->profile->name +
                        (declared ? ", as declared" : ", estimated from the residual"),
-                   declared ? EvaluationType::B : EvaluationType::A, fit.uncertainty.information[i]});
+                   declared ? EvaluationType::B : EvaluationType::A,
+                   fit.uncertainty.information[i]});
   }
   if (const Eigen::MatrixXd rows = fit.linear.prior_rows * fit.rank.basis; rows.rows() > 0)
     out.push_back({"priors of the problem file", EvaluationType::B, rows.transpose() * rows});

@@ -44,21 +44,25 @@ ProfileTriangle::ProfileTriangle(const Observation& observation, const Noise& no
   qr.add(rows);
   const Eigen::Index rest = rows.cols() - left_out;
   upper_ = qr.triangle().bottomRightCorner(rest, rest);
-  squares_ = qr.triangle().rightCols(columns.cols() + 1).leftCols(columns.cols())
-                 .colwise().squaredNorm().transpose();
+  squares_ = qr.triangle()
+                 .rightCols(columns.cols() + 1)
+                 .leftCols(columns.cols())
+                 .colwise()
+                 .squaredNorm()
+                 .transpose();
 }
 
 Eigen::MatrixXd ProfileTriangle::levelling_inverse() const {
   if (levelling_ == 0) return Eigen::MatrixXd(0, 0);
   const Eigen::MatrixXd own =
       upper_.topLeftCorner(levelling_, levelling_).triangularView<Eigen::Upper>();
-  return own.completeOrthogonalDecomposition().pseudoInverse();  // two readings know no third number
+  return own.completeOrthogonalDecomposition()
+      .pseudoInverse();  // two readings know no third number
 }
 
 Eigen::VectorXd ProfileTriangle::levelled(const Eigen::VectorXd& change) const {
-  return levelling_inverse() *
-         (upper_.topRightCorner(levelling_, 1).col(0) -
-          upper_.block(0, levelling_, levelling_, columns()) * change);
+  return levelling_inverse() * (upper_.topRightCorner(levelling_, 1).col(0) -
+                                upper_.block(0, levelling_, levelling_, columns()) * change);
 }
 
 Eigen::MatrixXd ProfileTriangle::levelling_covariance(const Eigen::MatrixXd& of_columns) const {

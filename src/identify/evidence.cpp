@@ -30,7 +30,9 @@ Evidence evidence(const Model& model, const Solution& fit) {
   const bool has_priors = fit.linear.prior_rows.rows() > 0;
   const Compressed compressed = compress(data, fit.noise);
   const Eigen::MatrixXd to_amplitudes = inverse(fit.parameters.jacobian);
-  const Rank rank = has_priors ? analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance) : fit.rank;
+  const Rank rank =
+      has_priors ? analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance)
+                 : fit.rank;
   const Uncertainty uncertainty =
       has_priors ? assess(data, compressed, fit.noise, rank.basis) : fit.uncertainty;
 
@@ -59,7 +61,8 @@ Evidence evidence(const Model& model, const Solution& fit) {
     clear_along(fit.null, rows);
   system.rightCols(1) = rows * fit.parameters.values;
   if (has_priors)
-    system.rightCols(1) += root.matrixL().solve(rank.basis.transpose() * (compressed.triangle.transpose() * compressed.target));
+    system.rightCols(1) += root.matrixL().solve(
+        rank.basis.transpose() * (compressed.triangle.transpose() * compressed.target));
 
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(system.leftCols(model.parameters()));
   system.rightCols(1).applyOnTheLeft(qr.householderQ().adjoint());

@@ -137,10 +137,10 @@ FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes)
     // A held-out profile's noise is not known: as that of the first fitted one.
     const bool is_fitted = observation.profile->role == Role::fit;
     const Noise& noise = found.noise[is_fitted ? fitted++ : 0];
-    more |= leave_out(observation,
-                      undescribed_values(model, found.estimate, observation,
-                                         steep_curve(model, found.estimate, observation),
-                                         noise.standard_deviation()));
+    more |=
+        leave_out(observation, undescribed_values(model, found.estimate, observation,
+                                                  steep_curve(model, found.estimate, observation),
+                                                  noise.standard_deviation()));
   }
   if (more) found = fit(model, found.estimate.shapes);
   return {std::move(model), std::move(found)};

@@ -6,9 +6,10 @@ namespace slideway {
 
 std::span<const Gate> gate_table() {
   static constexpr std::array kGates{
-      Gate{"significance", &Gates::significance, "", 1e-6, 0.2,
-           "An effect enters if the whole search finds as much in noise with a smaller probability.",
-           "one false alarm in a hundred problems"},
+      Gate{
+          "significance", &Gates::significance, "", 1e-6, 0.2,
+          "An effect enters if the whole search finds as much in noise with a smaller probability.",
+          "one false alarm in a hundred problems"},
       Gate{"delta_bic", &Gates::delta_bic, "", 2.0, 30.0,
            "An effect enters if it lowers the BIC by this much, and stays only so.",
            "Kass and Raftery (1995): above 10 the evidence is very strong"},

@@ -8,7 +8,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kAbsent = 1e-6;         // a coefficient this small in a null direction is rounding
+constexpr double kAbsent = 1e-6;  // a coefficient this small in a null direction is rounding
 
 /// Column-reduces `parameters` (scaled, P by d) so that each column has an own row: a 1 where all
 /// other columns have 0. The same operations go to `amplitudes`.
@@ -69,8 +69,7 @@ std::string advice(const Model& model, const std::vector<bool>& in_direction) {
 
 }  // namespace
 
-Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
-                  double tolerance) {
+Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale, double tolerance) {
   Rank rank;
   rank.basis = rank.null_space = Eigen::MatrixXd(triangle.cols(), 0);
   if (triangle.cols() == 0) return rank;

@@ -216,8 +216,8 @@ void remake_term(Model& model, const std::string& name, const EffectOptions& opt
 
 Model build_model(const Problem& problem, const std::vector<Profile>& profiles,
                   std::size_t most_values) {
-  Model model{problem.machine(), travel_range(profiles, problem.machine()), {}, {},
-              problem.trace.gates};
+  Model model{
+      problem.machine(), travel_range(profiles, problem.machine()), {}, {}, problem.trace.gates};
   model.range.beam_span_mm = problem.beam_span_mm;
   for (const Profile& profile : profiles) {
     try {

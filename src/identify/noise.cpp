@@ -10,14 +10,12 @@
 #include <cmath>
 #include <functional>
 
-#include "slideway/signal/lagged_products.hpp"
+#include "restricted_likelihood.hpp"
 
 namespace slideway {
 namespace {
 
 using Cost = std::function<double(const Eigen::VectorXd&)>;
-
-constexpr double kLargestAtanh = 5.0;  // |π| < 0.9999: a hum sampled finely comes close to 1
 
 /// Largest Σ atanh π on n values, where the correlation length, Π (1 + π) / (1 - π) values, is that
 /// of so many traces: beyond it an offset and the noise are one.
@@ -32,97 +30,6 @@ Eigen::VectorXd limited(Eigen::VectorXd parameters, double most_correlated) {
   if (partial.size() > 0) partial[0] -= std::max(partial.sum() - most_correlated, 0.0);
   return parameters;
 }
-
-/// Whitened cross products of a matrix of columns for any AR noise, from the lagged products of the
-/// columns: the cost of one evaluation does not depend on the number of rows.
-class LaggedProducts {
- public:
-  LaggedProducts(const ColumnParts& columns, int max_order)
-      : head_(rows_of(columns, 0, max_order)) {
-    const Eigen::MatrixXd tail = rows_of(columns, columns.front().rows() - max_order, max_order);
-    products_.assign(max_order + 1, std::vector<Eigen::MatrixXd>(max_order + 1));
-    products_[0] = lagged_grams(columns, max_order);
-    for (int a = 1; a <= max_order; ++a)
-      for (int b = a; b <= max_order; ++b)
-        products_[a][b] = products_[a - 1][b - 1] +
-                          head_.row(max_order - a).transpose() * head_.row(max_order - b) -
-                          tail.row(max_order - a).transpose() * tail.row(max_order - b);
-    for (int a = 0; a <= max_order; ++a)  // they only come in pairs
-      for (int b = a + 1; b <= max_order; ++b)
-        products_[a][b] += products_[a][b].transpose().eval();
-  }
-
-  /// columns' R^-1 columns, R the correlation structure with unit innovations.
-  [[nodiscard]] Eigen::MatrixXd whitened(const Autoregression& noise) const {
-    const int max_order = static_cast<int>(head_.rows());
-    const int p = noise.order();
-    std::vector<double> filter(p + 1, 1.0);
-    for (int j = 1; j <= p; ++j) filter[j] = -noise.predictor(p)[j - 1];
-    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(head_.cols(), head_.cols());
-    for (int a = 0; a <= p; ++a) {
-      out += filter[a] * filter[a] * products_[a][a];
-      for (int b = a + 1; b <= p; ++b) out += filter[a] * filter[b] * products_[a][b];
-    }
-    for (int t = 0; t < max_order; ++t) {
-      const int m = std::min(t, p);
-      Eigen::RowVectorXd row = head_.row(t);
-      for (int j = 1; j <= m; ++j) row -= noise.predictor(m)[j - 1] * head_.row(t - j);
-      out += row.transpose() * row / noise.relative_variance(m);
-    }
-    return out;
-  }
-
- private:
-  Eigen::MatrixXd head_;
-  std::vector<std::vector<Eigen::MatrixXd>> products_;
-};
-
-Autoregression from_atanh(const Eigen::VectorXd& parameters) {
-  std::vector<double> partial(parameters.size() - 1);
-  for (std::size_t j = 0; j < partial.size(); ++j)
-    partial[j] = std::tanh(std::clamp(parameters[j], -kLargestAtanh, kLargestAtanh));
-  return Autoregression(partial);
-}
-
-/// -2 ln of the restricted likelihood as a function of one profile's noise, the other profiles'
-/// fixed.
-class RestrictedLikelihood {
- public:
-  RestrictedLikelihood(const LinearProfile& profile, int max_order)
-      : n_(profile.residual.size()), m_(profile.nuisances.cols()), r_(profile.columns.cols()) {
-    products_.emplace(ColumnParts{profile.nuisances, profile.columns, profile.residual}, max_order);
-  }
-
-  /// Information on (w, residual) this profile gives, nuisances eliminated; adds -2 ln L's own
-  /// part.
-  Eigen::MatrixXd information(const Eigen::VectorXd& parameters, double* cost) const {
-    const Autoregression noise = from_atanh(parameters);
-    const double log_variance = 2.0 * parameters[parameters.size() - 1];
-    Eigen::MatrixXd gram = products_->whitened(noise) * std::exp(-log_variance);
-    double own = static_cast<double>(n_) * log_variance + noise.log_determinant(n_);
-    if (m_ > 0) {
-      const Eigen::LLT<Eigen::MatrixXd> nuisance(gram.topLeftCorner(m_, m_));
-      own += 2.0 * nuisance.matrixLLT().diagonal().array().log().sum();
-      const Eigen::MatrixXd cross = nuisance.matrixL().solve(gram.topRightCorner(m_, r_ + 1));
-      gram.bottomRightCorner(r_ + 1, r_ + 1) -= cross.transpose() * cross;
-    }
-    if (cost) *cost = own;
-    return gram.bottomRightCorner(r_ + 1, r_ + 1);
-  }
-
-  /// @param rest  information of all other profiles and the priors on (w, residual)
-  double operator()(const Eigen::VectorXd& parameters, const Eigen::MatrixXd& rest) const {
-    double own = 0.0;
-    const Eigen::LLT<Eigen::MatrixXd> joint(information(parameters, &own) + rest);
-    if (joint.info() != Eigen::Success) return INFINITY;
-    const Eigen::VectorXd diagonal = joint.matrixLLT().diagonal();
-    return own + 2.0 * diagonal.head(r_).array().log().sum() + diagonal[r_] * diagonal[r_];
-  }
-
- private:
-  Eigen::Index n_, m_, r_;
-  std::optional<LaggedProducts> products_;
-};
 
 constexpr double kStep = 1e-3;  // of differences by atanh π and ln σ: both of order one
 
@@ -227,7 +134,7 @@ int order_by_bic(const std::vector<double>& partial, Eigen::Index n) {
 
 Noise make_noise(const Eigen::VectorXd& parameters) {
   Noise noise;
-  noise.correlation = from_atanh(parameters);
+  noise.correlation = correlation_of(parameters);
   noise.innovation = std::exp(parameters[parameters.size() - 1]);
   return noise;
 }
@@ -326,8 +233,8 @@ class Estimator {
       noise = white(std::sqrt(white_variance(profiles_[i])));
       noise.covariance.setConstant(1, 1, 0.5 / spare(profiles_[i]));  // of ln σ
     } else {
-      noise.covariance = covariance(cost, parameters_[i],
-                                    most_correlated(profiles_[i].residual.size(), gates_));
+      noise.covariance =
+          covariance(cost, parameters_[i], most_correlated(profiles_[i].residual.size(), gates_));
     }
     const auto d = static_cast<Eigen::Index>(noise.covariance.rows());
     const std::optional<double>& declared = profiles_[i].declared;

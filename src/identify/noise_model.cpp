@@ -162,7 +162,6 @@ std::pair<Eigen::MatrixXd, Eigen::MatrixXd> parted(const Eigen::MatrixXd& basis,
   return {columns(Eigen::all, parts[0]), columns(Eigen::all, parts[1])};
 }
 
-
 /// What is left of a profile beside the slow band, or nothing if that is too little.
 std::optional<LinearProfile> fine_band(const Linearisation& linear, std::size_t i,
                                        const Gates& gates,
@@ -217,8 +216,7 @@ void from_whole_residuals(const Linearisation& linear, const std::vector<std::si
                         observation.profile->standard_uncertainty});
   }
   const Eigen::MatrixXd priors = linear.prior_rows * basis;
-  const std::vector<Noise> estimated =
-      estimate_noise(profiles, priors.transpose() * priors, gates);
+  const std::vector<Noise> estimated = estimate_noise(profiles, priors.transpose() * priors, gates);
   for (std::size_t i = 0; i < measured.size(); ++i) noise[measured[i]] = estimated[i];
 }
 

@@ -200,7 +200,8 @@ bool PriorResidual::Evaluate(const double* const* parameters, double* residuals,
   residuals[0] = (values.values[parameter_] - prior_.value) / prior_.standard_uncertainty;
   Eigen::MatrixXd row = values.jacobian.row(parameter_) / prior_.standard_uncertainty;
   for (std::size_t j = 0; j < shapes.size(); ++j)
-    row(0, a + static_cast<Eigen::Index>(j)) *= slope_of_outer(term_.effect->shapes()[j], shapes[j]);
+    row(0, a + static_cast<Eigen::Index>(j)) *=
+        slope_of_outer(term_.effect->shapes()[j], shapes[j]);
   give(jacobians, 0, row.leftCols(a));
   if (moves) give(jacobians, 1, row.rightCols(std::ssize(shapes)));
   return std::isfinite(residuals[0]);
@@ -285,9 +286,9 @@ bool EliminatedResidual::Evaluate(const double* const* parameters, double* resid
     for (std::size_t j = 0; j < own.size(); ++j)
       slopes.col(term->first_shape + static_cast<Eigen::Index>(j)) =
           -slope_of_outer(term->effect->shapes()[j], own[j]) * outside(1, [&](std::size_t i) {
-            return Eigen::MatrixXd(low_band_derivatives(model_, *term, *observations_[i], own,
-                                                        static_cast<int>(j)) *
-                                   at.amplitudes.segment(next, a));
+            return Eigen::MatrixXd(
+                low_band_derivatives(model_, *term, *observations_[i], own, static_cast<int>(j)) *
+                at.amplitudes.segment(next, a));
           });
     next += a;
   }

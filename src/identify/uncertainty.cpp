@@ -91,8 +91,8 @@ Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
     out.noise.push_back(
         noise_effect(noise[i], *linear.observations[i], linear.columns[i] * basis, information));
     out.noise.back().observation = i;
-    out.covariance += 2.0 * noise[i].log_long_run_variance() *
-                      (information - information * information);
+    out.covariance +=
+        2.0 * noise[i].log_long_run_variance() * (information - information * information);
   }
   const Eigen::MatrixXd of_columns = basis * out.covariance * basis.transpose();
   for (const ProfileTriangle& profile : compressed.profiles)

@@ -37,8 +37,8 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
       round.parameters = parameters_of(*out.result.final, round.accepted);
   }
   if (options.with_details)
-    out.details = make_details(problem, declared, last == &declared ? nullptr : last,
-                               options.with_curves);
+    out.details =
+        make_details(problem, declared, last == &declared ? nullptr : last, options.with_curves);
   leave_out_non_finite(out);
   round_drawn(out);
   return out;

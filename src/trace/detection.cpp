@@ -5,11 +5,11 @@
 #include <cmath>
 
 #include "search_round.hpp"
-#include "slideway/identify/linear_algebra.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
 namespace {
@@ -116,8 +116,8 @@ std::optional<double> limit_in(const Design& design, const Whitened& data, const
   const Gates& gates = design.gates();
   const Projection own = project(data, one.columns);
   if (own.rank == 0) return std::nullopt;
-  const double enough = std::max(penalty(data, one.candidate.unknowns(own.rank)) + design.least_gain,
-                                 gates.size * gates.size);
+  const double enough = std::max(
+      penalty(data, one.candidate.unknowns(own.rank)) + design.least_gain, gates.size * gates.size);
   const double noncentrality =
       chi_squared_noncentrality(static_cast<double>(own.rank), enough, 1.0 - gates.detection_power);
   const Eigen::Index a = one.candidate.amplitudes();
@@ -151,8 +151,8 @@ std::optional<double> limit_at(const Design& design, const Case& one) {
   if (!one.candidate.term.effect->description().steep_at_centre) return limit;
   Eigen::Index lost = 0;
   for (int round = 0; limit && round < kMostRounds; ++round) {
-    const Eigen::MatrixXd undescribed = undescribed_columns(
-        model, fit, design.data.noise(), one.columns * one.amplitudes(*limit));
+    const Eigen::MatrixXd undescribed =
+        undescribed_columns(model, fit, design.data.noise(), one.columns * one.amplitudes(*limit));
     if (undescribed.cols() <= lost) break;
     lost = undescribed.cols();
     limit = limit_in(design, {fit.linear, design.data.noise(), undescribed}, one);

@@ -76,8 +76,8 @@ const SearchRound& ModelExtender::search(const std::vector<AcceptedEffect>& effe
     if (progress_) progress_(done < 1.0 ? "bootstrap" : stage, done < 1.0 ? done : 0.0);
   };
   return rounds_
-      .emplace(key, search_round(fitted.model, fitted.fit, candidates_beside(effects),
-                                 calibration_, tell))
+      .emplace(key, search_round(fitted.model, fitted.fit, candidates_beside(effects), calibration_,
+                                 tell))
       .first->second;
 }
 

@@ -32,8 +32,8 @@ struct FitOfOthers {
   LeastSquares without, with;
 
   /// @param amplitudes  of the effect as all profiles have it
-  FitOfOthers(const Linearisation& linear, const std::vector<Eigen::MatrixXd>& rows, std::size_t left_out,
-       const Eigen::VectorXd& amplitudes) {
+  FitOfOthers(const Linearisation& linear, const std::vector<Eigen::MatrixXd>& rows,
+              std::size_t left_out, const Eigen::VectorXd& amplitudes) {
     const Eigen::Index k = linear.prior_rows.cols(), priors = linear.prior_rows.rows();
     const Eigen::Index a = amplitudes.size();
     Eigen::Index next = 0;

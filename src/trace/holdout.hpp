@@ -20,8 +20,8 @@ struct HeldOut {
 /// Σ (G - (â_-i - â)' I (â_-i - â) - G_-i) > 0 with gain G, amplitudes â and their information I of
 /// all profiles; and if, where the others tell the effect and the profile shows it beyond its own
 /// model for certain (Gates::size), that residual falls by it. Only folds are counted whose rest
-/// knows a share of what all profiles know (Gates::holdout_share); no answer where these profiles together do
-/// not show it for certain.
+/// knows a share of what all profiles know (Gates::holdout_share); no answer where these profiles
+/// together do not show it for certain.
 std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened& data,
                                      const Refined& candidate, const Gates& gates);
 

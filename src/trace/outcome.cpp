@@ -8,8 +8,7 @@
 namespace slideway {
 
 std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
-                               const TestedCandidate* except,
-                               std::optional<double> before_rms_um) {
+                               const TestedCandidate* except, std::optional<double> before_rms_um) {
   std::vector<TriedEffect> out;
   const double square = round.data.residual().squaredNorm();
   for (const TestedCandidate& each : round.tested) {
@@ -39,8 +38,8 @@ std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
 std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,
                                   const ModelResult& fit) {
   if (out.not_separable.empty()) return "";
-  const bool too_large =
-      check.verdict == Consistency::inconsistent && std::abs(*check.fit_rad) > std::abs(*check.indirect_rad);
+  const bool too_large = check.verdict == Consistency::inconsistent &&
+                         std::abs(*check.fit_rad) > std::abs(*check.indirect_rad);
   if (!too_large && fit.implausible.empty()) return "";
   std::vector<std::string> others;
   for (const auto& [effect, same] : out.not_separable) others.push_back(effect);

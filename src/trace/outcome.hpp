@@ -8,8 +8,7 @@ namespace slideway {
 /// The candidates of a search for the report, without `except` (what was accepted; null: nothing).
 /// @param before_rms_um  residual of the declared model
 std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
-                               const TestedCandidate* except,
-                               std::optional<double> before_rms_um);
+                               const TestedCandidate* except, std::optional<double> before_rms_um);
 
 /// Why the form that the fit puts into the carriages cannot be theirs, or "": the run-out or a
 /// good slide speak against it, and other effects make the same columns.

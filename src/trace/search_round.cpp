@@ -22,8 +22,8 @@ const Finding& best_of(const std::vector<Finding>& findings) {
                            [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
 }
 
-/// What a hypothesis adds to the model, profile by profile: values left undescribed, and the columns
-/// of a finding and of its neighbours on the grid (its shape lies between them).
+/// What a hypothesis adds to the model, profile by profile: values left undescribed, and the
+/// columns of a finding and of its neighbours on the grid (its shape lies between them).
 std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
                                                 const Eigen::MatrixXd& undescribed,
                                                 const Finding* finding) {
@@ -96,7 +96,7 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
                                                         const Candidates& candidates) {
   const auto noise_of = [&](const Finding* suspect) {
     return noise_beside(fit.linear, model.gates,
-                       columns_by_profile(fit.linear, undescribed, suspect));
+                        columns_by_profile(fit.linear, undescribed, suspect));
   };
   Whitened data(fit.linear, noise_of(nullptr), undescribed);
   if (candidates.empty()) return {std::move(data), std::vector<Finding>{}};
@@ -150,9 +150,10 @@ std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& c
     return each.refined.candidate->unknowns(each.refined.projection.rank);
   };
   for (const TestedCandidate& each : tested) {
-    const bool counts = each.refused(gates).empty() ||
-                        (each.is_possible() &&
-                         (unknowns(each) <= unknowns(chosen) || chosen.refined.candidate->term.effect->is_carriage()));
+    const bool counts =
+        each.refused(gates).empty() ||
+        (each.is_possible() && (unknowns(each) <= unknowns(chosen) ||
+                                chosen.refined.candidate->term.effect->is_carriage()));
     const bool known =
         std::ranges::any_of(out, [&](const auto* other) { return other->name() == each.name(); });
     if (counts && !known && each.name() != chosen.name() &&
@@ -172,8 +173,8 @@ Eigen::MatrixXd undescribed_columns(const Model& model, const Solution& fit,
     const Observation& observation = *fit.linear.observations[i];
     const Eigen::VectorXd curve = steep_curve(model, fit.estimate, observation) +
                                   suspect.segment(first, observation.values.size());
-    const ValueIndices undescribed = undescribed_values(model, fit.estimate, observation, curve,
-                                                        noise[i].standard_deviation());
+    const ValueIndices undescribed =
+        undescribed_values(model, fit.estimate, observation, curve, noise[i].standard_deviation());
     const ValueIndices known = left_out_values(observation);
     for (const Eigen::Index value : undescribed)
       if (!std::ranges::binary_search(known, value)) rows.push_back(first + value);
@@ -198,8 +199,8 @@ SearchRound search_round(const Model& model, const Solution& fit, const Candidat
       !out.tested.front().refined.candidate->term.effect->description().steep_at_centre)
     return out;
   const Refined& best = out.tested.front().refined;
-  const Eigen::MatrixXd undescribed = undescribed_columns(
-      model, fit, out.data.noise(), best.columns * best.projection.amplitudes);
+  const Eigen::MatrixXd undescribed =
+      undescribed_columns(model, fit, out.data.noise(), best.columns * best.projection.amplitudes);
   if (undescribed.cols() == 0) return out;
   std::tie(out.data, findings) = whiten_beside(model, fit, undescribed, candidates);
   out.tested = test_best(model, fit, out.data, findings, *calibration);

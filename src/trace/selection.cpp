@@ -100,8 +100,7 @@ class Selector {
                         find_structure(with.model, with_it, with.fit.linear).gain() -
                         find_structure(without.model, without_it, without.fit.linear).gain();
     const Candidate& candidate = *effects[which].candidate;
-    return gain - penalty(with_it, candidate.unknowns(candidate.amplitudes())) >=
-           gates_.delta_bic;
+    return gain - penalty(with_it, candidate.unknowns(candidate.amplitudes())) >= gates_.delta_bic;
   }
 
   /// -ΔBIC of an effect beside the others of the set.
@@ -142,7 +141,8 @@ class Selector {
       const TestedCandidate* best = round.choice(gates_);
       if (!best) continue;
       const TestedCandidate* own = find_tested(round, out_.effects[i], gates_);
-      if (own && own->refined.delta_bic <= best->refined.delta_bic + gates_.exchange_bic) best = own;
+      if (own && own->refined.delta_bic <= best->refined.delta_bic + gates_.exchange_bic)
+        best = own;
       if (best->refined.candidate == out_.effects[i].candidate) continue;
       Effects changed = out_.effects;
       changed[i] = accepted(round, *best);

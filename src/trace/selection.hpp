@@ -7,7 +7,7 @@ namespace slideway {
 
 /// Which effects the gates let into the model.
 struct Selection {
-  std::vector<AcceptedEffect> effects;  // with their rivals
+  std::vector<AcceptedEffect> effects;                    // with their rivals
   std::vector<std::pair<std::string, std::string>> left;  // accepted, then taken back; why
   std::vector<std::string> notes;
   LackOfFit lack_of_fit;  // of what these effects leave

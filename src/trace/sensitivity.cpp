@@ -17,7 +17,7 @@ struct Change {
   double value = 0.0, size = 0.0;
 };
 
-const Gate& gate_of(double Gates::* member) {
+const Gate& gate_of(double Gates::*member) {
   return *std::ranges::find(gate_table(), member, &Gate::value);
 }
 
@@ -26,7 +26,7 @@ class Changes {
   explicit Changes(const Gates& gates) : gates_(gates) {}
 
   /// The gate moved past a statistic, if its range allows it.
-  void add(double Gates::* member, double statistic) {
+  void add(double Gates::*member, double statistic) {
     const Gate& gate = gate_of(member);
     const double now = gates_.*member;
     const double value = statistic * (statistic > now ? 1.0 + kBeyond : 1.0 - kBeyond);
@@ -37,7 +37,7 @@ class Changes {
   /// Statistics of a candidate: every gate it passes, or the only one it does not.
   void add(const TestedCandidate& tested) {
     const bool passes = tested.refused(gates_).empty();
-    const auto held = [&](double Gates::* member, double statistic) {
+    const auto held = [&](double Gates::*member, double statistic) {
       Gates moved = gates_;
       moved.*member = statistic * (statistic < gates_.*member ? 1.0 - kBeyond : 1.0 + kBeyond);
       if (passes || tested.refused(moved).empty()) add(member, statistic);
@@ -87,8 +87,7 @@ std::optional<Fragile> smallest_change(const Problem& problem, ModelExtender& ex
   for (const Change& change : std::move(changes).sorted()) {
     Gates moved = gates;
     moved.*change.gate->value = change.value;
-    const TraceVerdict there =
-        verdict_of(select_effects(problem, extender, moved, {}), moved);
+    const TraceVerdict there = verdict_of(select_effects(problem, extender, moved, {}), moved);
     if (there != now) return Fragile{std::string(change.gate->name), change.value, there};
   }
   return std::nullopt;

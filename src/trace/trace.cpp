@@ -38,15 +38,14 @@ class Loop {
     report_effects(selection, out);
     report_rest(selection, closed);
     report_limits(selection, out);
-    const std::string other_cause = form_of_another_cause(
-        out,
-        check_squareness(extender_.base().model, problem_.runout,
-                         extender_.summary(selection.effects)),
-        extender_.summary(selection.effects));
+    const std::string other_cause =
+        form_of_another_cause(out,
+                              check_squareness(extender_.base().model, problem_.runout,
+                                               extender_.summary(selection.effects)),
+                              extender_.summary(selection.effects));
     if (!other_cause.empty()) out.advice.insert(out.advice.begin(), other_cause);
     out.verdict = verdict(out, !other_cause.empty());
-    if (other_cause.empty())
-      out.fragile = smallest_change(problem_, extender_, selection, gates);
+    if (other_cause.empty()) out.fragile = smallest_change(problem_, extender_, selection, gates);
     out.searches = extender_.searches();
     if (!selection.effects.empty())
       closed.extended = extender_.take_in_declared_band(selection.effects);
@@ -128,8 +127,8 @@ class Loop {
       out.not_testable.push_back({effect.effect, effect.needs});
     const FittedModel& fitted = extender_.extended(selection.effects);
     const Whitened& data = extender_.search(selection.effects).data;
-    out.not_separable = inseparable(fitted.model, fitted.fit, data,
-                                    extender_.candidates_beside(selection.effects));
+    out.not_separable =
+        inseparable(fitted.model, fitted.fit, data, extender_.candidates_beside(selection.effects));
     if (!extender_.calibration()) return;
     const FittedModel& base = extender_.base();
     out.detection_limits =
@@ -156,8 +155,7 @@ ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profil
 }
 
 bool is_negative(const TraceResult& trace) {
-  return trace.verdict == TraceVerdict::unnamed ||
-         trace.verdict == TraceVerdict::not_identifiable;
+  return trace.verdict == TraceVerdict::unnamed || trace.verdict == TraceVerdict::not_identifiable;
 }
 
 }  // namespace slideway

@@ -22,7 +22,8 @@ Eigen::MatrixXd model_span(const Linearisation& linear) {
   return out;
 }
 
-Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, Eigen::MatrixXd undescribed)
+Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
+                   Eigen::MatrixXd undescribed)
     : noise_(std::move(noise)), undescribed_(std::move(undescribed)) {
   for (const Observation* observation : linear.observations) {
     first_.push_back(values_);

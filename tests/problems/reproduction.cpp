@@ -160,8 +160,8 @@ void add_full_travel(Numbers& out) {
 void add_experiment(Numbers& out) {
   const Result joint = identify_shipped("paper-experiment/problem.toml");
   out["joint_dbeta"] = squareness_of(joint);
-  out["joint_En"] = fixed(*joint.squareness->En, 2);
-  out["joint_verdict"] = joint.squareness->verdict;
+  out["joint_En"] = fixed(*joint.crosscheck.squareness->En, 2);
+  out["joint_verdict"] = text_of(joint.crosscheck.squareness->verdict);
 }
 
 void add_face(Numbers& out) {

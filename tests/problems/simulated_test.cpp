@@ -58,8 +58,8 @@ TEST(PaperExperiment, TakesStraightnessFromReadingsAndSquarenessFromFaces) {
   expect_recovered(result, "squareness.dbeta_xz", 2.8e-6);
   EXPECT_EQ(result.dominant.by_correlation, "squareness");
   EXPECT_EQ(result.dominant.by_fit, "squareness");
-  ASSERT_TRUE(result.squareness);
-  EXPECT_EQ(result.squareness->verdict, "consistent");
+  ASSERT_TRUE(result.crosscheck.squareness);
+  EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::consistent);
 }
 
 // One low band for all would leave 2 values of the 61.
@@ -138,7 +138,7 @@ void expect_one_combination(const Result& result, const std::string& a, const st
   EXPECT_EQ(only.combination[1].first, b);
   // The same column of the model twice: equal parts to rounding.
   EXPECT_NEAR(only.combination[0].second, only.combination[1].second, 1e-9);
-  EXPECT_NEAR(only.value, sum, only.expanded_uncertainty);
+  EXPECT_NEAR(*only.value, sum, *only.expanded_uncertainty);
 }
 
 TEST(ThreeLevels, TellTheZCarriagesBendButOnlyTheSumOfItsLeanAndTheSquareness) {
@@ -150,7 +150,7 @@ TEST(ThreeLevels, TellTheZCarriagesBendButOnlyTheSumOfItsLeanAndTheSquareness) {
   expect_one_combination(result, "vertical_straightness.c1", "squareness.dbeta_xz", 8.0e-6);
   // numpy's ordinary least squares: 8.05e-6, standard uncertainty 0.11e-6.
   const DeterminedCombination& sum = result.final->identifiability.determined.front();
-  EXPECT_NEAR(sum.standard_uncertainty, 0.11e-6, 0.02e-6);
+  EXPECT_NEAR(*sum.standard_uncertainty, 0.11e-6, 0.02e-6);
   EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::not_available);
   EXPECT_FALSE(result.dominant.by_fit);
   EXPECT_THAT(result.dominant.doubt,

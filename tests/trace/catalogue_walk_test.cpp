@@ -92,8 +92,8 @@ void expect_an_answer(const TomlValue& root, std::size_t rows, bool closes_loop)
     const std::vector<Profile> profiles = read_profiles(problem, numbers(rows));
     const Analysis analysis =
         analyse(problem, profiles, {.closes_loop = closes_loop, .with_details = true});
-    expect_all_finite(analysis.result.fit->parameters);
-    if (analysis.trace) expect_all_finite(analysis.trace->after);
+    expect_all_finite(analysis.result.declared->parameters);
+    expect_all_finite(analysis.result.final->parameters);
   } catch (const UsageError& error) {
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
   } catch (const DataError& error) {

@@ -38,7 +38,8 @@ std::vector<double> noise(NoiseKind kind, std::uint64_t seed) {
       for (double sum = 0.0; double& value : out) value = sum += kSize * random.normal();
       break;
     case NoiseKind::flicker:
-      for (double length = 1.0; length < kValues; length *= 3.0) add(std::exp(-1.0 / length), kSize);
+      for (double length = 1.0; length < kValues; length *= 3.0)
+        add(std::exp(-1.0 / length), kSize);
       break;
     case NoiseKind::steps:
       add(0.0, kSize);
@@ -51,11 +52,12 @@ std::vector<double> noise(NoiseKind kind, std::uint64_t seed) {
 class Rounds : public ::testing::TestWithParam<NoiseKind> {};
 
 TEST_P(Rounds, EndAndLeaveOnlyWhatPassesItsGates) {
-  Problem problem = cases::problem(
-      Lever::paper, 0, {cases::effect("squareness"), cases::effect("straightness", 3)});
+  Problem problem = cases::problem(Lever::paper, 0,
+                                   {cases::effect("squareness"), cases::effect("straightness", 3)});
   std::vector<Profile> profiles;
   for (std::uint64_t cut = 0; cut < 3; ++cut)
-    profiles.push_back(cases::face("cut" + std::to_string(cut), 2.0 + 3.0 * static_cast<double>(cut),
+    profiles.push_back(cases::face("cut" + std::to_string(cut),
+                                   2.0 + 3.0 * static_cast<double>(cut),
                                    cases::spaced(-50.0, 50.0, kValues), noise(GetParam(), cut)));
   problem.trace.candidates = {"linear_drift", "thermal_drift", "step",          "slide_periodic",
                               "cup",          "tool_wear",     "edge_roll_off", "time_periodic"};
@@ -74,8 +76,9 @@ TEST_P(Rounds, EndAndLeaveOnlyWhatPassesItsGates) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Noise, Rounds,
-                         ::testing::Values(NoiseKind::white, NoiseKind::correlated, NoiseKind::random_walk,
-                                           NoiseKind::flicker, NoiseKind::steps));
+                         ::testing::Values(NoiseKind::white, NoiseKind::correlated,
+                                           NoiseKind::random_walk, NoiseKind::flicker,
+                                           NoiseKind::steps));
 
 }  // namespace
 }  // namespace slideway

@@ -16,7 +16,7 @@ namespace slideway {
 namespace {
 
 constexpr double kNoise = 10e-6;  // mm, white
-constexpr double kRadius = 10.0;
+constexpr double kFaceRadius = 10.0;
 
 /// h = A g(r; position, width) and its derivatives; without one by position that is stepwise.
 struct Form {
@@ -78,8 +78,8 @@ class TwoShapes : public Effect {
   Form form_;
   Description description_{.name = "two_shapes"};
   std::vector<Parameter> parameters_{{"height_um", "A", "µm", 0.1},
-                                     {"position_mm", "r_c", "mm", 1.0, 0.0, kRadius},
-                                     {"width_mm", "w", "mm", 1.0, 0.01, kRadius}};
+                                     {"position_mm", "r_c", "mm", 1.0, 0.0, kFaceRadius},
+                                     {"width_mm", "w", "mm", 1.0, 0.01, kFaceRadius}};
   std::vector<Shape> shapes_;
 };
 
@@ -99,7 +99,7 @@ struct Searched {
 
   static Profile make_face(const Form& form, double size_um, double position, double width) {
     RandomStream random(7, "two shapes");
-    std::vector<double> r = cases::spaced(0.0, kRadius, 250), z;
+    std::vector<double> r = cases::spaced(0.0, kFaceRadius, 250), z;
     for (const double at : r)
       z.push_back(size_um * kMicrometre * form.value(at, position, width) - 2e-6 * at +
                   kNoise * random.normal());
@@ -156,7 +156,7 @@ TEST(SeveralShapes, AStepwisePositionAndASmoothWidthAreFoundTogether) {
   const std::vector<Finding> findings = search(searched.data, {&searched.candidate});
   const Refined refined = refine(searched.model, searched.data, findings[0]);
   // Between the two readings next to it the position has one set of columns.
-  EXPECT_NEAR(refined.shape[0], 6.311, kRadius / 249.0);
+  EXPECT_NEAR(refined.shape[0], 6.311, kFaceRadius / 249.0);
   EXPECT_NEAR(refined.values[0], 0.1, 4.0 * refined.uncertainties[0]);
   EXPECT_NEAR(refined.values[2], 1.3, 4.0 * refined.uncertainties[2]);
 }
@@ -175,16 +175,16 @@ TEST(SeveralShapes, GridIsTheProductOfBothAndBounded) {
   EXPECT_LE(searched.candidate.grid.points().size(), 8192U);
   // 249 places and 41 widths are more than that: coarser, and from end to end.
   EXPECT_LT(axes[0].size(), 249U);
-  const double spacing = kRadius / 249.0;
+  const double spacing = kFaceRadius / 249.0;
   EXPECT_NEAR(axes[0].front(), 0.5 * spacing, 1e-9);
-  EXPECT_NEAR(axes[0].back(), kRadius - 0.5 * spacing, 1e-9);
+  EXPECT_NEAR(axes[0].back(), kFaceRadius - 0.5 * spacing, 1e-9);
 }
 
 TEST(SeveralShapes, LimitsRunOverTheFirstShapeWithTheOthersInTheMiddle) {
   const Searched searched(kBump, 0.0, 5.0, 1.0);
   const auto limits =
-      detection_limits({searched.model, searched.fitted}, searched.data, searched.data.noise(),
-                       {&searched.candidate}, {20.0, 2.0}, 0.01);
+      detection_limits({searched.model, searched.fitted}, searched.data, {&searched.candidate},
+                       {20.0, 2.0});
   ASSERT_EQ(limits.size(), 1U);
   EXPECT_THAT(limits[0].at, ::testing::HasSubstr("position_mm = "));
   EXPECT_THAT(limits[0].at, ::testing::HasSubstr(", width_mm = "));

@@ -27,8 +27,8 @@ struct Solution {
   Uncertainty uncertainty;
 };
 
-/// Fits all profiles jointly by generalised least squares, Eq. (16): solve() under noise_under(), each
-/// in turn until the noise stays.
+/// Fits all profiles jointly by generalised least squares, Eq. (16): solve() under noise_under(),
+/// each in turn until the noise stays.
 ///
 /// @param shapes  start from these shapes instead of searching their whole range
 /// @throws DataError  fewer low-band values than parameters

@@ -46,11 +46,11 @@ struct Gates {
 /// One gate, as the problem file and the help have it.
 struct Gate {
   std::string_view name;  // the key of [trace]
-  double Gates::* value;
-  std::string_view unit;         // "" for a plain number
-  double lower, upper;           // range in which a value is accepted
-  std::string_view decides;      // in a sentence
-  std::string_view source;       // table, theorem or measurement
+  double Gates::*value;
+  std::string_view unit;     // "" for a plain number
+  double lower, upper;       // range in which a value is accepted
+  std::string_view decides;  // in a sentence
+  std::string_view source;   // table, theorem or measurement
 };
 
 /// All gates, in the order of `slideway help trace`.

@@ -23,8 +23,7 @@ struct Rank {
 /// @param scale     norm of each column before that projection: a column the nuisances swallow
 /// counts as
 ///                  gone, not as small
-Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
-                  double tolerance);
+Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale, double tolerance);
 
 /// Null directions in terms of parameters a person can read: each has one parameter of its own that
 /// appears in no other: the one with the highest Parameter::gauge, which may be set to 0.

@@ -16,8 +16,8 @@ ValueIndices values_at_axis(const Observation& observation, const Machine& machi
 
 /// Values that the columns of a fitted model do not describe:
 /// - further out than values_at_axis(), where effects that are steep at the centre are steeper than
-///   the tool's nose follows: a nose of radius ρ cuts a slope z' lower by ρ z'²/2 (first order), and
-///   that is more than the noise;
+///   the tool's nose follows: a nose of radius ρ cuts a slope z' lower by ρ z'²/2 (first order),
+///   and that is more than the noise;
 /// - next to a step of the model: the step of each cut lies between two grooves of its own.
 ///
 /// @param curve  low band of what is steep at the centre

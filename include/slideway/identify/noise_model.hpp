@@ -9,11 +9,12 @@
 
 namespace slideway {
 
-/// The noise of every fitted profile beside what a model may lack, by restricted maximum likelihood:
-/// a missing effect is not taken for noise. The estimate is made from what is faster than a band of
-/// slow cosines, which is left free; columns of the model as slow as that are left free with it.
-/// Other columns, and lines that stand out of the spectrum, are taken out of the residual first.
-/// A profile with too few values for that is estimated from its whole residual, the model left free.
+/// The noise of every fitted profile beside what a model may lack, by restricted maximum
+/// likelihood: a missing effect is not taken for noise. The estimate is made from what is faster
+/// than a band of slow cosines, which is left free; columns of the model as slow as that are left
+/// free with it. Other columns, and lines that stand out of the spectrum, are taken out of the
+/// residual first. A profile with too few values for that is estimated from its whole residual, the
+/// model left free.
 ///
 /// @param linear   the model at its estimate
 /// @param suspect  per fitted observation: low-band columns of an effect under suspicion, or none
@@ -25,8 +26,8 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
 /// uncertainties allow for it.
 std::vector<Noise> noise_under(const Linearisation& linear, const Gates& gates);
 
-/// White noise of the declared size, or of the size of the values after levelling: what a fit begins
-/// with.
+/// White noise of the declared size, or of the size of the values after levelling: what a fit
+/// begins with.
 std::vector<Noise> first_noise(const Model& model);
 
 /// cos(π j (i + 1/2) / n), j = 1 ... count: the slow band, n by count.

@@ -90,9 +90,9 @@ class ProfileTriangle {
 /// shapes) leaves |R x - Qᵀ r|² more than the best.
 struct Compressed {
   std::vector<ProfileTriangle> profiles;  // per fitted observation
-  Eigen::MatrixXd triangle;               // R, square: RᵀR is the information on (amplitudes, shapes)
-  Eigen::VectorXd target;                 // Qᵀ r
-  Eigen::VectorXd scale;                  // norm of each white column
+  Eigen::MatrixXd triangle;  // R, square: RᵀR is the information on (amplitudes, shapes)
+  Eigen::VectorXd target;    // Qᵀ r
+  Eigen::VectorXd scale;     // norm of each white column
 };
 
 /// @param noise  per fitted observation

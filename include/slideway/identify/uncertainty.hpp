@@ -22,10 +22,11 @@ struct Spread {
 ///
 ///   I + 2 Σ_i var(ln s_i) (G_i - G_i²)
 ///
-/// with the long-run variance s_i of profile i's noise: the second part allows for weights that come
-/// from the same data (Kenward and Roger 1997, for columns slow against the noise; Meier 1953 for a
-/// weighted mean). Degrees of freedom by Satterthwaite's formula (GUM G.4.1) from the uncertainty of
-/// the noise's parameters, and no more from a profile than it has effective observations.
+/// with the long-run variance s_i of profile i's noise: the second part allows for weights that
+/// come from the same data (Kenward and Roger 1997, for columns slow against the noise; Meier 1953
+/// for a weighted mean). Degrees of freedom by Satterthwaite's formula (GUM G.4.1) from the
+/// uncertainty of the noise's parameters, and no more from a profile than it has effective
+/// observations.
 struct Uncertainty {
   Eigen::MatrixXd basis;                     // (A + S) by r
   Eigen::MatrixXd covariance;                // r by r, of w
