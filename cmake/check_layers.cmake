@@ -17,11 +17,9 @@ set(OWNERS "identify trace" "report batch cli" "identify" "format" "format" "pyt
 
 # Strings that are a key of the report or a plain word and not the effect of that name: file:name.
 set(NOT_AN_EFFECT
-    # crosscheck.squareness, straightness and curves.straightness of the report, and their places on
-    # the page
-    src/report/json_report.cpp:squareness src/report/json_report.cpp:straightness
-    src/report/json_details.cpp:straightness src/report/document.cpp:squareness
-    src/report/html_verdict.cpp:squareness src/report/html_verdict.cpp:straightness
+    # crosscheck.squareness and straightness, keys of the report, and a place on the page
+    include/slideway/identify/result_fields.hpp:squareness
+    include/slideway/identify/result_fields.hpp:straightness
     src/report/html_pictures.cpp:straightness
     # `export --step`, and the label of a step in position
     src/cli/command_export.cpp:step src/cli/command_info.cpp:step)

@@ -29,6 +29,9 @@ std::vector<Source> sources_of(const Solution& fit) {
   if (std::ranges::any_of(fit.noise, &Noise::is_estimated))
     out.push_back({"noise that comes from the same data", EvaluationType::A,
                    fit.uncertainty.covariance - Eigen::MatrixXd::Identity(r, r)});
+  if (const double inflation = fit.uncertainty.inflation; inflation > 1.0)
+    out.push_back({"structure the model lacks", EvaluationType::A,
+                   (inflation - 1.0) * fit.uncertainty.covariance});
   return out;
 }
 

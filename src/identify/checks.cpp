@@ -90,20 +90,20 @@ void check_plausibility(const Model& model, const Solution& fit, ModelResult& ou
 }
 
 void explain_scaling(const Solution& fit, ModelResult& out) {
-  const bool estimated = std::any_of(fit.noise.begin(), fit.noise.end(),
-                                     [](const Noise& noise) { return !noise.declared; });
-  const bool correlated = std::any_of(fit.noise.begin(), fit.noise.end(), [](const Noise& noise) {
-    return noise.correlation.order() > 0;
-  });
-  out.notes.emplace_back(
-      !estimated ? "uncertainties rest on the declared standard uncertainties, taken as white"
-      : correlated
-          ? "uncertainties are scaled by the residual and widened for its correlation (AR noise, "
-            "restricted likelihood); coverage factors from Student's t for 95.45 %"
-          : "uncertainties are scaled by the residual, without a correlation that widens them; "
-            "coverage "
-            "factors "
-            "from Student's t for 95.45 %");
+  const bool estimated =
+      std::ranges::any_of(fit.noise, [](const Noise& noise) { return !noise.declared; });
+  const bool correlated = std::ranges::any_of(
+      fit.noise, [](const Noise& noise) { return noise.correlation.order() > 0; });
+  std::string text = "uncertainties rest on the declared standard uncertainties, taken as white";
+  if (estimated)
+    text = std::string("uncertainties rest on the residual, ") +
+           (correlated ? "taken as correlated noise (autoregressive, restricted likelihood)"
+                       : "taken as white noise") +
+           "; coverage factors from Student's t for 95.45 %";
+  if (const double inflation = fit.uncertainty.inflation; inflation > 1.0)
+    text += "; multiplied by " + significant(std::sqrt(inflation), 2) +
+            ", because the slow part of the residual is larger than noise";
+  out.notes.push_back(std::move(text));
 }
 
 void explain_long_correlation(const Solution& fit, ModelResult& out) {

@@ -99,7 +99,8 @@ void conclude(const Model& model, Solution& fit) {
   fit.null = null_directions(model, fit.rank.null_space, fit.parameters.jacobian,
                              parameter_scale(fit.parameters.jacobian, compressed.scale));
   fix_gauge(model, compressed, fit);
-  fit.uncertainty = assess(fit.linear, compressed, fit.noise, fit.rank.basis);
+  const double inflation = fit.uncertainty.inflation;
+  fit.uncertainty = assess(fit.linear, compressed, fit.noise, fit.rank.basis, inflation);
 }
 
 }  // namespace
@@ -113,9 +114,10 @@ Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   out.linear = linearise(model, start);
   SolveSummary solved = solve(model, out.linear, out.noise, start);
   for (int round = 0; round < kMostRounds; ++round) {
-    std::vector<Noise> noise = noise_under(out.linear, model.gates);
-    const bool settled = has_settled(out.noise, noise);
-    out.noise = std::move(noise);
+    FitNoise noise = noise_under(out.linear, model.gates);
+    const bool settled = has_settled(out.noise, noise.profiles);
+    out.noise = std::move(noise.profiles);
+    out.uncertainty.inflation = noise.inflation;
     if (settled) break;
     solved = solve(model, out.linear, out.noise, solved.estimate);
   }

@@ -10,6 +10,7 @@
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/identifiability.hpp"
+#include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/signal/spectrum.hpp"
 #include "slideway/signal/view.hpp"
@@ -268,14 +269,17 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
   return out;
 }
 
-std::vector<Noise> noise_under(const Linearisation& linear, const Gates& gates) {
-  std::vector<Noise> noise(linear.observations.size());
-  for (std::size_t i = 0; i < noise.size(); ++i)
-    noise[i].innovation = std::max(rms(linear.residuals[i]), 1e-300);
-  std::vector<std::size_t> all(noise.size());
+FitNoise noise_under(const Linearisation& linear, const Gates& gates) {
+  FitNoise out{noise_beside(linear, gates)};
+  const LackOfFit left = lack_of_fit(linear, out.profiles, gates);
+  if (left.significant(gates)) {
+    out.inflation = left.ratio;
+    return out;
+  }
+  std::vector<std::size_t> all(out.profiles.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  from_whole_residuals(linear, all, gates, noise);
-  return noise;
+  from_whole_residuals(linear, all, gates, out.profiles);
+  return out;
 }
 
 }  // namespace slideway

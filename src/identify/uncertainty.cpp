@@ -61,7 +61,7 @@ Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Observation& obs
 Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
   const Eigen::RowVectorXd c = row * basis;
   const double variance = (c * covariance * c.transpose()).value();
-  Spread spread{std::sqrt(std::max(variance, 0.0)), std::nullopt};
+  Spread spread{std::sqrt(std::max(inflation * variance, 0.0)), std::nullopt};
   double spread_of_variance = 0.0;
   for (const NoiseEffect& effect : noise) {
     Eigen::VectorXd gradient(effect.derivatives.size());
@@ -78,9 +78,11 @@ Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
 }
 
 Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
-                   const std::vector<Noise>& noise, const Eigen::MatrixXd& basis) {
+                   const std::vector<Noise>& noise, const Eigen::MatrixXd& basis,
+                   double inflation) {
   const Eigen::Index r = basis.cols();
   Uncertainty out;
+  out.inflation = inflation;
   out.basis = basis;
   out.covariance = Eigen::MatrixXd::Identity(r, r);
   for (std::size_t i = 0; i < noise.size(); ++i) {
@@ -96,7 +98,7 @@ Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
   }
   const Eigen::MatrixXd of_columns = basis * out.covariance * basis.transpose();
   for (const ProfileTriangle& profile : compressed.profiles)
-    out.nuisance_covariances.push_back(profile.levelling_covariance(of_columns));
+    out.nuisance_covariances.push_back(inflation * profile.levelling_covariance(of_columns));
   return out;
 }
 

@@ -13,15 +13,18 @@ namespace {
 
 using Effects = std::vector<AcceptedEffect>;
 
-/// "" if the residuals, in the units of the report, fall; else why the effect does not help.
+/// "" if the residuals, in the units of the report, fall; else why the effect does not help. Where
+/// there are heights and slopes, the mean of their relative squares counts.
 std::string worsens(const ModelResult& without, const ModelResult& with) {
-  const auto rises = [](const std::optional<double>& before, const std::optional<double>& after) {
-    return before && after && *after > *before;
+  double rise = 0.0;
+  const auto add = [&](const std::optional<double>& before, const std::optional<double>& after) {
+    if (before && after && *before > 0.0) rise += *after * *after / (*before * *before) - 1.0;
   };
+  add(without.rms_um, with.rms_um);
+  add(without.rms_urad, with.rms_urad);
   if (const auto before = holdout_rms_um(without); before && !(*holdout_rms_um(with) < *before))
     return "it predicts the held-out profiles worse";
-  if (rises(without.rms_um, with.rms_um) || rises(without.rms_urad, with.rms_urad))
-    return "the residual rises with it";
+  if (rise > 0.0) return "the residual rises with it";
   return "";
 }
 

@@ -146,7 +146,7 @@ TEST(Ranking, TakesAFreeTiltOutOfProfileAndEffect) {
   const TiltedCone fixed(false);
   const double alone = 1.0 / std::sqrt(1.0 + 4.0 * 25.0);
   EXPECT_NEAR(fixed.ranking.entries[0].raw, alone, 1e-3);  // 1280 samples instead of an integral
-  EXPECT_NEAR(fixed.ranking.entries[0].low_band, alone, 3e-3);  // 80 values
+  EXPECT_NEAR(fixed.ranking.entries[0].low_band, alone, 5e-3);  // 80 values, 2 at the axis left out
 }
 
 TEST(Ranking, IsThePapersCoefficientWhereNoTiltIsFree) {

@@ -21,10 +21,19 @@ namespace slideway {
 std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
                                 const std::vector<Eigen::MatrixXd>& suspect = {});
 
-/// The noise of every fitted profile under the model alone, by restricted maximum likelihood: from
-/// the whole residual, the model left free. What the model lacks counts as noise here, so that
-/// uncertainties allow for it.
-std::vector<Noise> noise_under(const Linearisation& linear, const Gates& gates);
+/// The noise a model is fitted under.
+struct FitNoise {
+  std::vector<Noise> profiles;  // per fitted observation
+  double inflation = 1.0;       // of all variances, for structure the model lacks
+};
+
+/// The noise of every fitted profile under the model, by restricted maximum likelihood.
+///
+/// From the whole residual, the model left free, if the slow band holds no more than noise
+/// (lack_of_fit()). Else it is noise_beside() the structure, and variances are inflated by the
+/// slow band's square over what that noise leaves there (Birge 1932): structure is not taken for
+/// a long memory of the noise, which would move the estimate, but uncertainties allow for it.
+FitNoise noise_under(const Linearisation& linear, const Gates& gates);
 
 /// White noise of the declared size, or of the size of the values after levelling: what a fit
 /// begins with.

@@ -24,12 +24,14 @@ struct Spread {
 ///
 /// with the long-run variance s_i of profile i's noise: the second part allows for weights that
 /// come from the same data (Kenward and Roger 1997, for columns slow against the noise; Meier 1953
-/// for a weighted mean). Degrees of freedom by Satterthwaite's formula (GUM G.4.1) from the
+/// for a weighted mean). All is multiplied by the inflation for structure the model lacks (FitNoise).
+/// Degrees of freedom by Satterthwaite's formula (GUM G.4.1) from the
 /// uncertainty of the noise's parameters, and no more from a profile than it has effective
 /// observations.
 struct Uncertainty {
   Eigen::MatrixXd basis;                     // (A + S) by r
-  Eigen::MatrixXd covariance;                // r by r, of w
+  Eigen::MatrixXd covariance;                // r by r, of w, before the inflation
+  double inflation = 1.0;                    // of all variances
   std::vector<Eigen::MatrixXd> information;  // G_i, r by r, per fitted observation
   struct NoiseEffect {                       // of one profile whose noise was estimated
     std::size_t observation = 0;
@@ -47,7 +49,8 @@ struct Uncertainty {
 /// @param compressed  of the same model under the same noise
 /// @param basis       (A + S) by r, from analyse_rank()
 Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
-                   const std::vector<Noise>& noise, const Eigen::MatrixXd& basis);
+                   const std::vector<Noise>& noise, const Eigen::MatrixXd& basis,
+                   double inflation = 1.0);
 
 /// Student's factor for a coverage probability of 95.45 % (GUM G.3.2): 2 for infinitely many
 /// degrees of freedom.
