@@ -17,6 +17,7 @@ std::string budget_heading(const Node& line) {
 
 /// A parameter a row, a source a column; every parameter has the same sources.
 std::string budget(const Node& report) {
+  if (!report.has("final")) return "";
   const std::vector<Node> budgets = report["final"]["uncertainty_budget"].entries();
   if (budgets.empty()) return "";
   const std::vector<Node> sources = budgets.front()["lines"].entries();
