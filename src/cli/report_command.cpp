@@ -95,8 +95,7 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
                      line.show("closing the loop: " + stage, done);
                    });
   }();
-  report([&] { return text_report(analysis); },
-         [&] { return json_report(analysis); });
+  report([&] { return text_report(analysis); }, [&] { return json_report(analysis); });
   return strict_ && is_negative(analysis) ? kNegativeVerdict : kDone;
 }
 
