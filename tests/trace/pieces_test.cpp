@@ -246,7 +246,7 @@ TEST(DetectionLimit, IsTheSizeWhoseGainPassesTheGateInFourOfFive) {
   const double norm = data.outside(stacked_columns(bench.model, marks.term, {}, 0) * one).norm();
   const double gate = penalty(data, 1) + Calibration{20.0, 2.0}.threshold(0.01);
   // 0.8416: normal deviate of 80 %; of the gate's square root the other tail is below 1e-8.
-  EXPECT_NEAR(*limits[0].value * norm, std::sqrt(gate) + 0.8416, 1e-4);
+  EXPECT_NEAR(limits[0].value.value() * norm, std::sqrt(gate) + 0.8416, 1e-4);
 }
 
 // In noise of a millimetre nothing below a hundred times the range of the face would be found.
