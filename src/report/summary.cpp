@@ -13,7 +13,17 @@
 namespace slideway {
 namespace {
 
-constexpr double kHarmless = 0.1;  // of U: a shift that changes no digit that is printed
+constexpr double kHarmless = 0.1;       // of U: a shift that is none of the digits that matter
+constexpr std::size_t kFewLetters = 36;  // names that leave room for a sentence
+
+bool is_harmless(const Result& result) {
+  const std::optional<Shift> shift = largest_shift(result);
+  return shift && std::abs(shift->in_U) <= kHarmless;
+}
+
+std::string in_U(double shift) {
+  return to_digits(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " U";
+}
 
 std::string found(const TraceResult& trace) {
   std::vector<std::string> out;
@@ -45,20 +55,23 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   if (!analysis.trace)
     return say(Alarm::plain, "Fitted", "the declared model; no missing effect was looked for");
   const TraceResult& trace = *analysis.trace;
-  const std::string beside = trace.rounds.empty() ? "" : ", beside " + found(trace);
-  const std::optional<Shift> shift = largest_shift(analysis.result);
+  const std::string names = found(trace);
+  const bool few = names.size() <= kFewLetters;
+  const std::string beside = trace.rounds.empty() ? "" : ", beside what was found";
   switch (trace.verdict) {
     case TraceVerdict::nothing_missing:
       return say(Alarm::good, "Nothing missing", "the model explains the profiles down to noise");
     case TraceVerdict::explained:
-      return say(Alarm::good, "Explained", found(trace) + " was missing and is in the model now");
+      return say(Alarm::good, "Explained",
+                 (few ? names + " was" : "what is named below was") +
+                     " missing and is in the model now");
     case TraceVerdict::ambiguous:
-      if (shift && std::abs(shift->in_U) <= kHarmless)
+      if (is_harmless(analysis.result))
         return say(Alarm::plain, "Ambiguous, without harm",
-                   found(trace) + " is missing and moves nothing by more than " +
-                       to_digits(std::max(std::abs(shift->in_U), 0.01), 1) + " U");
+                   "what is missing moves nothing by a tenth of U");
       return say(Alarm::warn, "Ambiguous",
-                 found(trace) + " is missing; these data cannot tell which");
+                 few ? names + " is missing: the data cannot tell which"
+                     : "the data cannot tell which effect is missing");
     case TraceVerdict::not_identifiable:
       return say(Alarm::bad, "Not identifiable",
                  "a form is there, but these data cannot tell what makes it" + beside);
@@ -123,14 +136,8 @@ void say_missing(const Analysis& analysis, Summary& out) {
   if (!was_extended(analysis)) return;
   out.has_missing = true;
   out.missing = found(*analysis.trace);
-  const Result& result = analysis.result;
-  if (const std::string fall = residual_change(result.declared->rms_um, result.final->rms_um,
-                                               result.declared->rms_urad, result.final->rms_urad);
-      !fall.empty())
-    out.missing += ": residual " + fall;
-  if (const auto shift = largest_shift(result))
-    out.missing += "; it had moved " + shift->what + " by " +
-                   to_digits(std::round(100.0 * shift->in_U) / 100.0 + 0.0, 2) + " U";
+  if (const auto shift = largest_shift(analysis.result))
+    out.missing = "moved " + shift->what + " by " + in_U(shift->in_U) + ": " + out.missing;
 }
 
 std::string next_step(const Analysis& analysis) {
@@ -138,6 +145,8 @@ std::string next_step(const Analysis& analysis) {
   if (!result.final) return "slideway identify, which fits and looks for what is missing";
   for (const UndeterminedDirection* direction : open_directions(*result.final))
     if (!direction->advice.empty()) return with_titles(direction->advice);
+  if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(result))
+    return "none is needed for these numbers";
   if (analysis.trace && !analysis.trace->advice.empty())
     return with_titles(analysis.trace->advice.front());
   const auto& angle = result.crosscheck.squareness;

@@ -75,16 +75,16 @@ std::string box(const Summary& summary, const std::string& page) {
   std::vector<std::vector<std::string>> entries;
   const auto add = [&](const char* label, const std::string& words) {
     std::string first = "│ " + std::string(label);
-    first.append(16 - code_points(first), ' ');
+    first.append(11 - code_points(first), ' ');
     std::vector<std::string> lines = lines_of(paragraph(first, words));
     for (std::size_t i = 1; i < lines.size(); ++i) lines[i].replace(0, 1, "│");
     entries.push_back(std::move(lines));
   };
   add("Verdict", summary.badge + ": " + summary.verdict + ".");
-  add("Straightness", summary.straightness + "; squareness " + summary.squareness);
-  add("Cross-check", summary.crosscheck);
-  add("Was missing", summary.missing);
-  add("Next step", summary.next);
+  add("Result", summary.straightness + "; squareness " + summary.squareness);
+  add("Check", summary.crosscheck);
+  add("Missing", summary.missing);
+  add("Next", summary.next);
   add("Page", page.empty() ? "none was written; --html FILE writes it" : page);
   std::size_t count = 0;
   for (const auto& lines : entries) count += lines.size();
@@ -144,9 +144,9 @@ std::string stations(const Result& result) {
   TextTable table(std::move(x), std::vector<Column>(count + 1, Column::number));
   table.add(std::move(deviation));
   table.add(std::move(U));
-  return heading("Station heights, deviation from the line through the end points" +
+  return heading("Station heights from the line through the end points" +
                  (count < all.size() ? " (" + std::to_string(count) + " of " +
-                                           std::to_string(all.size()) + " stations)"
+                                           std::to_string(all.size()) + ")"
                                      : std::string())) +
          table.text();
 }

@@ -117,7 +117,7 @@ class Agreement(unittest.TestCase):
     def check_box(self, text, report):
         box = [line for line in text.splitlines()[:7] if line.startswith("│")]
         self.assertLessEqual(len(box), 6)
-        line = next(line for line in box if line.startswith("│ Straightness"))
+        line = next(line for line in box if line.startswith("│ Result"))
         form = report["final"]["straightness"]
         if form and form["end_point_um"] is not None:
             self.same(line.split(";")[0], {"value": form["end_point_um"],
