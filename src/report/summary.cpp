@@ -68,13 +68,13 @@ void say_verdict(const Analysis& analysis, Summary& out) {
     case TraceVerdict::ambiguous:
       if (is_harmless(analysis.result))
         return say(Alarm::plain, "Ambiguous, without harm",
-                   "what is missing moves nothing by a tenth of U");
+                   "what is missing moves nothing by 0.1 U");
       return say(Alarm::warn, "Ambiguous",
                  few ? names + " is missing: the data cannot tell which"
                      : "the data cannot tell which effect is missing");
     case TraceVerdict::not_identifiable:
       return say(Alarm::bad, "Not identifiable",
-                 "a form is there, but these data cannot tell what makes it" + beside);
+                 "the data cannot tell what made this form");
     case TraceVerdict::unnamed:
       break;
   }
@@ -83,12 +83,12 @@ void say_verdict(const Analysis& analysis, Summary& out) {
 }
 
 std::string straightness_of(const Result& result) {
-  if (!result.final || !result.final->straightness) return "none in the model";
+  if (!result.final || !result.final->straightness) return "E_ZX is not in the model";
   const Straightness& form = *result.final->straightness;
   for (const StraightnessError& error : form.errors)
     if (error.line == ReferenceLineKind::end_point && is_known(error))
       return "E_ZX " + value_text(error) + " µm";
-  return form.reason.empty() ? "not determined" : form.reason;
+  return "E_ZX is not determined" + (form.reason.empty() ? "" : ": " + form.reason);
 }
 
 const FittedParameter* squareness_parameter(const Result& result) {
@@ -147,10 +147,11 @@ std::string next_step(const Analysis& analysis) {
     if (!direction->advice.empty()) return with_titles(direction->advice);
   if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(result))
     return "none is needed for these numbers";
+  const auto& angle = result.crosscheck.squareness;
+  if (angle && angle->verdict == Consistency::inconsistent)
+    return "look for another cause: the squareness cannot have made this form";
   if (analysis.trace && !analysis.trace->advice.empty())
     return with_titles(analysis.trace->advice.front());
-  const auto& angle = result.crosscheck.squareness;
-  if (angle && angle->verdict == Consistency::inconsistent) return with_titles(angle->reason);
   if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
   if (analysis.trace->verdict == TraceVerdict::unnamed)
     return "look at the residual on the page: where the structure is, and over what it repeats";

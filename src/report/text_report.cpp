@@ -100,12 +100,11 @@ std::string box(const Summary& summary, const std::string& page) {
 
 // --- parameters ---------------------------------------------------------------------------------
 
-/// k, with ν where it is finite; "" for the 2 of many degrees of freedom.
+/// k; "" for the 2 of many degrees of freedom.
 std::string coverage(const FittedParameter& p) {
   if (!is_known(p) || !p.coverage_factor) return "";
   const std::string k = fixed_point(*p.coverage_factor, 2);
-  if (k == "2.00") return "";
-  return k + (p.degrees_of_freedom ? " (ν " + number(*p.degrees_of_freedom, 2) + ")" : "");
+  return k == "2.00" ? "" : k;
 }
 
 std::string value_of(const FittedParameter& p) {
