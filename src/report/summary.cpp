@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
@@ -22,7 +23,7 @@ bool is_harmless(const Result& result) {
 }
 
 std::string in_U(double shift) {
-  return to_digits(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " U";
+  return number(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " U";  // no -0
 }
 
 std::string found(const TraceResult& trace) {
@@ -204,6 +205,11 @@ std::string in_sentence(std::string text) {
   if (text.empty()) return text;
   if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
   return text.back() == '.' ? text : text + ".";
+}
+
+std::string value_of(const Assumption& assumption) {
+  if (!nlohmann::json::accept(assumption.value)) return assumption.value;
+  return nlohmann::ordered_json::parse(assumption.value).dump();
 }
 
 std::optional<Shift> largest_shift(const Result& result) {

@@ -162,7 +162,7 @@ std::string assumed(const Result& result) {
       key.erase(0, prefix.size());
       break;
     }
-    if (!each.value.empty()) key += " = " + each.value;
+    if (!each.value.empty()) key += " = " + value_of(each);
     auto found = std::ranges::find(entries, key, [](const auto& entry) { return entry.first; });
     if (found == entries.end()) found = entries.insert(found, {key, {}});
     if (!profile.empty()) found->second.push_back(profile);
