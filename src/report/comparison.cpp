@@ -22,6 +22,7 @@ using Column = TextTable::Column;
 struct Pair {
   std::string name, symbol, unit;
   std::optional<double> a, b, difference, U, En;
+  std::string in_a, in_b;  // with U
 };
 
 struct Change {
@@ -44,8 +45,16 @@ std::optional<double> value_of(const FittedParameter* p) {
 
 Pair pair_of(const FittedParameter* a, const FittedParameter* b) {
   const FittedParameter& any = a != nullptr ? *a : *b;
-  Pair out{any.name,    any.symbol,   any.unit,     value_of(a),
-           value_of(b), std::nullopt, std::nullopt, std::nullopt};
+  Pair out{.name = any.name,
+           .symbol = any.symbol,
+           .unit = any.unit,
+           .a = value_of(a),
+           .b = value_of(b),
+           .difference = {},
+           .U = {},
+           .En = {},
+           .in_a = a != nullptr ? value_text(*a) : "-",
+           .in_b = b != nullptr ? value_text(*b) : "-"};
   if (!out.a || !out.b) return out;
   out.difference = *out.b - *out.a;
   if (!a->expanded_uncertainty || !b->expanded_uncertainty) return out;
@@ -132,19 +141,19 @@ std::vector<Change> changes_of(const NamedReport& a, const NamedReport& b) {
 
 std::string parameter_text(const std::vector<Pair>& pairs) {
   if (pairs.empty()) return heading("Parameters: none in either report");
-  TextTable table({"parameter", "A", "B", "B - A", "U", "E_n", "unit"},
-                  {Column::name, Column::number, Column::number, Column::number, Column::number,
-                   Column::number, Column::text});
+  TextTable table({"parameter", "A ± U", "B ± U", "B - A", "E_n", "unit"},
+                  {Column::name, Column::text, Column::text, Column::number, Column::number,
+                   Column::text});
   std::vector<std::string> changed;
   const auto digits = [](const std::optional<double>& value, int count) {
     return value ? number(*value, count) : "-";
   };
   for (const Pair& p : pairs) {
-    table.add({p.name, digits(p.a, 4), digits(p.b, 4), digits(p.difference, 2), digits(p.U, 2),
-               digits(p.En, 2), unit_text(p.unit)});
+    table.add({p.name, p.in_a, p.in_b, digits(p.difference, 2), digits(p.En, 2),
+               unit_text(p.unit)});
     if (p.En && *p.En > 1.0) changed.push_back(p.name);
   }
-  return heading("Parameters; U: expanded uncertainty of B - A, E_n = |B - A| / U") + table.text() +
+  return heading("Final parameters; E_n = |B - A| / U of the difference") + table.text() +
          item(changed.empty() ? "None has changed by more than U."
                               : "Changed by more than U: " + joined(changed) + ".");
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -91,7 +92,9 @@ class Node {
     std::vector<double> out;
     out.reserve(json_->size());
     for (std::size_t i = 0; i < json_->size(); ++i)  // thousands: a place only where it is needed
-      out.push_back((*json_)[i].is_number() ? (*json_)[i].get<double>() : entry(i).number());
+      out.push_back((*json_)[i].is_number() ? (*json_)[i].get<double>()
+                    : (*json_)[i].is_null() ? std::numeric_limits<double>::quiet_NaN()
+                                            : entry(i).number());
     return out;
   }
   /// An object of numbers, in its order.

@@ -17,7 +17,14 @@ constexpr double kLeft = 62.0, kRight = 22.0, kBottom = 40.0, kLegendRow = 16.0;
 constexpr std::size_t kPoints = 800;  // of a line: more than the picture has columns
 constexpr double kMostDecades = 5.0;  // of a logarithmic axis, below its largest
 
-std::string coordinate(double value) { return fixed_point(value, 1); }
+[[noreturn]] void refuse_range() {
+  throw DataError("a curve is beyond all measure; accepted: what --json of slideway writes");
+}
+
+std::string coordinate(double value) {
+  if (!std::isfinite(value)) refuse_range();
+  return fixed_point(value, 1);
+}
 
 Html straight(const std::string& style, double x1, double y1, double x2, double y2) {
   HtmlAttributes attributes{{"x1", coordinate(x1)},
@@ -90,8 +97,7 @@ struct Plot::Axis {
     return from + (to - from) * at;
   }
   void settle(bool padded) {
-    if (!std::isfinite(high - low))
-      throw DataError("a curve is beyond all measure; accepted: what --json of slideway writes");
+    if (!std::isfinite(high - low)) refuse_range();
     if (logarithmic) return settle_logarithmic();
     if (!(high > low)) {
       const double margin = std::max(std::abs(low) * 0.1, 1e-12);

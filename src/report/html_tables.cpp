@@ -108,7 +108,7 @@ Html assumed(const Result& result) {
       "Assumed: what the problem file does not say",
       {{"key", Column::text}, {"taken as", Column::text}, {"why", Column::text}});
   for (const Assumption& each : result.assumed)
-    table.add({element("code", each.key), each.value.empty() ? "–" : each.value, each.why});
+    table.add({element("code", each.key), each.value.empty() ? "–" : value_of(each), each.why});
   return table.html();
 }
 

@@ -68,9 +68,11 @@ bool is_known(const QuantityValue& result) {
 }
 
 std::string value_text(const QuantityValue& result, double unit) {
-  if (!result.value || !std::isfinite(*result.value)) return "not determined";
-  if (!is_known(result)) return to_digits(*result.value / unit, 4) + " (no uncertainty)";
-  return with_uncertainty(*result.value / unit, *result.expanded_uncertainty / unit);
+  const double value = result.value.value_or(NAN) / unit;
+  const double uncertainty = std::abs(result.expanded_uncertainty.value_or(NAN)) / unit;
+  if (!std::isfinite(value)) return "not determined";
+  if (!std::isfinite(uncertainty)) return to_digits(value, 4) + " (no uncertainty)";
+  return with_uncertainty(value, uncertainty);
 }
 
 std::string fixed_point(double value, int decimals) {

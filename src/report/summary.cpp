@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
@@ -13,7 +14,17 @@
 namespace slideway {
 namespace {
 
-constexpr double kHarmless = 0.1;  // of U: a shift that changes no digit that is printed
+constexpr double kHarmless = 0.1;       // of U: a shift that is none of the digits that matter
+constexpr std::size_t kFewLetters = 36;  // names that leave room for a sentence
+
+bool is_harmless(const Result& result) {
+  const std::optional<Shift> shift = largest_shift(result);
+  return shift && std::abs(shift->in_U) <= kHarmless;
+}
+
+std::string in_U(double shift) {
+  return number(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " U";  // no -0
+}
 
 std::string found(const TraceResult& trace) {
   std::vector<std::string> out;
@@ -45,23 +56,26 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   if (!analysis.trace)
     return say(Alarm::plain, "Fitted", "the declared model; no missing effect was looked for");
   const TraceResult& trace = *analysis.trace;
-  const std::string beside = trace.rounds.empty() ? "" : ", beside " + found(trace);
-  const std::optional<Shift> shift = largest_shift(analysis.result);
+  const std::string names = found(trace);
+  const bool few = names.size() <= kFewLetters;
+  const std::string beside = trace.rounds.empty() ? "" : ", beside what was found";
   switch (trace.verdict) {
     case TraceVerdict::nothing_missing:
       return say(Alarm::good, "Nothing missing", "the model explains the profiles down to noise");
     case TraceVerdict::explained:
-      return say(Alarm::good, "Explained", found(trace) + " was missing and is in the model now");
+      return say(Alarm::good, "Explained",
+                 (few ? names + " was" : "what is named below was") +
+                     " missing and is in the model now");
     case TraceVerdict::ambiguous:
-      if (shift && std::abs(shift->in_U) <= kHarmless)
+      if (is_harmless(analysis.result))
         return say(Alarm::plain, "Ambiguous, without harm",
-                   found(trace) + " is missing and moves nothing by more than " +
-                       to_digits(std::max(std::abs(shift->in_U), 0.01), 1) + " U");
+                   "what is missing moves nothing by 0.1 U");
       return say(Alarm::warn, "Ambiguous",
-                 found(trace) + " is missing; these data cannot tell which");
+                 few ? names + " is missing: the data cannot tell which"
+                     : "the data cannot tell which effect is missing");
     case TraceVerdict::not_identifiable:
       return say(Alarm::bad, "Not identifiable",
-                 "a form is there, but these data cannot tell what makes it" + beside);
+                 "the data cannot tell what made this form");
     case TraceVerdict::unnamed:
       break;
   }
@@ -70,12 +84,12 @@ void say_verdict(const Analysis& analysis, Summary& out) {
 }
 
 std::string straightness_of(const Result& result) {
-  if (!result.final || !result.final->straightness) return "none in the model";
+  if (!result.final || !result.final->straightness) return "E_ZX is not in the model";
   const Straightness& form = *result.final->straightness;
   for (const StraightnessError& error : form.errors)
     if (error.line == ReferenceLineKind::end_point && is_known(error))
       return "E_ZX " + value_text(error) + " µm";
-  return form.reason.empty() ? "not determined" : form.reason;
+  return "E_ZX is not determined" + (form.reason.empty() ? "" : ": " + form.reason);
 }
 
 const FittedParameter* squareness_parameter(const Result& result) {
@@ -123,14 +137,8 @@ void say_missing(const Analysis& analysis, Summary& out) {
   if (!was_extended(analysis)) return;
   out.has_missing = true;
   out.missing = found(*analysis.trace);
-  const Result& result = analysis.result;
-  if (const std::string fall = residual_change(result.declared->rms_um, result.final->rms_um,
-                                               result.declared->rms_urad, result.final->rms_urad);
-      !fall.empty())
-    out.missing += ": residual " + fall;
-  if (const auto shift = largest_shift(result))
-    out.missing += "; it had moved " + shift->what + " by " +
-                   to_digits(std::round(100.0 * shift->in_U) / 100.0 + 0.0, 2) + " U";
+  if (const auto shift = largest_shift(analysis.result))
+    out.missing = "moved " + shift->what + " by " + in_U(shift->in_U) + ": " + out.missing;
 }
 
 std::string next_step(const Analysis& analysis) {
@@ -138,10 +146,13 @@ std::string next_step(const Analysis& analysis) {
   if (!result.final) return "slideway identify, which fits and looks for what is missing";
   for (const UndeterminedDirection* direction : open_directions(*result.final))
     if (!direction->advice.empty()) return with_titles(direction->advice);
+  if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(result))
+    return "none is needed for these numbers";
+  const auto& angle = result.crosscheck.squareness;
+  if (angle && angle->verdict == Consistency::inconsistent)
+    return "look for another cause: the squareness cannot have made this form";
   if (analysis.trace && !analysis.trace->advice.empty())
     return with_titles(analysis.trace->advice.front());
-  const auto& angle = result.crosscheck.squareness;
-  if (angle && angle->verdict == Consistency::inconsistent) return with_titles(angle->reason);
   if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
   if (analysis.trace->verdict == TraceVerdict::unnamed)
     return "look at the residual on the page: where the structure is, and over what it repeats";
@@ -188,12 +199,19 @@ bool is_squareness(const FittedParameter& parameter) {
   return motion_error_of(parameter.name) == MotionError::squareness;
 }
 
-bool is_vertical(const std::string& effect) { return effect == "vertical_straightness"; }
+bool is_vertical(const std::string& effect) {
+  return motion_error_of(effect) == MotionError::vertical_straightness;
+}
 
 std::string in_sentence(std::string text) {
   if (text.empty()) return text;
   if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
   return text.back() == '.' ? text : text + ".";
+}
+
+std::string value_of(const Assumption& assumption) {
+  if (!nlohmann::json::accept(assumption.value)) return assumption.value;
+  return nlohmann::ordered_json::parse(assumption.value).dump();
 }
 
 std::optional<Shift> largest_shift(const Result& result) {

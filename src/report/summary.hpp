@@ -42,6 +42,9 @@ bool is_vertical(const std::string& effect);
 /// With a capital and a full stop.
 std::string in_sentence(std::string text);
 
+/// What a key was taken as, the same before a report was written and after.
+std::string value_of(const Assumption& assumption);
+
 /// The declared quantity that the missing effects had moved most.
 struct Shift {
   std::string what;  // for people

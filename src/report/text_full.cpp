@@ -27,7 +27,7 @@ std::string coefficient(double value) {
 std::string assumed(const Result& result) {
   std::string out;
   for (const Assumption& each : result.assumed)
-    out += note(each.key + (each.value.empty() ? "" : " = " + each.value) + ": " + each.why);
+    out += note(each.key + (each.value.empty() ? "" : " = " + value_of(each)) + ": " + each.why);
   return out.empty() ? "" : heading("Assumed: the problem file does not say") + out;
 }
 

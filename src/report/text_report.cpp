@@ -76,16 +76,16 @@ std::string box(const Summary& summary, const std::string& page) {
   std::vector<std::vector<std::string>> entries;
   const auto add = [&](const char* label, const std::string& words) {
     std::string first = "│ " + std::string(label);
-    first.append(16 - code_points(first), ' ');
+    first.append(11 - code_points(first), ' ');
     std::vector<std::string> lines = lines_of(paragraph(first, words));
     for (std::size_t i = 1; i < lines.size(); ++i) lines[i].replace(0, 1, "│");
     entries.push_back(std::move(lines));
   };
   add("Verdict", summary.badge + ": " + summary.verdict + ".");
-  add("Straightness", summary.straightness + "; squareness " + summary.squareness);
-  add("Cross-check", summary.crosscheck);
-  add("Was missing", summary.missing);
-  add("Next step", summary.next);
+  add("Result", summary.straightness + "; squareness " + summary.squareness);
+  add("Check", summary.crosscheck);
+  add("Missing", summary.missing);
+  add("Next", summary.next);
   add("Page", page.empty() ? "none was written; --html FILE writes it" : page);
   std::size_t count = 0;
   for (const auto& lines : entries) count += lines.size();
@@ -101,12 +101,11 @@ std::string box(const Summary& summary, const std::string& page) {
 
 // --- parameters ---------------------------------------------------------------------------------
 
-/// k, with ν where it is finite; "" for the 2 of many degrees of freedom.
+/// k; "" for the 2 of many degrees of freedom.
 std::string coverage(const FittedParameter& p) {
   if (!is_known(p) || !p.coverage_factor) return "";
   const std::string k = fixed_point(*p.coverage_factor, 2);
-  if (k == "2.00") return "";
-  return k + (p.degrees_of_freedom ? " (ν " + number(*p.degrees_of_freedom, 2) + ")" : "");
+  return k == "2.00" ? "" : k;
 }
 
 std::string value_of(const FittedParameter& p) {
@@ -145,9 +144,9 @@ std::string stations(const Result& result) {
   TextTable table(std::move(x), std::vector<Column>(count + 1, Column::number));
   table.add(std::move(deviation));
   table.add(std::move(U));
-  return heading("Station heights, deviation from the line through the end points" +
+  return heading("Station heights from the line through the end points" +
                  (count < all.size() ? " (" + std::to_string(count) + " of " +
-                                           std::to_string(all.size()) + " stations)"
+                                           std::to_string(all.size()) + ")"
                                      : std::string())) +
          table.text();
 }
@@ -164,7 +163,7 @@ std::string assumed(const Result& result) {
       key.erase(0, prefix.size());
       break;
     }
-    if (!each.value.empty()) key += " = " + each.value;
+    if (!each.value.empty()) key += " = " + value_of(each);
     auto found = std::ranges::find(entries, key, [](const auto& entry) { return entry.first; });
     if (found == entries.end()) found = entries.insert(found, {key, {}});
     if (!profile.empty()) found->second.push_back(profile);

@@ -75,6 +75,11 @@ class View {
   }
 
   [[nodiscard]] Eigen::VectorXd low_band_contribution(const ModelTerm& term) const {
+    const Linearisation& linear = fitted_.fit.linear;  // has the columns of what was fitted
+    for (std::size_t i = 0; i < linear.columns.size(); ++i)
+      if (linear.observations[i]->profile == observation_.profile)
+        return linear.columns[i].middleCols(term.first_amplitude, term.effect->amplitudes()) *
+               amplitudes(term);
     return low_band_columns(fitted_.model, term, observation_,
                             shapes_of(term, fitted_.fit.estimate.shapes)) *
            amplitudes(term);

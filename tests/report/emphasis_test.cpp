@@ -27,8 +27,9 @@ TEST(Emphasis, HasAColourForEveryVerdict) {
                                         {TraceVerdict::unnamed, "\033[31m"},
                                         {TraceVerdict::not_identifiable, "\033[31m"}}) {
     trace.verdict = verdict;
-    EXPECT_THAT(with_emphasis(text_report({sample_result(), trace})), HasSubstr(colour))
-        << text_of(verdict);
+    Result result = sample_result();
+    *result.declared->parameters[0].value += *result.final->parameters[0].expanded_uncertainty;
+    EXPECT_THAT(with_emphasis(text_report({result, trace})), HasSubstr(colour)) << text_of(verdict);
   }
   Result result = sample_result();
   EXPECT_THAT(with_emphasis(text_report({result})), Not(HasSubstr("\033[31m")));

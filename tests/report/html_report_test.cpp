@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "sample_result.hpp"
@@ -75,8 +76,7 @@ TEST(HtmlReport, SaysWhatWasMissingAndWhatItHadBent) {
   const std::string page = html_report(sample_analysis());
   EXPECT_THAT(page, HasSubstr("Thermal drift was missing and is in the model now."));
   // (3.0 - 2.8)e-6 / 2e-8
-  EXPECT_THAT(page, HasSubstr("thermal drift: residual 0.2 → 0.05 µm; it had moved squareness "
-                              "Δβxz by 10 U"));
+  EXPECT_THAT(page, HasSubstr("moved squareness Δβxz by 10 U: thermal drift"));
   EXPECT_THAT(page, HasSubstr("(3.000 ± 0.020)\u00a0×\u00a010<sup>−6</sup>"));  // declared
   EXPECT_THAT(page, HasSubstr("the joint fit does not bear it out"));
   EXPECT_THAT(page, HasSubstr("measure a second feed"));
@@ -90,7 +90,10 @@ TEST(HtmlReport, GivesTheSquarenessInThreeUnitsWithTwoDigitsOfUncertainty) {
 }
 
 TEST(HtmlReport, IsTheSamePageFromTheJson) {
-  EXPECT_EQ(html_report(sample_analysis()), html_report(sample_json(), "report"));
+  const std::string page = html_report(sample_analysis());
+  const std::string again = html_report(sample_json(), "report");
+  const auto differs = std::ranges::mismatch(page, again).in1;
+  EXPECT_TRUE(page == again) << std::string(differs, page.end()).substr(0, 80);
 }
 
 TEST(HtmlReport, OfASlideSpeaksOfNoFace) {

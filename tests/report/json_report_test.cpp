@@ -128,7 +128,7 @@ TEST(JsonReport, ANumberThatIsNotFiniteIsAbsentAndNamedInTheNotesOfItsPart) {
   EXPECT_THAT(report["notes"], ElementsAre(HasSubstr("ranking[0].running.raw")));
   EXPECT_THAT(report["declared"]["notes"], Not(Contains(HasSubstr("finite"))));
   EXPECT_EQ(json_report(parse_report(text, "report")), text);
-  EXPECT_THAT(text_report(analysis), HasSubstr("straightness.b2"));
+  EXPECT_THAT(text_report(analysis), HasSubstr("straightness b_2"));
 }
 
 TEST(JsonReport, IsTheSameTextEveryTimeAndEndsWithANewline) {

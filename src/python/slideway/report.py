@@ -49,7 +49,7 @@ class Input:
 
     name: str
     file: str
-    """arrays: the numbers did not come from a file"""
+    """"arrays" for numbers from arrays"""
     format: str
     sha256: str
     kind: Literal["face", "slide"]
@@ -84,7 +84,7 @@ class Misclosure:
     difference_um: float | None
     """as the data stand"""
     closure_um: float | None
-    """none: nothing checks it"""
+    """null: nothing checks it"""
     standard_uncertainty_um: float | None
 
 
@@ -132,9 +132,9 @@ class Travel:
     slide_min_mm: float
     slide_max_mm: float
     spindle_position_mm: float | None
-    """none: no face was fitted"""
+    """null: no face was fitted"""
     overhang_mm: float | None
-    """none: no face was fitted, or faces of several overhangs"""
+    """null: no face was fitted, or faces of several overhangs"""
 
 
 @dataclass(frozen=True)
@@ -211,7 +211,7 @@ class Parameter:
     symbol: str
     standard_name: str
     value: float | None
-    """none: not determined"""
+    """null: not determined"""
     unit: str
     standard_uncertainty: float | None
     expanded_uncertainty: float | None
@@ -219,9 +219,20 @@ class Parameter:
     coverage_factor: float | None
     """Student's, for degrees_of_freedom"""
     degrees_of_freedom: float | None
-    """none beside a coverage_factor: infinitely many"""
+    """null beside a coverage_factor: infinitely many"""
     identifiable: bool
     at_bound: bool
+
+
+@dataclass(frozen=True)
+class StraightnessStation:
+    """Height of the slide where it was read."""
+
+    position_mm: float
+    """of a reading, or of a foot of a bridge"""
+    deviation_um: float
+    """from the end-point line"""
+    expanded_uncertainty_um: float | None
 
 
 @dataclass(frozen=True)
@@ -242,14 +253,18 @@ class StraightnessError:
 
 @dataclass(frozen=True, eq=False)
 class StraightnessCurve:
-    """The slide's form over the travel the profiles cover."""
+    """The slide's form over the travel that was measured, from the end-point line."""
 
     position_mm: NDArray[np.float64]
     """slide coordinate x"""
     deviation_um: NDArray[np.float64]
-    """from the least-squares line"""
     expanded_uncertainty_um: NDArray[np.float64]
     """of the deviation"""
+    tip_um: NDArray[np.float64]
+    """of faces: at the tool tip, with the pitch on its lever"""
+    tip_expanded_uncertainty_um: NDArray[np.float64]
+    tip_slope_rad: float | None
+    """of the line through the ends of the tip's curve"""
 
 
 @dataclass(frozen=True)
@@ -261,6 +276,8 @@ class Straightness:
     minimum_zone_um: float | None
     expanded_uncertainty_um: float | None
     """of end_point_um"""
+    stations: list[StraightnessStation]
+    """of slides"""
     errors: list[StraightnessError]
     """one for each reference line"""
     curve: StraightnessCurve
@@ -385,7 +402,7 @@ class ModelResult:
     nuisances: list[Parameter]
     """levelling of the traces"""
     straightness: Straightness | None
-    """none: the model has none"""
+    """null: the model has none"""
     correlations: list[tuple[str, str, float]]
     """of the estimates, from 0.1 on"""
     identifiability: Identifiability
@@ -483,7 +500,7 @@ class Tried:
     rms_um: float | None
     parameters: list[Parameter]
     refused: str | None
-    """why it was not accepted; none: a rival"""
+    """why it was not accepted; null: a rival"""
 
 
 @dataclass(frozen=True)
@@ -564,7 +581,7 @@ class DetectionLimit:
     parameter: str
     unit: str
     value: float | None
-    """none: found at no size a workpiece has"""
+    """null: found at no size a workpiece has"""
     at: str
     by_shape: list[LimitAtShape]
 
@@ -577,7 +594,7 @@ class Trace:
     gates: dict[str, float]
     """the limits that were used"""
     fragile: Fragile | None
-    """none: no change of one gate within its range does"""
+    """null: no change of one gate within its range does"""
     rounds: list[Round]
     unnamed: Unnamed | None
     advice: list[str]
@@ -673,7 +690,7 @@ class WhatIf:
 
     profile: str
     corrected: str
-    """an effect; all; empty: as measured"""
+    """"": as measured; "all""""
     pv_um: float | None
     rms_um: float | None
     pv_urad: float | None
@@ -766,7 +783,7 @@ class Report:
     crosscheck: Crosscheck
     conformity: list[Conformity]
     trace: Trace | None
-    """the closed loop; none: it was not run"""
+    """the closed loop; null: it was not run"""
     notes: list[str]
     model: list[EffectInModel]
     setups: list[Setup]
