@@ -23,7 +23,7 @@ struct Extended : FittedModel {
       : FittedModel(std::move(with_effects)), added(std::move(effects)) {}
 
   std::vector<Added> added;
-  double lost_centre_mm = 0.0;               // values within this radius are left out of the fit
+  double lost_centre_mm = 0.0;                 // values within this radius are left out of the fit
   mutable std::optional<ModelResult> numbers;  // Extender::summary(), made once
 };
 

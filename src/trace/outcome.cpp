@@ -37,8 +37,8 @@ std::vector<TriedEffect> tried(const Look& seen, const Seen* except,
 std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,
                                   const ModelResult& fit) {
   if (out.not_separable.empty()) return "";
-  const bool too_large =
-      check.verdict == Consistency::inconsistent && std::abs(*check.fit_rad) > std::abs(*check.indirect_rad);
+  const bool too_large = check.verdict == Consistency::inconsistent &&
+                         std::abs(*check.fit_rad) > std::abs(*check.indirect_rad);
   if (!too_large && fit.implausible.empty()) return "";
   std::vector<std::string> others;
   for (const auto& [effect, same] : out.not_separable) others.push_back(effect);

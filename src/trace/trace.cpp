@@ -123,7 +123,8 @@ class Loop {
   }
 
   /// Profiles held out by the problem stand before those left out in turn.
-  static void set_residuals(const ModelResult& before, const ModelResult& after, TraceRound& round) {
+  static void set_residuals(const ModelResult& before, const ModelResult& after,
+                            TraceRound& round) {
     round.before_rms_um = before.rms_um;
     round.after_rms_um = after.rms_um;
     round.before_rms_urad = before.rms_urad;
@@ -142,7 +143,7 @@ class Loop {
     for (auto effect = first; effect != end; ++effect) {
       const auto next = std::next(effect);
       ModelResult after = next == end ? extender_.summary(state)
-                                    : extender_.summary(extender_.extend({first, next}));
+                                      : extender_.summary(extender_.extend({first, next}));
       set_residuals(before, after, effect->round);
       before = std::move(after);
     }
@@ -353,8 +354,7 @@ ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profil
 }
 
 bool is_negative(const TraceResult& trace) {
-  return trace.verdict == TraceVerdict::unnamed ||
-         trace.verdict == TraceVerdict::not_identifiable;
+  return trace.verdict == TraceVerdict::unnamed || trace.verdict == TraceVerdict::not_identifiable;
 }
 
 }  // namespace slideway

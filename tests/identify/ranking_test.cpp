@@ -122,7 +122,7 @@ TEST(Dominant, IsNoneWithoutEntriesAndDisagreesWhereTheTwoDo) {
   ranking.entries[2].low_band = 0.9;
   for (Ranking& entry : ranking.entries) entry.profile = "a", entry.p_value = 0.01;
   ModelResult fit;
-  fit.contributions = {{"cup", "a", 1.0, 0.3}, {"squareness", "a", 2.0, 0.7}};
+  fit.contributions = {{"cup", "a", 1.0, {}, 0.3}, {"squareness", "a", 2.0, {}, 0.7}};
   const Dominant dominant = dominant_effects(ranking, fit);
   EXPECT_EQ(dominant.by_correlation, "cup");
   EXPECT_EQ(dominant.by_fit, "squareness");
@@ -140,7 +140,7 @@ Dominant dominant_of(std::array<double, 2> coefficients, std::array<double, 2> s
     ranking.entries.push_back({names[i], "a"});
     ranking.entries.back().low_band = coefficients[i];
     ranking.entries.back().p_value = p_value;
-    fit.contributions.push_back({names[i], "a", 1.0, shares[i]});
+    fit.contributions.push_back({names[i], "a", 1.0, {}, shares[i]});
   }
   if (!untold.empty()) fit.identifiability.unidentifiable.push_back({untold, ""});
   return dominant_effects(ranking, fit);
@@ -175,7 +175,7 @@ TEST(Dominant, IsNoneWithoutASignificantCorrelationOrARival) {
   one.entries.back().low_band = 1.0;
   one.entries.back().p_value = 0.0;
   ModelResult fit;
-  fit.contributions = {{"cup", "a", 1.0, 1.0}};
+  fit.contributions = {{"cup", "a", 1.0, {}, 1.0}};
   EXPECT_FALSE(dominant_effects(one, fit).by_correlation);
 }
 
