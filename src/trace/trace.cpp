@@ -13,6 +13,7 @@
 #include "slideway/base/text.hpp"
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/left_out.hpp"
+#include "slideway/trace/analysis.hpp"
 #include "widening.hpp"
 
 namespace slideway {
@@ -146,7 +147,7 @@ class Loop {
 
 TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles,
                        const Progress& progress) {
-  return close_loop(problem, profiles, fit_declared(problem, profiles), progress).trace;
+  return *analyse(problem, profiles, {}, progress).trace;
 }
 
 ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profiles,

@@ -83,7 +83,10 @@ double digits(double found, double certified) {
 
 // Rounding the data to double precision moves the exact solution in the 14th digit already. The
 // heights of the Wamplers reach 2.5e7 while the answers are 1: half the digits are gone.
-double wanted_digits(const std::string& set) { return set.starts_with("wampler") ? 8.0 : 13.0; }
+// Of Pontius b_0 is 7e-4 beside an amplitude of 1: half a unit of its last place is 1.8e-13 of b_0.
+double wanted_digits(const std::string& set) {
+  return set.starts_with("wampler") ? 8.0 : set == "pontius" ? 12.5 : 13.0;
+}
 
 TEST_P(NistLinear, CoefficientsAndTheirUncertaintiesAreTheCertifiedOnes) {
   const std::string& set = GetParam();

@@ -79,12 +79,12 @@ class Real : public ::testing::Test {
 TEST_F(Real, LatheBedPredictsTheRunThatWasHeldOutAsWellAsTheRunsRepeat) {
   const Result result = identify_shipped("real/lathe-bed.toml");
   const double held_out = residual_rms(result, "run4") * 1e-3;  // mm/m
-  // Ordinary least squares in numpy; weighing run 2 more than run 3 moves it by 1 %.
-  EXPECT_NEAR(held_out, 0.0127, 0.0002);
+  // Ordinary least squares in numpy; weights of profiles and of frequencies move it by 5 %.
+  EXPECT_NEAR(held_out, 0.0127, 0.05 * 0.0127);
   // The three runs repeat one another to 0.011 to 0.017 mm/m (difference of two).
   EXPECT_LT(held_out, 0.017);
   EXPECT_NEAR(std::hypot(residual_rms(result, "run2"), residual_rms(result, "run3")) * 1e-3,
-              0.0141 * std::sqrt(2.0), 0.0003);
+              0.0141 * std::sqrt(2.0), 0.05 * 0.0141);  // the same
 }
 
 TEST_F(Real, GratingSubstrateHasTheDatabasesSlopeError) {
