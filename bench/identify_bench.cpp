@@ -123,7 +123,8 @@ void BM_Identify(benchmark::State& state) {
   const Folder folder(state.range(0));
   for (auto _ : state) {
     const Problem problem = read_problem(folder.problem());
-    benchmark::DoNotOptimize(text_report(analyse(problem, read_profiles(problem), {.closes_loop = false})));
+    benchmark::DoNotOptimize(
+        text_report(analyse(problem, read_profiles(problem), {.closes_loop = false})));
   }
   set_items(state);
 }

@@ -93,7 +93,8 @@ Json run_case(const std::string& name, int cuts, double size, bool at_limit, dou
     json["unnamed_um"] = result.unnamed->rms_um.value_or(0.0);
   }
   double u_before = 0.0, u_after = 0.0;
-  json["bias_before"] = squareness_of(analysis.result.declared->parameters, &u_before) - kFaceSquareness;
+  json["bias_before"] =
+      squareness_of(analysis.result.declared->parameters, &u_before) - kFaceSquareness;
   json["bias_after"] = squareness_of(analysis.result.final->parameters, &u_after) - kFaceSquareness;
   json["u_before"] = u_before;
   json["u_after"] = u_after;

@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kRegion = 0.954499736103642;  // of two standard deviations
-constexpr double kCoverage = 2.0;               // of kRegion, the uncertainties known
+constexpr double kCoverage = 2.0;              // of kRegion, the uncertainties known
 constexpr double kFalseAlarm = 0.05;           // of any item of a machine whose items all fit
 constexpr std::size_t kKnowsScatter = 5;       // items that tell a scatter from an outlier
 constexpr std::size_t kKnowsDrift = 6;         // items, all with a time, that tell a drift from one

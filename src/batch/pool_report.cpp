@@ -50,7 +50,8 @@ std::string parameters_text(const PooledMachine& machine) {
   for (const FittedParameter& p : machine.parameters) {
     std::string shown = "not determined";
     if (p.identifiable) shown = with_uncertainty(*p.value, *p.expanded_uncertainty);
-    table.add({p.name, shown, p.unit, p.coverage_factor ? fixed_point(*p.coverage_factor, 2) : "-"});
+    table.add(
+        {p.name, shown, p.unit, p.coverage_factor ? fixed_point(*p.coverage_factor, 2) : "-"});
   }
   return table.text();
 }

@@ -109,7 +109,6 @@ void add_noise(const Solution& fit, ModelResult& out) {
     const Noise& noise = fit.noise[i];
     const Observation& observation = *fit.linear.observations[i];
     const auto n = static_cast<double>(observation.values.size());
-    const double ratio = std::min(noise.correlation.long_run_ratio(), n);  // the trace has no more
     const double step =
         (observation.profile->setup.last_mm - observation.profile->setup.first_mm) / n;
     NoiseSummary summary{observation.profile->name,
@@ -119,8 +118,9 @@ void add_noise(const Solution& fit, ModelResult& out) {
                          noise.correlation.order()};
     set_size(observation, noise.standard_deviation() * std::sqrt(n) / per_sample(observation),
              summary.standard_deviation_um, summary.standard_deviation_urad);
-    summary.correlation_mm = noise.correlation.order() > 0 ? ratio * step : 0.0;
-    summary.effective_observations = n / ratio;
+    summary.effective_observations = effective_values(noise, observation.values.size());
+    summary.correlation_mm =
+        noise.correlation.order() > 0 ? n / summary.effective_observations * step : 0.0;
     Eigen::MatrixXd whitened = fit.linear.residuals[i];
     noise.correlation.whiten(whitened);
     whitened /= noise.innovation;

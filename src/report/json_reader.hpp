@@ -27,9 +27,9 @@ inline void read(const Node& node, double& out) {
   const bool is_left_out = node.is_null() && !node.is_missing();  // it was not finite
   out = is_left_out ? std::numeric_limits<double>::quiet_NaN() : node.number();
 }
-inline void read(const Node& node, std::vector<double>& out) { out = node.numbers(); }
 inline void read(const Node& node, std::vector<std::pair<std::string, double>>& out) {
-  out = node.named_numbers();
+  for (const std::string& key : node.keys())
+    read(node[key], out.emplace_back(printable(key, std::string::npos), 0.0).second);
 }
 inline void read(const Node& node, std::map<std::string, std::string>& out) {
   for (const std::string& key : node.keys()) out[key] = node[key].text();

@@ -19,6 +19,7 @@ void JsonWriter::write(double number) {
     text_ += "null";
     return;
   }
+  number += 0.0;  // no -0, which reads back as a whole number
   char buffer[32];
   char* const end = buffer + sizeof buffer;
   const auto [stop, error] =

@@ -29,7 +29,8 @@ std::string residual_pictures(const Curves& curves) {
   const auto [low, high] = std::ranges::minmax(most->residual_before);
   const PictureFrame frame{4, low, high};
   return heading("Residual of " + most->profile + " in the low band, " +
-                 (most->unit == MicroUnit::urad ? "µrad" : "µm") + ", over the trace in mm, before") +
+                 (most->unit == MicroUnit::urad ? "µrad" : "µm") +
+                 ", over the trace in mm, before") +
          picture(most->position_mm, most->residual_before, frame) +
          "and after, on the same scale\n" + picture(most->position_mm, most->residual_after, frame);
 }

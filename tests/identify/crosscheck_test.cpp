@@ -26,7 +26,8 @@ Model model() {
 
 ModelResult fit_with(double squareness, double expanded) {
   ModelResult fit;
-  FittedParameter parameter{.name = "squareness.dbeta_xz"};
+  FittedParameter parameter;
+  parameter.name = "squareness.dbeta_xz";
   parameter.value = squareness;
   parameter.expanded_uncertainty = expanded;
   fit.parameters.push_back(parameter);

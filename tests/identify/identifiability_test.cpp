@@ -137,7 +137,7 @@ TEST(Identifiability, OfC1AndTheSquarenessIsOneColumn) {
   EXPECT_THAT(names(determined[0].combination),
               UnorderedElementsAre("squareness.dbeta_xz", "vertical_straightness.c1"));
   // Four standard uncertainties of the sum 3e-5.
-  EXPECT_NEAR(determined[0].value, 3e-5, 4.0 * determined[0].standard_uncertainty);
+  EXPECT_NEAR(determined[0].value.value(), 3e-5, 4.0 * determined[0].standard_uncertainty.value());
   EXPECT_LT(found.largest_shift, kNothing);
 }
 
@@ -173,7 +173,7 @@ TEST(Identifiability, OfThreeZLevelsLeavesOneCombinationOfC1AndSquareness) {
   }
   const auto& determined = found.result.identifiability.determined;
   ASSERT_EQ(determined.size(), 1u);
-  EXPECT_NEAR(determined[0].value, 3e-5, 4.0 * determined[0].standard_uncertainty);
+  EXPECT_NEAR(determined[0].value.value(), 3e-5, 4.0 * determined[0].standard_uncertainty.value());
   EXPECT_LT(found.largest_shift, kNothing);
 }
 

@@ -111,7 +111,7 @@ TEST_F(Real, TestBarKeepsItsRunOutUnderACubic) {
   // Run-out repeats every turn, so its standard deviation is that of the residual.
   EXPECT_NEAR(*result.final->noise.front().standard_deviation_um, 9.459, 0.1);
   // 17799 values: Student's factor for many degrees of freedom.
-  EXPECT_NEAR(determined(result, "straightness.b2").coverage_factor, 2.0, 0.05);
+  EXPECT_NEAR(determined(result, "straightness.b2").coverage_factor.value(), 2.0, 0.05);
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ inline double mean_share(const Result& result, const std::string& effect) {
 
 inline double residual_rms(const Result& result, const std::string& profile) {
   for (const ResidualSummary& residual : result.final->residuals)
-    if (residual.profile == profile) return residual.rms_um.value_or(residual.rms_urad.value_or(NAN));
+    if (residual.profile == profile)
+      return residual.rms_um.value_or(residual.rms_urad.value_or(NAN));
   throw std::logic_error("no residual of " + profile);
 }
 

@@ -60,7 +60,8 @@ TEST(Paper600mm, NamesTheSquarenessAndAgreesWithTheRunOutWhenThePitchIsLeftOut) 
   EXPECT_NEAR(*determined(result, "squareness.dbeta_xz").standard_uncertainty, 0.017e-6, 0.002e-6);
   ASSERT_TRUE(result.crosscheck.squareness);
   EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::consistent);
-  EXPECT_NEAR(*result.crosscheck.squareness->indirect_rad, 2.8e-6, 1e-12);  // (0.3 + 2.5) µm / 1000 mm
+  EXPECT_NEAR(*result.crosscheck.squareness->indirect_rad, 2.8e-6,
+              1e-12);  // (0.3 + 2.5) µm / 1000 mm
 }
 
 TEST(Paper600mm, HasNoMainErrorWhenEquation16IsTakenAtItsWord) {
@@ -92,8 +93,10 @@ TEST(PaperFace10mm, FindsAConeThatTheRunOutCanNotHaveMade) {
   ASSERT_TRUE(result.crosscheck.squareness);
   EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::inconsistent);
   // Ordinary least squares in numpy: a factor of 72.5; the two feeds' weights move it by 1.
-  EXPECT_NEAR(*result.crosscheck.squareness->fit_rad / *result.crosscheck.squareness->indirect_rad, 72.0, 1.5);
-  EXPECT_NEAR(*result.crosscheck.squareness->indirect_amplitude_um, 0.028, 1e-9);  // 2.8e-6 rad x 10 mm
+  EXPECT_NEAR(*result.crosscheck.squareness->fit_rad / *result.crosscheck.squareness->indirect_rad,
+              72.0, 1.5);
+  EXPECT_NEAR(*result.crosscheck.squareness->indirect_amplitude_um, 0.028,
+              1e-9);  // 2.8e-6 rad x 10 mm
   EXPECT_THAT(result.crosscheck.squareness->reason, HasSubstr("a factor of 72"));
   EXPECT_THAT(result.crosscheck.squareness->reason, HasSubstr("0.028 µm"));
 }
@@ -111,7 +114,7 @@ void expect_one_combination(const Result& result, const std::string& a, const st
   EXPECT_EQ(only.combination[1].first, b);
   // The same column of the model twice: equal parts to rounding.
   EXPECT_NEAR(only.combination[0].second, only.combination[1].second, 1e-9);
-  EXPECT_NEAR(only.value, sum, only.expanded_uncertainty);
+  EXPECT_NEAR(only.value.value(), sum, only.expanded_uncertainty.value());
 }
 
 TEST(ThreeLevels, TellTheZCarriagesBendButOnlyTheSumOfItsLeanAndTheSquareness) {
@@ -123,7 +126,7 @@ TEST(ThreeLevels, TellTheZCarriagesBendButOnlyTheSumOfItsLeanAndTheSquareness) {
   expect_one_combination(result, "vertical_straightness.c1", "squareness.dbeta_xz", 8.0e-6);
   // numpy's ordinary least squares: 8.05e-6, standard uncertainty 0.11e-6.
   const DeterminedCombination& sum = result.final->identifiability.determined.front();
-  EXPECT_NEAR(sum.standard_uncertainty, 0.11e-6, 0.02e-6);
+  EXPECT_NEAR(sum.standard_uncertainty.value(), 0.11e-6, 0.02e-6);
   EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::not_available);
   EXPECT_EQ(result.dominant.agree, false);
   EXPECT_THAT(result.dominant.doubt,

@@ -117,7 +117,8 @@ TEST_F(Document, NamesPlaceAndWhatIsAccepted) {
               HasSubstr("trace.verdict: is string; accepted: \"nothing_missing\" or "));
   EXPECT_THAT(refusal("/trace/rounds/0/accepted", nullptr),
               HasSubstr("trace.rounds[0].accepted: is missing"));
-  EXPECT_THAT(refusal("/final/correlations/0", Json::array({"a"})), HasSubstr("final.correlations[0]"));
+  EXPECT_THAT(refusal("/final/correlations/0", Json::array({"a"})),
+              HasSubstr("final.correlations[0]"));
 }
 
 TEST_F(Document, RefusesWhatIsNoReport) {

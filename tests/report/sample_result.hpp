@@ -63,7 +63,8 @@ inline ClosureSummary sample_closure() {
   closure.tied = true;
   closure.readings = {{"feed2", 10.0, 20.5, 0.0, -2.5, 0.5},
                       {"feed2", 10.0, 0.0, std::nullopt, std::nullopt, std::nullopt}};
-  closure.repeats = {{"feed2", "level", 17, 5.0, 0.25, 1.5, 0.125, 8.5, RepeatVerdict::do_not_agree}};
+  closure.repeats = {
+      {"feed2", "level", 17, 5.0, 0.25, 1.5, 0.125, 8.5, RepeatVerdict::do_not_agree}};
   closure.suspects = {"feed2"};
   closure.notes = {"8 lines meet at 9 places and do not close"};
   return closure;
@@ -125,9 +126,9 @@ inline ModelResult sample_fit() {
   fit.nuisances[0].at_bound = true;
   fit.correlations = {{"straightness.b2", "straightness.b3", -0.97}};
   fit.identifiability = sample_identifiability();
-  fit.noise = {{"feed2", NoiseScaling::refuted, 2, 0.012, std::nullopt,
-                0.31, 140.0, 0.42},
-               {sample_inputs()[1].name, NoiseScaling::declared, 0, std::nullopt, 1.5, 0.0, 20.0, 0.5}};
+  fit.noise = {
+      {"feed2", NoiseScaling::refuted, 2, 0.012, std::nullopt, 0.31, 140.0, 0.42},
+      {sample_inputs()[1].name, NoiseScaling::declared, 0, std::nullopt, 1.5, 0.0, 20.0, 0.5}};
   fit.contributions = {{"squareness", "feed2", 0.4, std::nullopt, 0.9},
                        {"straightness", sample_inputs()[1].name, std::nullopt, 1.25, 0.1}};
   fit.residuals = {{"feed2", Role::fit, 0.1, 0.45, {}, {}},
@@ -152,8 +153,8 @@ inline Result sample_result() {
   result.ranking = sample_ranking();
   result.dominant = {"squareness", "squareness", true};
   result.declared = result.final = sample_fit();
-  result.crosscheck.squareness = {
-      2.8e-6, 2.2e-9, 2.75e-6, 2e-7, 0.25, Consistency::consistent, "", 600.0, 1.68, 1.65};
+  result.crosscheck.squareness = {2.8e-6, 2.2e-9, 2.75e-6, 2e-7, 0.25, Consistency::consistent,
+                                  "",     600.0,  1.68,    1.65};
   return result;
 }
 

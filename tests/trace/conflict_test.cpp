@@ -18,7 +18,8 @@ TEST(Conflict, CupIsOneColumnWithTheStraightnessOfAFace) {
   const TraceResult result = close_loop(problem_of(), quarter_faces(cup(), 1, kBlunt, 2));
   SCOPED_TRACE(story(result));
   EXPECT_THAT(named(result), ::testing::IsEmpty());
-  EXPECT_THAT(result.not_separable, ::testing::Contains(::testing::FieldsAre("cup", HasSubstr("straightness.b2"))));
+  EXPECT_THAT(result.not_separable,
+              ::testing::Contains(::testing::FieldsAre("cup", HasSubstr("straightness.b2"))));
 }
 
 /// The straightness of make_faces() as an autocollimator reads it on the slide, to 0.02 µrad.

@@ -100,8 +100,8 @@ inline std::string story(const TraceResult& result) {
   for (const std::string& text : result.advice) out += "\n  advice " + text;
   for (const std::string& text : result.notes) out += "\n  note " + text;
   if (result.unnamed)
-    out += "\n  unnamed " + std::to_string(result.unnamed->rms_um.value_or(
-                               result.unnamed->rms_urad.value_or(0.0))) +
+    out += "\n  unnamed " +
+           std::to_string(result.unnamed->rms_um.value_or(result.unnamed->rms_urad.value_or(0.0))) +
            " on clock " + result.unnamed->clock;
   return out + "\n  lack of fit p " + std::to_string(result.lack_of_fit_p);
 }

@@ -61,12 +61,13 @@ TEST(Testable, NeedsTheMetadataOfTheClock) {
   std::vector<Profile> cut = quarter_faces({"clean"}, 1, kBlunt, 1);
   cut[0].setup.feed_mm_per_min.reset();
   cut[0].setup.traverse_mm_per_s.reset();
-  const Closed result = closed(
-      problem_of({"thermal_drift", "tool_wear", "traverse_periodic", "centre_step"}), cut);
-  EXPECT_THAT(result.not_testable, ::testing::UnorderedElementsAre(
-                                       ::testing::FieldsAre("thermal_drift", HasSubstr("feed_mm_per_min")),
-                                       ::testing::FieldsAre("tool_wear", HasSubstr("feed_mm_per_min")),
-                                       ::testing::FieldsAre("traverse_periodic", HasSubstr("traverse_mm_per_s"))));
+  const Closed result =
+      closed(problem_of({"thermal_drift", "tool_wear", "traverse_periodic", "centre_step"}), cut);
+  EXPECT_THAT(result.not_testable,
+              ::testing::UnorderedElementsAre(
+                  ::testing::FieldsAre("thermal_drift", HasSubstr("feed_mm_per_min")),
+                  ::testing::FieldsAre("tool_wear", HasSubstr("feed_mm_per_min")),
+                  ::testing::FieldsAre("traverse_periodic", HasSubstr("traverse_mm_per_s"))));
 }
 
 TEST(Testable, NeedsAProfileThatShowsIt) {
@@ -78,12 +79,13 @@ TEST(Testable, NeedsAProfileThatShowsIt) {
   Problem problem = problem_of({"cup"});
   problem.effects = {{"straightness", {std::nullopt, 3, std::nullopt}, {}}};
   const Closed result = closed(problem, cut);
-  EXPECT_THAT(result.not_testable, ::testing::ElementsAre(::testing::FieldsAre("cup", HasSubstr("reading"))));
+  EXPECT_THAT(result.not_testable,
+              ::testing::ElementsAre(::testing::FieldsAre("cup", HasSubstr("reading"))));
 }
 
 TEST(Search, LooksOnlyAtItsCandidates) {
-  const Closed result = closed(problem_of({"slide_periodic", "centre_step"}),
-                                        quarter_faces(drift(), 2, kBlunt, 5));
+  const Closed result =
+      closed(problem_of({"slide_periodic", "centre_step"}), quarter_faces(drift(), 2, kBlunt, 5));
   SCOPED_TRACE(story(result));
   EXPECT_EQ(round_of(result, "linear_drift"), nullptr);
   for (const DetectionLimit& limit : result.detection_limits)
@@ -107,7 +109,8 @@ TEST(Search, RefusesByItsSignificance) {
   SCOPED_TRACE(story(result));
   EXPECT_EQ(result.verdict, TraceVerdict::nothing_missing);
   EXPECT_EQ(result.detection_limits.size(), 3U);
-  for (const DetectionLimit& limit : result.detection_limits) EXPECT_GT(limit.value.value_or(0.0), 0.0);
+  for (const DetectionLimit& limit : result.detection_limits)
+    EXPECT_GT(limit.value.value_or(0.0), 0.0);
 }
 
 }  // namespace

@@ -73,11 +73,11 @@ TEST(Named, CentreStep) {
 
 TEST(Named, TraverseDatum) {
   const Closed result = close_on({"traverse_datum", nullptr,
-                                       [](double X, double) {
-                                         const double u = X / 10.0;
-                                         return 0.1e-3 * u * u * u;
-                                       }},
-                                      2, kBlunt, 6);
+                                  [](double X, double) {
+                                    const double u = X / 10.0;
+                                    return 0.1e-3 * u * u * u;
+                                  }},
+                                 2, kBlunt, 6);
   SCOPED_TRACE(story(result));
   expect_only(result, "traverse_datum");
   const TraceRound* round = round_of(result, "traverse_datum");

@@ -252,7 +252,7 @@ TEST(DetectionLimit, IsTheSizeWhoseGainPassesTheGateInFourOfFive) {
   const double norm = data.outside(stacked_columns(bench.model, marks.term, {}, 0) * one).norm();
   const double gate = penalty(data, 1) + Calibration{20.0, 2.0}.threshold(0.01);
   // 0.8416: normal deviate of 80 %; of the gate's square root the other tail is below 1e-8.
-  EXPECT_NEAR(limits[0].value * norm, std::sqrt(gate) + 0.8416, 1e-4);
+  EXPECT_NEAR(limits[0].value.value() * norm, std::sqrt(gate) + 0.8416, 1e-4);
 }
 
 TEST(DetectionLimit, GrowsWithTheNoise) {
@@ -264,8 +264,7 @@ TEST(DetectionLimit, GrowsWithTheNoise) {
   ASSERT_EQ(quiet.size(), 4U);
   for (std::size_t i = 0; i < quiet.size(); ++i) {
     SCOPED_TRACE(quiet[i].effect);
-    EXPECT_NEAR(noisy[i].value.value(), 2.0 * quiet[i].value.value(),
-                kRounding * *quiet[i].value);
+    EXPECT_NEAR(noisy[i].value.value(), 2.0 * quiet[i].value.value(), kRounding * *quiet[i].value);
     EXPECT_EQ(quiet[i].by_shape.empty(), quiet[i].at.empty());
     for (std::size_t k = 0; k < quiet[i].by_shape.size(); ++k) {
       const double size = quiet[i].by_shape[k].value.value();

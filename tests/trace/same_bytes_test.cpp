@@ -15,9 +15,7 @@ TEST(SameBytes, RunForRun) {
   const turning::Hidden hidden = turning::make_hidden("slide_periodic", 0.1e-3, random);
   const std::vector<Profile> cut = quarter_faces(hidden, 1, kBlunt, 1);
   const Problem problem = problem_of();
-  const auto report = [&] {
-    return json_report(analyse(problem, cut));
-  };
+  const auto report = [&] { return json_report(analyse(problem, cut)); };
   const std::string first = report();
   EXPECT_THAT(first, ::testing::HasSubstr("slide_periodic"));
   EXPECT_EQ(first, report());

@@ -109,8 +109,8 @@ TEST(Trap, ALineThatRunsThereAndBackIsNotTakenForNoise) {
   RandomStream random(102, "time_periodic");
   const Closed result =
       closed(turning::face_problem(),
-                 turning::make_faces(turning::make_hidden("time_periodic", 0.23648e-3, random), 2,
-                                     kSharp, 102));
+             turning::make_faces(turning::make_hidden("time_periodic", 0.23648e-3, random), 2,
+                                 kSharp, 102));
   SCOPED_TRACE(story(result));
   EXPECT_THAT(named(result), ::testing::AnyOf(::testing::Contains("time_periodic"),
                                               ::testing::Contains("revolution_periodic")));

@@ -44,7 +44,7 @@ inline constexpr auto kRecord<OutlierSummary> =
 template <>
 inline constexpr auto kRecord<InputSummary> =
     record("Input", "One profile as it was read.", field("name", &InputSummary::name),
-           field("file", &InputSummary::file, "\"arrays\" for numbers from arrays"),
+           field("file", &InputSummary::file, "arrays: the numbers did not come from a file"),
            field("format", &InputSummary::format), field("sha256", &InputSummary::sha256),
            field("kind", &InputSummary::kind), field("quantity", &InputSummary::quantity),
            field("role", &InputSummary::role, "holdout: never fitted, only predicted"),
@@ -65,7 +65,7 @@ inline constexpr auto kRecord<MisclosureSummary> =
            field("profile", &MisclosureSummary::profile), field("x_mm", &MisclosureSummary::x_mm),
            field("y_mm", &MisclosureSummary::y_mm),
            field("difference_um", &MisclosureSummary::difference_um, "as the data stand"),
-           field("closure_um", &MisclosureSummary::closure_um, "null: nothing checks it"),
+           field("closure_um", &MisclosureSummary::closure_um, "none: nothing checks it"),
            field("standard_uncertainty_um", &MisclosureSummary::standard_uncertainty_um));
 
 template <>
@@ -95,9 +95,9 @@ inline constexpr auto kRecord<TravelSummary> = record(
     "Travel", "What the fitted profiles cover of the slide, and the lever that acts on it.",
     field("lever", &TravelSummary::lever), field("slide_min_mm", &TravelSummary::slide_min_mm),
     field("slide_max_mm", &TravelSummary::slide_max_mm),
-    field("spindle_position_mm", &TravelSummary::spindle_position_mm, "null: no face was fitted"),
+    field("spindle_position_mm", &TravelSummary::spindle_position_mm, "none: no face was fitted"),
     field("overhang_mm", &TravelSummary::overhang_mm,
-          "null: no face was fitted, or faces of several overhangs"));
+          "none: no face was fitted, or faces of several overhangs"));
 
 template <>
 inline constexpr auto kRecord<LowBandSummary> =
@@ -144,7 +144,7 @@ inline constexpr auto kRecord<FittedParameter> =
     record("Parameter", "A parameter: value ± expanded_uncertainty, in `unit`.",
            field("name", &FittedParameter::name), field("symbol", &FittedParameter::symbol),
            field("standard_name", &FittedParameter::standard_name),
-           field("value", &FittedParameter::value, "null: not determined"),
+           field("value", &FittedParameter::value, "none: not determined"),
            field("unit", &FittedParameter::unit),
            field("standard_uncertainty", &FittedParameter::standard_uncertainty),
            field("expanded_uncertainty", &FittedParameter::expanded_uncertainty,
@@ -152,7 +152,7 @@ inline constexpr auto kRecord<FittedParameter> =
            field("coverage_factor", &FittedParameter::coverage_factor,
                  "Student's, for degrees_of_freedom"),
            field("degrees_of_freedom", &FittedParameter::degrees_of_freedom,
-                 "null beside a coverage_factor: infinitely many"),
+                 "none beside a coverage_factor: infinitely many"),
            field("identifiable", &FittedParameter::identifiable),
            field("at_bound", &FittedParameter::at_bound));
 
@@ -280,7 +280,7 @@ inline constexpr auto kRecord<ModelResult> = record(
     field("degrees_of_freedom", &ModelResult::degrees_of_freedom),
     field("parameters", &ModelResult::parameters),
     field("nuisances", &ModelResult::nuisances, "levelling of the traces"),
-    field("straightness", &ModelResult::straightness, "null: the model has none"),
+    field("straightness", &ModelResult::straightness, "none: the model has none"),
     field("correlations", &ModelResult::correlations, "of the estimates, from 0.1 on"),
     field("identifiability", &ModelResult::identifiability), field("noise", &ModelResult::noise),
     field("contributions", &ModelResult::contributions),

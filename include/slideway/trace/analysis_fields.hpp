@@ -11,7 +11,7 @@ inline constexpr auto kRecord<TriedEffect> =
     record("Tried", "A candidate of the loop.", field("effect", &TriedEffect::effect),
            field("delta_bic", &TriedEffect::delta_bic), field("p_value", &TriedEffect::p_value),
            field("rms_um", &TriedEffect::rms_um), field("parameters", &TriedEffect::parameters),
-           field("refused", &TriedEffect::refused, "why it was not accepted; null: a rival"));
+           field("refused", &TriedEffect::refused, "why it was not accepted; none: a rival"));
 
 template <>
 inline constexpr auto kRecord<TraceRound> = record(
@@ -66,7 +66,7 @@ inline constexpr auto kRecord<DetectionLimit> =
     record("DetectionLimit", "The size an effect must have to be found with 80 % probability.",
            field("effect", &DetectionLimit::effect), field("parameter", &DetectionLimit::parameter),
            field("unit", &DetectionLimit::unit),
-           field("value", &DetectionLimit::value, "null: found at no size a workpiece has"),
+           field("value", &DetectionLimit::value, "none: found at no size a workpiece has"),
            field("at", &DetectionLimit::at), field("by_shape", &DetectionLimit::by_shape));
 
 template <>
@@ -79,7 +79,7 @@ template <>
 inline constexpr auto kRecord<TraceResult> = record(
     "Trace", "The closed loop.", field("verdict", &TraceResult::verdict),
     field("gates", &TraceResult::gates, "the limits that were used"),
-    field("fragile", &TraceResult::fragile, "null: no change of one gate within its range does"),
+    field("fragile", &TraceResult::fragile, "none: no change of one gate within its range does"),
     field("rounds", &TraceResult::rounds), field("unnamed", &TraceResult::unnamed),
     field("advice", &TraceResult::advice), field("not_testable", &TraceResult::not_testable),
     field("not_separable", &TraceResult::not_separable),
@@ -149,7 +149,7 @@ template <>
 inline constexpr auto kRecord<PredictedFlatness> = record(
     "WhatIf", "Flatness of a profile, measured or with effects taken out.",
     field("profile", &PredictedFlatness::profile),
-    field("corrected", &PredictedFlatness::corrected, "\"\": as measured; \"all\""),
+    field("corrected", &PredictedFlatness::corrected, "an effect; all; empty: as measured"),
     field("pv_um", &PredictedFlatness::pv_um), field("rms_um", &PredictedFlatness::rms_um),
     field("pv_urad", &PredictedFlatness::pv_urad), field("rms_urad", &PredictedFlatness::rms_urad));
 
@@ -223,7 +223,7 @@ inline constexpr auto kRecord<Analysis> = record(
           "the declared effects and those accepted: what the program stands behind"),
     field("crosscheck", kOfResult<&Result::crosscheck>),
     field("conformity", kOfResult<&Result::conformity>),
-    field("trace", &Analysis::trace, "the closed loop; null: it was not run"),
+    field("trace", &Analysis::trace, "the closed loop; none: it was not run"),
     field("notes", kOfResult<&Result::notes>), field("model", kOfDetails<&Details::effects>),
     field("setups", kOfDetails<&Details::setups>), field("options", kOfDetails<&Details::options>),
     field("what_if", kOfDetails<&Details::what_if>), field("curves", kOfDetails<&Details::curves>));

@@ -30,6 +30,6 @@ def made(kind: Any, value: Any) -> Any:
     if origin is np.ndarray:
         return np.asarray(value, get_args(get_args(kind)[1])[0])
     if dataclasses.is_dataclass(kind):
-        hints = _fields(kind)  # type: ignore[arg-type]
+        hints = _fields(kind)
         return kind(**{key: made(hints[key], each) for key, each in value.items() if key in hints})
     return value
