@@ -34,8 +34,8 @@ namespace {
 
 void require_writable(const std::filesystem::path& output) {
   const auto refuse = [&](int error) {
-    throw std::runtime_error(output.string() + ": cannot be written: " +
-                             std::generic_category().message(error));
+    throw std::runtime_error(output.string() +
+                             ": cannot be written: " + std::generic_category().message(error));
   };
   std::error_code ignored;
   if (std::filesystem::is_directory(output, ignored)) refuse(EISDIR);

@@ -117,8 +117,7 @@ class Locus {
   }
 
   [[nodiscard]] double value(const Eigen::RowVectorXd& weighted) const {
-    return weighted.dot(
-        fit_.estimate.amplitudes.segment(term_.first_amplitude, weighted.size()));
+    return weighted.dot(fit_.estimate.amplitudes.segment(term_.first_amplitude, weighted.size()));
   }
 
   [[nodiscard]] Spread spread(const Eigen::RowVectorXd& weighted) const {
@@ -186,8 +185,7 @@ Eigen::VectorXd station_positions(const Model& model) {
   const std::size_t count = std::min(kMostStations, x.size());
   Eigen::VectorXd out(static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i)
-    out[static_cast<Eigen::Index>(i)] =
-        x[count == 1 ? 0 : i * (x.size() - 1) / (count - 1)];
+    out[static_cast<Eigen::Index>(i)] = x[count == 1 ? 0 : i * (x.size() - 1) / (count - 1)];
   return out;
 }
 

@@ -90,8 +90,8 @@ void round_fields(T& object);
 void round_all(std::vector<double>& numbers, int digits) {
   for (double& number : numbers) {
     char buffer[32];
-    const auto end = std::to_chars(buffer, std::end(buffer), number, std::chars_format::general,
-                                   digits).ptr;
+    const auto end =
+        std::to_chars(buffer, std::end(buffer), number, std::chars_format::general, digits).ptr;
     std::from_chars(buffer, end, number);
   }
 }
