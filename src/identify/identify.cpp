@@ -81,6 +81,7 @@ Result summarise_data(const Problem& problem, const std::vector<Profile>& profil
   result.title = problem.title;
   result.version = SLIDEWAY_VERSION;
   for (const Profile& profile : profiles) result.inputs.push_back(summarise_input(profile));
+  result.assumed = assumptions(problem, profiles);
   result.closure = summarise_closure(profiles);
   return result;
 }

@@ -141,16 +141,16 @@ std::vector<Change> changes_of(const NamedReport& a, const NamedReport& b) {
 
 std::string parameter_text(const std::vector<Pair>& pairs) {
   if (pairs.empty()) return heading("Parameters: none in either report");
-  TextTable table({"parameter", "A ± U", "B ± U", "B - A", "E_n", "unit"},
-                  {Column::name, Column::text, Column::text, Column::number, Column::number,
-                   Column::text});
+  TextTable table(
+      {"parameter", "A ± U", "B ± U", "B - A", "E_n", "unit"},
+      {Column::name, Column::text, Column::text, Column::number, Column::number, Column::text});
   std::vector<std::string> changed;
   const auto digits = [](const std::optional<double>& value, int count) {
     return value ? number(*value, count) : "-";
   };
   for (const Pair& p : pairs) {
-    table.add({p.name, p.in_a, p.in_b, digits(p.difference, 2), digits(p.En, 2),
-               unit_text(p.unit)});
+    table.add(
+        {p.name, p.in_a, p.in_b, digits(p.difference, 2), digits(p.En, 2), unit_text(p.unit)});
     if (p.En && *p.En > 1.0) changed.push_back(p.name);
   }
   return heading("Final parameters; E_n = |B - A| / U of the difference") + table.text() +

@@ -122,7 +122,8 @@ void add_straightness(const Analysis& analysis, Compensation& out) {
   for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
     const double x = (out.positions_mm[i] + out.positions_mm[i + 1]) / 2.0;
     const double between = (heights[i] + heights[i + 1]) / 2.0;
-    out.interpolation_mm = std::max(out.interpolation_mm, std::abs(form(x) * kMicrometre - between));
+    out.interpolation_mm =
+        std::max(out.interpolation_mm, std::abs(form(x) * kMicrometre - between));
   }
   if (const std::string why = drowned(analysis, out, heights); !why.empty()) return leave_out(why);
   out.straightness_mm = std::move(heights);

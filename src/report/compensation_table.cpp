@@ -51,9 +51,9 @@ std::vector<std::string> common_lines(const Compensation& table, const std::stri
       "Axes as in ISO 841: +Z from the workpiece to the tool, +X away from the spindle axis;",
       "angles right-handed about +Y: B0X above 0 takes the tool to -Z as X grows.",
       "X: slide coordinate x of the problem file, a radius, mm. Where the machine coordinate is",
-      "another, shift the positions. Measured travel (a bridge from foot to foot) " + significant(x.front(), 9) + " to " +
-          significant(x.back(), 9) + " mm, " + std::to_string(x.size()) + " positions " +
-          significant(x[1] - x[0], 9) + " mm apart;",
+      "another, shift the positions. Measured travel (a bridge from foot to foot) " +
+          significant(x.front(), 9) + " to " + significant(x.back(), 9) + " mm, " +
+          std::to_string(x.size()) + " positions " + significant(x[1] - x[0], 9) + " mm apart;",
       "a line between two of them is off by up to " +
           significant(table.interpolation_mm / kMicrometre, 2) + " µm."};
   lines.insert(lines.end(), table.basis.begin(), table.basis.end());

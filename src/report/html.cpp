@@ -7,10 +7,11 @@ namespace slideway {
 namespace {
 
 /// Elements that hold nothing and have no closing tag.
-constexpr std::array<std::string_view, 6> kEmpty{"br", "line", "meta", "polygon", "polyline", "rect"};
+constexpr std::array<std::string_view, 6> kEmpty{"br",      "line",     "meta",
+                                                 "polygon", "polyline", "rect"};
 /// Elements that end a line, so that a page can be read and compared.
-constexpr std::array<std::string_view, 12> kBlocks{"div",  "figure", "h2", "li",      "line", "nav",
-                                                   "p", "polygon", "polyline", "section", "svg", "tr"};
+constexpr std::array<std::string_view, 12> kBlocks{
+    "div", "figure", "h2", "li", "line", "nav", "p", "polygon", "polyline", "section", "svg", "tr"};
 
 }  // namespace
 

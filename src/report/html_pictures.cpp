@@ -23,8 +23,8 @@ Html straightness_errors(const Straightness& form) {
        {"at x, mm", Column::number}});
   for (const StraightnessError& e : form.errors)
     table.add({text_of(e.line), html_value(e), html_number(e.coverage_factor, 3),
-               html_number(e.highest_um, 3), html_number(e.highest_at_mm), html_number(e.lowest_um, 3),
-               html_number(e.lowest_at_mm)});
+               html_number(e.highest_um, 3), html_number(e.highest_at_mm),
+               html_number(e.lowest_um, 3), html_number(e.lowest_at_mm)});
   return table.html();
 }
 
@@ -93,12 +93,12 @@ Html running(const Analysis& analysis, const std::string& profile, const std::st
 /// Blue for +1, orange for -1, the number in every cell.
 Html heat_cell(double r) {
   const double strength = std::isfinite(r) ? std::min(std::abs(r), 1.0) : 0.0;
-  return element("td",
-                 {{"class", "n"},
-                  {"style", std::string("background:rgba(") +
-                                (r < 0.0 ? "230,159,0," : "86,180,233,") +
-                                fixed_point(0.75 * strength, 2) + ")"}},
-                 html_number(std::round(r * 1000.0) / 1000.0, 3));
+  return element(
+      "td",
+      {{"class", "n"},
+       {"style", std::string("background:rgba(") + (r < 0.0 ? "230,159,0," : "86,180,233,") +
+                     fixed_point(0.75 * strength, 2) + ")"}},
+      html_number(std::round(r * 1000.0) / 1000.0, 3));
 }
 
 Html matrix(const ProfileCurves& curves) {
@@ -111,11 +111,10 @@ Html matrix(const ProfileCurves& curves) {
     for (const double r : curves.correlation[i]) row += heat_cell(r);
     rows += element("tr", row);
   }
-  return html_scroll(element("table", {{"class", "heat"}},
-                             element("caption", "Effects among themselves on " + Html(curves.profile) +
-                                                    ", low band") +
-                                 element("thead", element("tr", headings)) +
-                                 element("tbody", rows)));
+  return html_scroll(element(
+      "table", {{"class", "heat"}},
+      element("caption", "Effects among themselves on " + Html(curves.profile) + ", low band") +
+          element("thead", element("tr", headings)) + element("tbody", rows)));
 }
 
 // --- residual ---------------------------------------------------------------------------------

@@ -204,16 +204,14 @@ Plot::Legend Plot::legend() const {
       at = kLeft;
       row += kLegendRow;
     }
-    out.entries += line.high.empty()
-                       ? straight(line.style, at, row - 4.0, at + kSample, row - 4.0)
-                       : element("rect", {{"class", line.style},
-                                          {"x", coordinate(at)},
-                                          {"y", coordinate(row - 9.0)},
-                                          {"width", coordinate(kSample)},
-                                          {"height", "10"}});
+    out.entries += line.high.empty() ? straight(line.style, at, row - 4.0, at + kSample, row - 4.0)
+                                     : element("rect", {{"class", line.style},
+                                                        {"x", coordinate(at)},
+                                                        {"y", coordinate(row - 9.0)},
+                                                        {"width", coordinate(kSample)},
+                                                        {"height", "10"}});
     out.entries += element(
-        "text",
-        {{"class", "key"}, {"x", coordinate(at + kSample + 6.0)}, {"y", coordinate(row)}},
+        "text", {{"class", "key"}, {"x", coordinate(at + kSample + 6.0)}, {"y", coordinate(row)}},
         line.name);
     at += length;
     out.height = row - 12.0 + kLegendRow;

@@ -29,9 +29,12 @@ struct Drawing {
 
 Html drawn(const ProfileCurves& curves, const Drawing& drawing) {
   Plot plot(drawing.text);
-  Json data = {{"title", drawing.text.title},  {"x", drawing.text.x},
-               {"y", drawing.text.y},          {"unit", unit_name(curves.unit)},
-               {"position", curves.position_mm}, {"series", Json::array()}};
+  Json data = {{"title", drawing.text.title},
+               {"x", drawing.text.x},
+               {"y", drawing.text.y},
+               {"unit", unit_name(curves.unit)},
+               {"position", curves.position_mm},
+               {"series", Json::array()}};
   for (const auto& [name, style, values] : drawing.series) {
     if (values.empty()) continue;
     plot.line(name, style, curves.position_mm, values);
@@ -77,15 +80,15 @@ Html residual(const Result& result, const ProfileCurves& curves, const std::stri
                  (added ? ", of the declared and of the final model, on one scale. " : ". ") +
                  bold("Good:") + " a level band about zero without trend, waves or steps";
   if (!added) caption += noise_of(result, curves.profile);
-  return drawn(curves,
-               {{id + "-residual", "Profile " + curves.profile + ": residual",
-                 "Low band minus model over the trace position, of the declared and of the final "
-                 "model, on one scale.",
-                 "trace position, mm", "residual, " + unit_name(curves.unit)},
-                caption + ".",
-                {{added ? "declared model" : "residual", added ? "before" : "after",
-                  curves.residual_before},
-                 {"final model", "after", curves.residual_after}}});
+  return drawn(
+      curves,
+      {{id + "-residual", "Profile " + curves.profile + ": residual",
+        "Low band minus model over the trace position, of the declared and of the final "
+        "model, on one scale.",
+        "trace position, mm", "residual, " + unit_name(curves.unit)},
+       caption + ".",
+       {{added ? "declared model" : "residual", added ? "before" : "after", curves.residual_before},
+        {"final model", "after", curves.residual_after}}});
 }
 
 Html contributions(const ProfileCurves& curves, const std::string& id) {
@@ -142,10 +145,10 @@ Html bands(const ProfileCurves& curves, const std::string& id) {
 }  // namespace
 
 HtmlSection html_profiles(const Analysis& analysis) {
-  Html body = html_each_profile(analysis, "p", [&](const ProfileCurves& curves,
-                                                   const std::string& id) {
-    return form(curves, id) + residual(analysis.result, curves, id) + contributions(curves, id);
-  });
+  Html body =
+      html_each_profile(analysis, "p", [&](const ProfileCurves& curves, const std::string& id) {
+        return form(curves, id) + residual(analysis.result, curves, id) + contributions(curves, id);
+      });
   if (!body.empty())
     body = element("p", {{"class", "hint"}},
                    element("span", {{"class", "zoom"}},

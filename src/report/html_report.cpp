@@ -17,21 +17,18 @@ Html head(const std::string& title, bool has_charts) {
   Html style = "\n";
   if (has_charts) style += Html::verbatim(page::kChartStyle);
   style += Html::verbatim(page::kStyle);
-  return element("head",
-                 "\n" + meta({{"charset", "utf-8"}}) +
-                     meta({{"http-equiv", "Content-Security-Policy"},
-                           {"content",
-                            "default-src 'none'; style-src 'unsafe-inline'; script-src "
-                            "'unsafe-inline'"}}) +
-                     meta({{"name", "viewport"},
-                           {"content", "width=device-width, initial-scale=1"}}) +
-                     meta({{"name", "color-scheme"}, {"content", "light dark"}}) +
-                     element("title", title) + "\n" + element("style", style) + "\n");
+  return element(
+      "head", "\n" + meta({{"charset", "utf-8"}}) +
+                  meta({{"http-equiv", "Content-Security-Policy"},
+                        {"content",
+                         "default-src 'none'; style-src 'unsafe-inline'; script-src "
+                         "'unsafe-inline'"}}) +
+                  meta({{"name", "viewport"}, {"content", "width=device-width, initial-scale=1"}}) +
+                  meta({{"name", "color-scheme"}, {"content", "light dark"}}) +
+                  element("title", title) + "\n" + element("style", style) + "\n");
 }
 
-Html script(std::string_view text) {
-  return element("script", "\n" + Html::verbatim(text)) + "\n";
-}
+Html script(std::string_view text) { return element("script", "\n" + Html::verbatim(text)) + "\n"; }
 
 /// A page of the sections that have a body, with links to them.
 std::string page_of(const std::string& title, const std::string& subtitle,
@@ -45,10 +42,10 @@ std::string page_of(const std::string& title, const std::string& subtitle,
                     "\n" + element("h2", {{"id", heading}}, each.title) + each.body);
   }
   const bool has_charts = main.markup().find("class=\"long\"") != std::string::npos;
-  const Html header =
-      element("h1", title) + "\n" + element("p", subtitle) +
-      element("nav", {{"aria-label", "Contents"}}, element("ol", "\n" + links));
-  Html body = "\n" + element("a", {{"class", "skip"}, {"href", "#verdict"}}, "Skip to the verdict") +
+  const Html header = element("h1", title) + "\n" + element("p", subtitle) +
+                      element("nav", {{"aria-label", "Contents"}}, element("ol", "\n" + links));
+  Html body = "\n" +
+              element("a", {{"class", "skip"}, {"href", "#verdict"}}, "Skip to the verdict") +
               "\n" + element("header", header) + "\n" + element("main", main) + "\n";
   if (has_charts) body += script(page::kChartScript) + script(page::kScript);
   return "<!DOCTYPE html>\n" +
@@ -86,8 +83,7 @@ std::string columns_page(const Node& document) {
                html_number(row["effective_observations"].number(), 3),
                html_probability(row["p_value"].number())});
   const Node signal = document["signal"];
-  const std::string of =
-      signal.is_number() ? std::to_string(signal.count()) : signal.verbatim();
+  const std::string of = signal.is_number() ? std::to_string(signal.count()) : signal.verbatim();
   return page_of("Correlation with column " + of, document["file"].verbatim() + " · slideway",
                  {{"verdict", "Ranking", table.html()}});
 }
@@ -97,12 +93,12 @@ std::string columns_page(const Node& document) {
 std::string html_report(const Analysis& analysis) {
   const Result& result = analysis.result;
   const std::string what = subject(result);
-  return page_of(result.title.empty() ? what : result.title, what + " · slideway " + result.version,
-                 {html_verdict(analysis), html_profiles(analysis), html_straightness(analysis),
-                  html_correlation(analysis), html_residual(analysis), html_bands(analysis),
-                  html_what_if(analysis), html_uncertainty(analysis),
-                  html_identifiability(analysis), html_loop(analysis), html_data(analysis),
-                  html_method(analysis)});
+  return page_of(
+      result.title.empty() ? what : result.title, what + " · slideway " + result.version,
+      {html_verdict(analysis), html_profiles(analysis), html_straightness(analysis),
+       html_correlation(analysis), html_residual(analysis), html_bands(analysis),
+       html_what_if(analysis), html_uncertainty(analysis), html_identifiability(analysis),
+       html_loop(analysis), html_data(analysis), html_method(analysis)});
 }
 
 std::string html_report(std::string_view json, const std::string& name) {

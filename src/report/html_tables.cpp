@@ -104,9 +104,8 @@ Html setups(const Details& details) {
 }
 
 Html assumed(const Result& result) {
-  HtmlTable table(
-      "Assumed: what the problem file does not say",
-      {{"key", Column::text}, {"taken as", Column::text}, {"why", Column::text}});
+  HtmlTable table("Assumed: what the problem file does not say",
+                  {{"key", Column::text}, {"taken as", Column::text}, {"why", Column::text}});
   for (const Assumption& each : result.assumed)
     table.add({element("code", each.key), each.value.empty() ? "–" : value_of(each), each.why});
   return table.html();
@@ -144,21 +143,21 @@ void add_options(const Analysis& analysis, HtmlTable& table) {
                      std::to_string(body.lower));
   table.add({"lower-body array, Eq. (1)", "0 bed, spindle, workpiece; " + joined(bodies)});
   table.add({"lever", text_of(given.lever)});
-  table.add({"closed loop", analysis.trace ? "at most " + Html(std::to_string(given.max_effects)) +
-                                                 " effects, significance " +
-                                                 html_number(given.significance)
-                                           : "not run"});
+  table.add({"closed loop", analysis.trace
+                                ? "at most " + Html(std::to_string(given.max_effects)) +
+                                      " effects, significance " + html_number(given.significance)
+                                : "not run"});
   table.add({"candidates of the loop", effect_titles(given.candidates, ", ")});
   for (const PriorSummary& prior : given.priors)
-    table.add({"prior on " + prior.parameter,
-               html_number(prior.value, 6) + ", standard uncertainty " +
-                   html_number(prior.standard_uncertainty, 3)});
+    table.add({"prior on " + prior.parameter, html_number(prior.value, 6) +
+                                                  ", standard uncertainty " +
+                                                  html_number(prior.standard_uncertainty, 3)});
   if (!given.runout) return;
   const Runout& r = *given.runout;
-  table.add({"run-out, Eq. (21)",
-             "r = " + html_number(r.r_um) + " µm, p = " + html_number(r.p_um) + " µm over L = " +
-                 html_number(r.diameter_mm) + " mm, standard uncertainty " +
-                 html_number(r.standard_uncertainty_um) + " µm"});
+  table.add({"run-out, Eq. (21)", "r = " + html_number(r.r_um) + " µm, p = " + html_number(r.p_um) +
+                                      " µm over L = " + html_number(r.diameter_mm) +
+                                      " mm, standard uncertainty " +
+                                      html_number(r.standard_uncertainty_um) + " µm"});
 }
 
 Html options(const Analysis& analysis) {
@@ -184,8 +183,7 @@ Html gates(const Analysis& analysis) {
   Html out = table.html();
   if (analysis.trace->fragile)
     out += element("p", "With " + element("code", analysis.trace->fragile->gate) + " = " +
-                            html_number(analysis.trace->fragile->value) +
-                            " the verdict would be " +
+                            html_number(analysis.trace->fragile->value) + " the verdict would be " +
                             bold(text_of(analysis.trace->fragile->verdict)) + ".");
   return out;
 }
@@ -216,10 +214,10 @@ Html to_fill_in() {
         "Workpiece, clamping, tool; when measured after cutting",
         "Temperature at start and end, warm-up", "Compensation active in the control (yes/no)"})
     rows += element("tr", element("th", {{"scope", "row"}}, what) + element("td"));
-  return html_scroll(element(
-      "table", {{"class", "fill"}},
-      element("caption", "Not in the files, to be filled in (ISO 230-1, ISO/IEC 17025)") +
-          element("tbody", rows)));
+  return html_scroll(
+      element("table", {{"class", "fill"}},
+              element("caption", "Not in the files, to be filled in (ISO 230-1, ISO/IEC 17025)") +
+                  element("tbody", rows)));
 }
 
 std::string corrected(const std::string& effect) {

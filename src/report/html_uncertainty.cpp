@@ -18,8 +18,7 @@ constexpr std::size_t kLargest = 20;  // correlations listed
 Html budget(const ModelResult& model) {
   if (model.budget.empty()) return {};
   const std::vector<BudgetLine>& sources = model.budget.front().lines;
-  std::vector<std::pair<Html, Column>> columns{{"parameter", Column::text},
-                                               {"unit", Column::text}};
+  std::vector<std::pair<Html, Column>> columns{{"parameter", Column::text}, {"unit", Column::text}};
   for (const BudgetLine& line : sources)
     columns.emplace_back(Html(line.source) + " " + small("(type " + Html(text_of(line.type)) + ")"),
                          Column::number);
@@ -62,13 +61,14 @@ Html noise(const ModelResult& model) {
 
 Html correlations(const ModelResult& model) {
   std::vector<ParameterCorrelation> pairs = model.correlations;
-  std::ranges::stable_sort(
-      pairs, std::greater(),
-      [](const ParameterCorrelation& pair) { return std::abs(std::get<2>(pair)); });
+  std::ranges::stable_sort(pairs, std::greater(), [](const ParameterCorrelation& pair) {
+    return std::abs(std::get<2>(pair));
+  });
   const std::size_t listed = std::min(kLargest, pairs.size());
-  HtmlTable table("Correlation of the estimates, the " + std::to_string(listed) + " largest of " +
-                      std::to_string(pairs.size()) + " above 0.1",
-                  {{"parameter", Column::text}, {"parameter", Column::text}, {"ρ", Column::number}});
+  HtmlTable table(
+      "Correlation of the estimates, the " + std::to_string(listed) + " largest of " +
+          std::to_string(pairs.size()) + " above 0.1",
+      {{"parameter", Column::text}, {"parameter", Column::text}, {"ρ", Column::number}});
   for (const auto& [a, b, coefficient] : std::span(pairs).first(listed))
     table.add({a, b, html_number(coefficient, 4)});
   return table.html();
@@ -105,11 +105,10 @@ Html held_out(const Crosscheck& checks) {
     table.add({check.profile, html_number(check.chi2, 3), html_probability(check.p_value),
                html_size(check.largest_um, check.largest_urad), html_number(check.at_mm),
                bold(text_of(check.verdict))});
-  HtmlTable among("The same quantity from several profiles",
-                  {{"what", Column::text},
-                   {"profiles", Column::text},
-                   {html_symbol("E_n"), Column::number},
-                   {"verdict", Column::text}});
+  HtmlTable among("The same quantity from several profiles", {{"what", Column::text},
+                                                              {"profiles", Column::text},
+                                                              {html_symbol("E_n"), Column::number},
+                                                              {"verdict", Column::text}});
   for (const ProfileCheck& check : checks.profiles)
     among.add({check.what, joined(check.profiles, " and "), html_number(check.En, 2),
                bold(text_of(check.verdict))});

@@ -97,14 +97,14 @@ Html parameters(const Analysis& analysis) {
     columns.emplace_back("declared model", Column::number);
     columns.emplace_back("shift / U", Column::number);
   }
-  HtmlTable table(
-      "Parameters of the final model, expanded uncertainty U = k u (95.45 % coverage)", columns);
+  HtmlTable table("Parameters of the final model, expanded uncertainty U = k u (95.45 % coverage)",
+                  columns);
   for (const FittedParameter& p : result.final->parameters) {
-    std::vector<Html> cells{
-        html_symbol(p.symbol) + " " + small(p.name),
-        html_value(p) + (p.at_bound ? ", at the end of its range" : ""), html_unit(p.unit),
-        is_known(p) ? html_number(p.coverage_factor, 3) : Html(),
-        is_known(p) ? html_number(p.standard_uncertainty, 2) : Html()};
+    std::vector<Html> cells{html_symbol(p.symbol) + " " + small(p.name),
+                            html_value(p) + (p.at_bound ? ", at the end of its range" : ""),
+                            html_unit(p.unit),
+                            is_known(p) ? html_number(p.coverage_factor, 3) : Html(),
+                            is_known(p) ? html_number(p.standard_uncertainty, 2) : Html()};
     if (extended) {
       const FittedParameter* const before = result.declared->find(p.name);
       cells.push_back(before != nullptr ? html_value(*before) : Html());
@@ -132,8 +132,9 @@ Html conformity(const Result& result) {
     QuantityValue value;
     value.value = angle ? each.value_um_per_m : each.value_um;
     value.expanded_uncertainty = angle ? each.U_um_per_m : each.U_um;
-    table.add({each.what, html_value(value), html_number(angle ? each.limit_um_per_m : each.limit_um),
-               angle ? "µm/m" : "µm", bold(text_of(each.verdict))});
+    table.add({each.what, html_value(value),
+               html_number(angle ? each.limit_um_per_m : each.limit_um), angle ? "µm/m" : "µm",
+               bold(text_of(each.verdict))});
   }
   return table.html();
 }
@@ -144,8 +145,8 @@ std::vector<Html> warnings(const Analysis& analysis) {
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::inconsistent)
     out.push_back("The squareness of the fit and that of the run-out disagree, " +
-                  html_symbol("E_n") + " = " + html_number(angle->En, 2) + " > 1: " +
-                  angle->reason + ".");
+                  html_symbol("E_n") + " = " + html_number(angle->En, 2) +
+                  " > 1: " + angle->reason + ".");
   if (result.final)
     for (const UndeterminedDirection* direction : open_directions(*result.final)) {
       std::vector<std::string> names;
@@ -183,9 +184,10 @@ Html listed(const char* title, const std::vector<Html>& items) {
 HtmlSection html_verdict(const Analysis& analysis) {
   constexpr const char* kKinds[] = {"good", "plain", "warn", "bad"};  // as in Alarm
   const Summary summary = summary_of(analysis);
-  const Html badge = element(
-      "strong", {{"class", std::string("badge ") + kKinds[static_cast<std::size_t>(summary.alarm)]}},
-      summary.badge);
+  const Html badge =
+      element("strong",
+              {{"class", std::string("badge ") + kKinds[static_cast<std::size_t>(summary.alarm)]}},
+              summary.badge);
   return {"verdict", "Verdict",
           element("p", {{"class", "verdict"}}, badge + " " + in_sentence(summary.verdict)) +
               all_cards(analysis, summary) + parameters(analysis) + conformity(analysis.result) +

@@ -14,7 +14,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kHarmless = 0.1;       // of U: a shift that is none of the digits that matter
+constexpr double kHarmless = 0.1;        // of U: a shift that is none of the digits that matter
 constexpr std::size_t kFewLetters = 36;  // names that leave room for a sentence
 
 bool is_harmless(const Result& result) {
@@ -63,9 +63,9 @@ void say_verdict(const Analysis& analysis, Summary& out) {
     case TraceVerdict::nothing_missing:
       return say(Alarm::good, "Nothing missing", "the model explains the profiles down to noise");
     case TraceVerdict::explained:
-      return say(Alarm::good, "Explained",
-                 (few ? names + " was" : "what is named below was") +
-                     " missing and is in the model now");
+      return say(
+          Alarm::good, "Explained",
+          (few ? names + " was" : "what is named below was") + " missing and is in the model now");
     case TraceVerdict::ambiguous:
       if (is_harmless(analysis.result))
         return say(Alarm::plain, "Ambiguous, without harm",
@@ -74,8 +74,7 @@ void say_verdict(const Analysis& analysis, Summary& out) {
                  few ? names + " is missing: the data cannot tell which"
                      : "the data cannot tell which effect is missing");
     case TraceVerdict::not_identifiable:
-      return say(Alarm::bad, "Not identifiable",
-                 "the data cannot tell what made this form");
+      return say(Alarm::bad, "Not identifiable", "the data cannot tell what made this form");
     case TraceVerdict::unnamed:
       break;
   }
@@ -256,9 +255,8 @@ std::string residual_change(const std::optional<double>& before_um,
 std::vector<const UndeterminedDirection*> open_directions(const ModelResult& model) {
   std::vector<const UndeterminedDirection*> out;
   for (const UndeterminedDirection& direction : model.identifiability.unidentifiable)
-    if (!std::ranges::all_of(direction.combination, [](const auto& term) {
-          return fixed_by_convention(term.first);
-        }))
+    if (!std::ranges::all_of(direction.combination,
+                             [](const auto& term) { return fixed_by_convention(term.first); }))
       out.push_back(&direction);
   return out;
 }

@@ -237,9 +237,9 @@ std::string squareness_check(const SquarenessCheck& check) {
     value.expanded_uncertainty = U;
     return rad ? value_text(value, kMicroradian) + " µm/m" : std::string("none");
   };
-  std::string out = "Squareness by the fit: " + angle(check.fit_rad, check.fit_U_rad) +
-                    "; by the run-out, Eq. (21): " +
-                    angle(check.indirect_rad, check.indirect_U_rad) + ". ";
+  std::string out =
+      "Squareness by the fit: " + angle(check.fit_rad, check.fit_U_rad) +
+      "; by the run-out, Eq. (21): " + angle(check.indirect_rad, check.indirect_U_rad) + ". ";
   if (check.En) out += "E_n = " + number(*check.En, 2) + ": ";
   if (check.verdict == Consistency::consistent)
     out += "consistent (E_n is not above 1). ";
@@ -267,8 +267,8 @@ std::string crosscheck(const Crosscheck& checks) {
   for (const HeldOutCheck& check : checks.held_out)
     out += note(check.profile + ", held out: " + text(check.verdict) + " (chi-square " +
                 number(check.chi2, 3) + ", p = " + probability(check.p_value) + "), off by up to " +
-                size_text(check.largest_um, check.largest_urad) + " at " +
-                number(check.at_mm, 4) + " mm");
+                size_text(check.largest_um, check.largest_urad) + " at " + number(check.at_mm, 4) +
+                " mm");
   return out.empty() ? "" : heading("Cross-check") + out;
 }
 

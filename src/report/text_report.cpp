@@ -114,8 +114,7 @@ std::string value_of(const FittedParameter& p) {
 
 /// What the declared model gave, where that is another number.
 std::string declared_value(const Result& result, const FittedParameter& p) {
-  const FittedParameter* const before =
-      result.declared ? result.declared->find(p.name) : nullptr;
+  const FittedParameter* const before = result.declared ? result.declared->find(p.name) : nullptr;
   return before == nullptr || value_text(*before) == value_text(p) ? "" : value_text(*before);
 }
 
@@ -126,7 +125,8 @@ std::string model_heading(const ModelResult& model) {
                  size_text(model.rms_um, model.rms_urad) + " rms");
 }
 
-// --- stations, assumptions, tolerances, notes -----------------------------------------------------
+// --- stations, assumptions, tolerances, notes
+// -----------------------------------------------------
 
 std::string stations(const Result& result) {
   if (!result.final || !result.final->straightness) return "";
@@ -145,9 +145,9 @@ std::string stations(const Result& result) {
   table.add(std::move(deviation));
   table.add(std::move(U));
   return heading("Station heights from the line through the end points" +
-                 (count < all.size() ? " (" + std::to_string(count) + " of " +
-                                           std::to_string(all.size()) + ")"
-                                     : std::string())) +
+                 (count < all.size()
+                      ? " (" + std::to_string(count) + " of " + std::to_string(all.size()) + ")"
+                      : std::string())) +
          table.text();
 }
 
@@ -186,9 +186,9 @@ std::string tolerances(const Result& result) {
     value.value = angle ? each.value_um_per_m : each.value_um;
     value.expanded_uncertainty = angle ? each.U_um_per_m : each.U_um;
     const double limit = (angle ? each.limit_um_per_m : each.limit_um).value_or(NAN);
-    out += item("Tolerance of " + each.what + ": " + value_text(value) + ", limit " +
-                number(limit, 4) + (angle ? " µm/m: " : " µm: ") +
-                std::string(text_of(each.verdict)));
+    out +=
+        item("Tolerance of " + each.what + ": " + value_text(value) + ", limit " +
+             number(limit, 4) + (angle ? " µm/m: " : " µm: ") + std::string(text_of(each.verdict)));
   }
   return out.empty() ? "" : "\n" + out;
 }
@@ -200,8 +200,8 @@ std::vector<std::string> all_notes(const Analysis& analysis) {
   };
   if (analysis.trace)
     for (const LeftEffect& each : analysis.trace->left)
-      out.push_back(effect_title(each.effect) + " was accepted and left again: " +
-                    with_titles(each.reason));
+      out.push_back(effect_title(each.effect) +
+                    " was accepted and left again: " + with_titles(each.reason));
   add(analysis.result.notes);
   if (analysis.trace) add(analysis.trace->notes);
   if (analysis.result.final) add(analysis.result.final->notes);
@@ -267,14 +267,13 @@ std::string parameter_table(const Result& result, std::size_t most) {
 std::string text_report(const Analysis& analysis, const TextOptions& options) {
   const Result& result = analysis.result;
   std::string text = box(summary_of(analysis), options.page);
-  text += in_lines(first_lines(
-      lines_of(heading("slideway " + result.version +
-                       (result.title.empty() ? "" : ": " + result.title))),
-      2));
+  text += in_lines(first_lines(lines_of(heading("slideway " + result.version +
+                                                (result.title.empty() ? "" : ": " + result.title))),
+                               2));
   if (!options.full) return short_text(analysis, std::move(text));
   if (result.final)
-    text += model_heading(*result.final) +
-            parameter_table(result, result.final->parameters.size() + 1);
+    text +=
+        model_heading(*result.final) + parameter_table(result, result.final->parameters.size() + 1);
   text += stations(result) + tolerances(result) + full_text(analysis);
   std::string notes;
   for (const std::string& each : all_notes(analysis)) notes += note(each);

@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "slideway/base/text.hpp"
+#include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "slideway/trace/analysis_fields.hpp"
-#include "slideway/report/layout.hpp"
 #include "summary.hpp"
 #include "text_parts.hpp"
 
@@ -42,8 +42,8 @@ std::string round(const TraceRound& round, std::size_t index) {
                            round.after_rms_urad) +
            ", difference in BIC " + number(round.delta_bic, 3) + ", p " +
            (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value));
-  if (const std::string change = residual_change(round.before_holdout_rms_um,
-                                                 round.after_holdout_rms_um, {}, {});
+  if (const std::string change =
+          residual_change(round.before_holdout_rms_um, round.after_holdout_rms_um, {}, {});
       !change.empty())
     text += paragraph("     ", "on profiles left out of the fit " + change);
   for (const FittedParameter& p : round.parameters)

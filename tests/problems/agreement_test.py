@@ -148,13 +148,14 @@ class Agreement(unittest.TestCase):
         return rows
 
     def check_export(self, text, report):
-        final, curve = report["final"], report["final"]["straightness"]["curve"]
+        final = report["final"]
         for parameter in final["parameters"]:
             if "dbeta_xz = " in text and parameter["name"].startswith("squareness."):
                 line = text[text.index("dbeta_xz = "):].replace("+-", "±")
                 self.same(line, parameter)
         if "X\tEZX\n" not in text:
             return
+        curve = final["straightness"]["curve"]
         points = [tuple(map(float, line.split("\t")))
                   for line in text[text.index("X\tEZX\n") + 6:].splitlines()]
         self.assertAlmostEqual(points[0][0], curve["position_mm"][0], delta=1e-3)

@@ -291,7 +291,7 @@ class Page(unittest.TestCase):
 
     def test_squareness_stands_there_in_three_units(self):
         facts = self.browser.run("return document.querySelector('.facts').textContent")
-        for parameter in self.report["fit"]["parameters"]:
+        for parameter in self.report["final"]["parameters"]:
             if parameter["name"] == "squareness.dbeta_xz":
                 rad = parameter["value"]
         for value, unit in ((rad * 1e6, "µm/m"), (rad * 648000 / math.pi, "″")):

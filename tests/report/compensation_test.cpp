@@ -189,7 +189,8 @@ void expect_model(const std::map<double, double>& points, double squareness, dou
 
 TEST(Compensation, TablesAddUpToTheModelsHeightOfTheToolTip) {
   for (const auto& [lever, overhang] :
-       {std::pair{Lever::split, 0.0}, std::pair{Lever::split, 150.0}, std::pair{Lever::paper, 0.0}}) {
+       {std::pair{Lever::split, 0.0}, std::pair{Lever::split, 150.0},
+        std::pair{Lever::paper, 0.0}}) {
     SCOPED_TRACE(std::string(text_of(lever)) + " " + std::to_string(overhang));
     const bool paper = lever == Lever::paper;
     const auto at = [&, overhang = overhang](double x) { return paper ? x - kSpindle : overhang; };

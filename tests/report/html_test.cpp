@@ -14,8 +14,7 @@ TEST(Html, EscapesEveryTextAndAttribute) {
 }
 
 TEST(Html, NestsElementsWithoutEscapingThemAgain) {
-  EXPECT_EQ(element("td", "x < " + element("sup", "−4")).markup(),
-            "<td>x &lt; <sup>−4</sup></td>");
+  EXPECT_EQ(element("td", "x < " + element("sup", "−4")).markup(), "<td>x &lt; <sup>−4</sup></td>");
 }
 
 TEST(Html, ClosesWhatHoldsNothing) {

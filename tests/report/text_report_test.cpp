@@ -79,7 +79,8 @@ TEST(TextReport, IsAtMost40LinesHoweverMuchThereIsToSay) {
   Result result = sample_result();
   for (int i = 0; i < 60; ++i) {
     result.final->parameters.push_back(fitted("cup.sag_" + std::to_string(i), "A", "um", i, 0.1));
-    result.notes.push_back("note " + std::to_string(i) + " of many words that fill more than one "
+    result.notes.push_back("note " + std::to_string(i) +
+                           " of many words that fill more than one "
                            "line of the report for people");
     result.assumed.push_back({"profile.feed2.key_" + std::to_string(i), "0.0", "default"});
   }
@@ -126,7 +127,8 @@ TEST(TextReport, SaysWhereThePageIs) {
 
 TEST(TextReport, GivesStationHeightsOfASlide) {
   Result result = sample_result();
-  result.final->straightness->stations = {{0.0, 0.0, 0.0}, {103.1, -24.2112, 6.8}, {206.3, 0.0, 0.0}};
+  result.final->straightness->stations = {
+      {0.0, 0.0, 0.0}, {103.1, -24.2112, 6.8}, {206.3, 0.0, 0.0}};
   const std::string text = short_text(result);
   EXPECT_THAT(line_with(text, "E_ZX, µm"), HasSubstr("-24.2"));
   EXPECT_THAT(line_with(text, "± U, µm"), HasSubstr("6.8"));
@@ -223,8 +225,7 @@ TEST(TextReport, GivesChiSquareOnlyWhereUncertaintiesAreDeclared) {
   Result result = sample_result();
   EXPECT_THAT(full(result), Not(HasSubstr("chi-square")));
   result.final->noise.front().scaling = NoiseScaling::declared;
-  EXPECT_THAT(on_one_line(full(result)),
-              HasSubstr("chi-square 131 at 133 degrees of freedom"));
+  EXPECT_THAT(on_one_line(full(result)), HasSubstr("chi-square 131 at 133 degrees of freedom"));
 }
 
 TEST(TextReport, HasNoCrossCheckWhereThereIsNothingToCheck) {
