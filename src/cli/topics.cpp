@@ -17,6 +17,16 @@ struct Section {
 };
 
 // The keys of the problem file; a test compares them with those the reader accepts.
+/// Names and sentences of gates are literals: they end with a zero.
+Section trace_section() {
+  Section out{"[trace]",
+              "The closed loop. slideway help trace: the gates with their ranges and reasons.",
+              {{"candidates", "[\"all\"], or names of effects"},
+               {"max_effects", "how many may enter; default 3"}}};
+  for (const Gate& gate : gate_table()) out.keys.push_back({gate.name.data(), gate.decides.data()});
+  return out;
+}
+
 const std::vector<Section>& sections() {
   static const std::vector<Section> kSections{
       {"",
@@ -107,11 +117,7 @@ const std::vector<Section>& sections() {
         {"p_um", "p of Eq. (21)"},
         {"diameter_mm", "L of Eq. (21)"},
         {"standard_uncertainty_um", "of r + p"}}},
-      {"[trace]",
-       "The closed loop.",
-       {{"candidates", "[\"all\"], or names of effects"},
-        {"max_effects", "how many may enter; default 3"},
-        {"GATE", "a number that decides the verdict: slideway help trace lists all"}}},
+      trace_section(),
       {"[truth]",
        "What `simulate` makes the profiles from.",
        {{"seed", "of the noise; default 1"},

@@ -17,8 +17,8 @@ constexpr int kMostRounds = 6;
 void require_enough_data(const Model& model) {
   Eigen::Index values = 0, unknowns = model.amplitudes() + model.shapes();
   for (const Observation* observation : fitted_observations(model)) {
-    values += observation->values.size();
-    unknowns += observation->nuisances.cols();
+    values += observation->values.size() - observation->left_out();
+    unknowns += std::ssize(observation->nuisance_names);
   }
   if (values == 0) throw UsageError("no profile has role = \"fit\"");
   if (values < unknowns)

@@ -208,7 +208,7 @@ TEST_F(Fit, IsThatOfIdentifyWithoutRankingAndCrossCheck) {
 TEST_F(Fit, PrintsText) {
   const ProgramRun done = run({"fit", kFullTravel});
   EXPECT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_THAT(done.out, HasSubstr("squareness.dbeta_xz"));
+  EXPECT_THAT(done.out, HasSubstr("squareness Δβxz"));
   EXPECT_THAT(done.out, testing::Not(HasSubstr("Ranking")));
 }
 

@@ -59,7 +59,7 @@ TEST_F(Simulate, WritesProfilesAndAProblemThatIdentifyAccepts) {
   EXPECT_EQ(lines_of(contents(path("made/here/slow.csv"))).size(), 2001U);
   const ProgramRun done = run({"identify", "made/here/problem.toml", "--no-trace", "--json", "-"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  const nlohmann::json parameter = nlohmann::json::parse(done.out)["fit"]["parameters"].at(0);
+  const nlohmann::json parameter = nlohmann::json::parse(done.out)["final"]["parameters"].at(0);
   // What went in comes back; U is 95 %, twice that fails with a normal error by 6e-5.
   EXPECT_NEAR(parameter["value"].get<double>(), 2.8e-6,
               2.0 * parameter["expanded_uncertainty"].get<double>());
