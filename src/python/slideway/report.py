@@ -49,7 +49,7 @@ class Input:
 
     name: str
     file: str
-    """"arrays" for numbers from arrays"""
+    """arrays: the numbers did not come from a file"""
     format: str
     sha256: str
     kind: Literal["face", "slide"]
@@ -84,7 +84,7 @@ class Misclosure:
     difference_um: float | None
     """as the data stand"""
     closure_um: float | None
-    """null: nothing checks it"""
+    """none: nothing checks it"""
     standard_uncertainty_um: float | None
 
 
@@ -132,9 +132,9 @@ class Travel:
     slide_min_mm: float
     slide_max_mm: float
     spindle_position_mm: float | None
-    """null: no face was fitted"""
+    """none: no face was fitted"""
     overhang_mm: float | None
-    """null: no face was fitted, or faces of several overhangs"""
+    """none: no face was fitted, or faces of several overhangs"""
 
 
 @dataclass(frozen=True)
@@ -211,7 +211,7 @@ class Parameter:
     symbol: str
     standard_name: str
     value: float | None
-    """null: not determined"""
+    """none: not determined"""
     unit: str
     standard_uncertainty: float | None
     expanded_uncertainty: float | None
@@ -219,7 +219,7 @@ class Parameter:
     coverage_factor: float | None
     """Student's, for degrees_of_freedom"""
     degrees_of_freedom: float | None
-    """null beside a coverage_factor: infinitely many"""
+    """none beside a coverage_factor: infinitely many"""
     identifiable: bool
     at_bound: bool
 
@@ -402,7 +402,7 @@ class ModelResult:
     nuisances: list[Parameter]
     """levelling of the traces"""
     straightness: Straightness | None
-    """null: the model has none"""
+    """none: the model has none"""
     correlations: list[tuple[str, str, float]]
     """of the estimates, from 0.1 on"""
     identifiability: Identifiability
@@ -500,7 +500,7 @@ class Tried:
     rms_um: float | None
     parameters: list[Parameter]
     refused: str | None
-    """why it was not accepted; null: a rival"""
+    """why it was not accepted; none: a rival"""
 
 
 @dataclass(frozen=True)
@@ -581,7 +581,7 @@ class DetectionLimit:
     parameter: str
     unit: str
     value: float | None
-    """null: found at no size a workpiece has"""
+    """none: found at no size a workpiece has"""
     at: str
     by_shape: list[LimitAtShape]
 
@@ -594,7 +594,7 @@ class Trace:
     gates: dict[str, float]
     """the limits that were used"""
     fragile: Fragile | None
-    """null: no change of one gate within its range does"""
+    """none: no change of one gate within its range does"""
     rounds: list[Round]
     unnamed: Unnamed | None
     advice: list[str]
@@ -690,7 +690,7 @@ class WhatIf:
 
     profile: str
     corrected: str
-    """"": as measured; "all""""
+    """an effect; all; empty: as measured"""
     pv_um: float | None
     rms_um: float | None
     pv_urad: float | None
@@ -783,7 +783,7 @@ class Report:
     crosscheck: Crosscheck
     conformity: list[Conformity]
     trace: Trace | None
-    """the closed loop; null: it was not run"""
+    """the closed loop; none: it was not run"""
     notes: list[str]
     model: list[EffectInModel]
     setups: list[Setup]
