@@ -135,8 +135,8 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
       out.notes.push_back(
           "profile '" + observation.profile->name + "': " + std::to_string(observation.left_out()) +
           " of " + std::to_string(observation.values.size()) +
-          " low-band values are left out: more than half of each stands in a gap, or "
-          "it lies at a centre the tool's nose does not follow");
+          " low-band values are left out: they lie in a gap, within a groove of the spindle axis, "
+          "or where a tool's nose cannot follow");
   }
 }
 
