@@ -12,8 +12,9 @@ namespace slideway {
 inline const char* number_at(const char* first, const char* last, char decimal, double& value) {
   if (first != last && *first == '+' && (++first == last || *first == '-')) return nullptr;
   const fast_float::parse_options options(fast_float::chars_format::general, decimal);
-  const auto [stop, error] = fast_float::from_chars_advanced(first, last, value, options);
-  if (error != std::errc() || !std::isfinite(value)) return nullptr;
+  const auto result = fast_float::from_chars_advanced(first, last, value, options);
+  const char* const stop = result.ptr;
+  if (result.ec != std::errc() || !std::isfinite(value)) return nullptr;
   const auto is_underflow = [&] {
     const char* const digit = std::find_if(
         first, stop, [](char c) { return (c >= '1' && c <= '9') || c == 'e' || c == 'E'; });

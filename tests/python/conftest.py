@@ -43,4 +43,4 @@ def program():
 
 @pytest.fixture
 def program_json(program):
-    return lambda *arguments: json.loads(program(*arguments, "--json", "-"))
+    return lambda *arguments: json.loads(program(*arguments, "--curves", "--json", "-"))
