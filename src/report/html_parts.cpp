@@ -48,7 +48,8 @@ Html html_number(const std::optional<double>& value, int digits) {
 
 Html html_value(const QuantityValue& result, double unit) {
   const std::string text = value_text(result, unit);
-  return is_known(result) ? typeset(text) : Html(text);
+  const bool is_number = text.find_first_not_of("0123456789()+-.e ±") == std::string::npos;
+  return is_number ? typeset(text) : Html(text);
 }
 
 Html html_probability(double p) {
