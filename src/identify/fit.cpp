@@ -140,7 +140,7 @@ FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes)
     const bool is_fitted = observation.profile->role == Role::fit;
     const Noise& noise = found.noise[is_fitted ? fitted++ : 0];
     more |=
-        leave_out(observation, undescribed_values(model, found.estimate, observation,
+        leave_out(observation, undescribed_values(model, observation,
                                                   steep_curve(model, found.estimate, observation),
                                                   noise.standard_deviation()));
   }

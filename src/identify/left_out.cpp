@@ -58,14 +58,21 @@ ValueIndices values_at_axis(const Observation& observation, const Machine& machi
   return radii.within(0.0, radii.width);
 }
 
-ValueIndices undescribed_values(const Model& model, const Estimate& estimate,
-                                const Observation& observation, const Eigen::VectorXd& curve,
-                                double noise) {
+ValueIndices undescribed_values(const Model& model, const Observation& observation,
+                                const Eigen::VectorXd& curve, double noise) {
   const Setup& setup = observation.profile->setup;
   if (setup.kind != Kind::face) return {};
   const Radii radii(observation, model.machine);
-  ValueIndices out = radii.within(
+  return radii.within(
       0.0, std::max(radii.width, lost_radius(radii, observation, model.gates, curve, noise)));
+}
+
+ValueIndices values_beside_steps(const Model& model, const Estimate& estimate,
+                                 const Observation& observation) {
+  const Setup& setup = observation.profile->setup;
+  if (setup.kind != Kind::face) return {};
+  const Radii radii(observation, model.machine);
+  ValueIndices out;
   for (const ModelTerm& term : model.terms)
     for (std::size_t s = 0; s < term.effect->shapes().size(); ++s) {
       if (!term.effect->shapes()[s].stepwise || !term.effect->applies_to(setup)) continue;

@@ -171,15 +171,20 @@ Eigen::MatrixXd undescribed_columns(const Model& model, const Solution& fit,
   Eigen::Index first = 0;
   for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
     const Observation& observation = *fit.linear.observations[i];
-    const Eigen::VectorXd curve = steep_curve(model, fit.estimate, observation) +
-                                  suspect.segment(first, observation.values.size());
-    const ValueIndices undescribed =
-        undescribed_values(model, fit.estimate, observation, curve, noise[i].standard_deviation());
+    Eigen::VectorXd curve = steep_curve(model, fit.estimate, observation);
+    if (suspect.size() > 0) curve += suspect.segment(first, curve.size());
     const ValueIndices known = left_out_values(observation);
-    for (const Eigen::Index value : undescribed)
-      if (!std::ranges::binary_search(known, value)) rows.push_back(first + value);
+    const auto add = [&](const ValueIndices& values) {
+      for (const Eigen::Index value : values)
+        if (!std::ranges::binary_search(known, value)) rows.push_back(first + value);
+    };
+    add(undescribed_values(model, observation, curve, noise[i].standard_deviation()));
+    add(values_beside_steps(model, fit.estimate, observation));
     first += observation.values.size();
   }
+  std::ranges::sort(rows);
+  const auto [last, end] = std::ranges::unique(rows);
+  rows.erase(last, end);
   Eigen::MatrixXd out =
       Eigen::MatrixXd::Zero(first + fit.linear.prior_rows.rows(), std::ssize(rows));
   for (std::size_t j = 0; j < rows.size(); ++j) out(rows[j], static_cast<Eigen::Index>(j)) = 1.0;
@@ -189,8 +194,8 @@ Eigen::MatrixXd undescribed_columns(const Model& model, const Solution& fit,
 SearchRound search_round(const Model& model, const Solution& fit, const Candidates& candidates,
                          std::optional<Calibration>& calibration,
                          const std::function<void(double)>& progress) {
-  const Eigen::MatrixXd none(0, 0);
-  auto [data, findings] = whiten_beside(model, fit, none, candidates);
+  const Eigen::MatrixXd beside = undescribed_columns(model, fit, fit.noise);
+  auto [data, findings] = whiten_beside(model, fit, beside, candidates);
   SearchRound out{std::move(data), {}};
   if (candidates.empty()) return out;
   if (!calibration) calibration = calibrate(out.data, candidates, model.gates, progress);
@@ -201,7 +206,7 @@ SearchRound search_round(const Model& model, const Solution& fit, const Candidat
   const Refined& best = out.tested.front().refined;
   const Eigen::MatrixXd undescribed =
       undescribed_columns(model, fit, out.data.noise(), best.columns * best.projection.amplitudes);
-  if (undescribed.cols() == 0) return out;
+  if (undescribed.cols() == beside.cols()) return out;
   std::tie(out.data, findings) = whiten_beside(model, fit, undescribed, candidates);
   out.tested = test_best(model, fit, out.data, findings, *calibration);
   return out;

@@ -7,6 +7,7 @@
 #include "outcome.hpp"
 #include "slideway/base/text.hpp"
 #include "structure.hpp"
+#include "widening.hpp"
 
 namespace slideway {
 namespace {
@@ -87,10 +88,27 @@ class Selector {
   std::string reason_against(const Effects& effects, std::size_t which) {
     const Effects others = all_but(effects, which);
     std::string why = worsens(extender_.summary(others), extender_.summary(effects));
+    if (why.empty()) why = too_small(effects, which, nullptr);
     if (why.empty() && effects[which].candidate->term.effect->is_carriage() &&
         !outdoes_process(effects, which))
       why = "a smooth process without a name fits as well";
     return why;
+  }
+
+  /// The gate of the size, by the uncertainty that the report prints.
+  /// @param unnamed  what structure without a name adds to it; null: nothing
+  std::string too_small(const Effects& effects, std::size_t which, const Widening* unnamed) {
+    const FittedModel& fitted = extender_.extended(effects);
+    const auto term =
+        std::ranges::find(fitted.model.terms, effects[which].name(), &ModelTerm::name);
+    if (!term->effect->has_one_size() || effects[which].candidate->raises_degree) return "";
+    const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term->first_parameter);
+    const double more = unnamed ? unnamed->variance(row) : 0.0;
+    const double size =
+        std::abs(fitted.fit.parameters.values[term->first_parameter]) /
+        std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more));
+    if (!(size < gates_.size)) return "";
+    return "its size is only " + significant(size, 2) + " of its standard uncertainties";
   }
 
   /// Whether an effect says more than a process without a name would in its place.
@@ -175,9 +193,13 @@ class Selector {
       return "beside the others it gains too little";
     }
     std::string why = reason_against(out_.effects, i);
-    if (why.empty() && left_over().significant(gates_) && !outdoes_process(out_.effects, i))
-      why = "a smooth process without a name fits as well";
-    return why;
+    if (!why.empty() || !left_over().significant(gates_)) return why;
+    if (!outdoes_process(out_.effects, i)) return "a smooth process without a name fits as well";
+    const FittedModel& fitted = extender_.extended(out_.effects);
+    const SearchRound& last = extender_.search(out_.effects);
+    const Widening unnamed = widening(
+        fitted.model, fitted.fit, find_structure(fitted.model, last.data, fitted.fit.linear), last);
+    return too_small(out_.effects, i, &unnamed);
   }
 
   void name_rivals() {

@@ -45,7 +45,7 @@ TEST(Unnamed, WidensTheStraightnessAsItsParameter) {
   const Straightness& found = *analysis.result.final->straightness;
   ASSERT_EQ(found.reason, "");
   const StraightnessCurve& curve = found.curve;
-  const double rounding = 1e-6 * curve.expanded_uncertainty_um[0];
+  const double rounding = 1e-4 * *std::ranges::max_element(curve.expanded_uncertainty_um);
   for (std::size_t i = 0; i < curve.position_mm.size(); ++i)
     EXPECT_NEAR(curve.expanded_uncertainty_um[i], share * std::abs(curve.deviation_um[i]),
                 rounding);

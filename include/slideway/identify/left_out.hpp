@@ -14,17 +14,19 @@ using ValueIndices = std::vector<Eigen::Index>;
 /// value of the spindle axis, where the tool leaves the face.
 ValueIndices values_at_axis(const Observation& observation, const Machine& machine);
 
-/// Values that the columns of a fitted model do not describe:
-/// - further out than values_at_axis(), where effects that are steep at the centre are steeper than
-///   the tool's nose follows: a nose of radius ρ cuts a slope z' lower by ρ z'²/2 (first order),
-///   and that is more than the noise;
-/// - next to a step of the model: the step of each cut lies between two grooves of its own.
+/// These, and those further out where effects that are steep at the centre are steeper than the
+/// tool's nose follows: a nose of radius ρ cuts a slope z' lower by ρ z'²/2 (first order), and that
+/// is more than the noise.
 ///
 /// @param curve  low band of what is steep at the centre
 /// @param noise  standard deviation of a low-band value
-ValueIndices undescribed_values(const Model& model, const Estimate& estimate,
-                                const Observation& observation, const Eigen::VectorXd& curve,
-                                double noise);
+ValueIndices undescribed_values(const Model& model, const Observation& observation,
+                                const Eigen::VectorXd& curve, double noise);
+
+/// Values next to a step of the model: the step of each cut lies between two grooves of its own.
+/// They tell where the step is, so a fit keeps them; a search for what is left does not.
+ValueIndices values_beside_steps(const Model& model, const Estimate& estimate,
+                                 const Observation& observation);
 
 /// Low band of the effects of the model that are steep at the centre.
 Eigen::VectorXd steep_curve(const Model& model, const Estimate& estimate,
