@@ -34,7 +34,8 @@ Evidence evidence(const Model& model, const Solution& fit) {
       has_priors ? analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance)
                  : fit.rank;
   const Uncertainty uncertainty =
-      has_priors ? assess(data, compressed, fit.noise, rank.basis, fit.uncertainty.inflation) : fit.uncertainty;
+      has_priors ? assess(data, compressed, fit.noise, rank.basis, fit.uncertainty.inflation)
+                 : fit.uncertainty;
 
   // w = image * (amplitudes, shapes) is determined with that covariance; what is left of it at the
   // estimate is what the priors pulled.

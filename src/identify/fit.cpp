@@ -56,7 +56,7 @@ bool is_linear_least_squares(const Model& model) {
 
 /// Iterative refinement: what rounding has left of the normal equations is solved for once more.
 Compressed refined(const Model& model, Solution& fit) {
-  constexpr double kRounding = 1e-15;
+  constexpr double kLastDigits = 1e-15;
   constexpr int kMostSteps = 3;
   Compressed compressed = compress(fit.linear, fit.noise);
   fit.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
@@ -70,7 +70,8 @@ Compressed refined(const Model& model, Solution& fit) {
       fit.estimate.nuisances[i].head(compressed.profiles[i].levelling()) +=
           compressed.profiles[i].levelled(change);
     settle_residuals(model, fit.estimate, fit.linear);
-    if (!(size > kRounding * compressed.scale.cwiseProduct(fit.estimate.amplitudes).norm())) break;
+    if (!(size > kLastDigits * compressed.scale.cwiseProduct(fit.estimate.amplitudes).norm()))
+      break;
     compressed = compress(fit.linear, fit.noise);
   }
   return compressed;

@@ -81,8 +81,7 @@ ValueIndices values_beside_steps(const Model& model, const Estimate& estimate,
       out.insert(out.end(), beside.begin(), beside.end());
     }
   std::ranges::sort(out);
-  const auto [first, last] = std::ranges::unique(out);
-  out.erase(first, last);
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 

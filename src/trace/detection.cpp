@@ -105,6 +105,7 @@ struct Case {
 struct Design {
   const FittedModel& fitted;
   const Whitened& data;
+  const Whitened fit_data;  // under the noise that the report's uncertainties rest on
   double least_gain;
   double deviate;  // normal deviate of the detection power
 
@@ -148,7 +149,12 @@ std::optional<double> limit_in(const Design& design, const Whitened& data, const
 std::optional<double> limit_at(const Design& design, const Case& one) {
   const auto& [model, fit] = design.fitted;
   std::optional<double> limit = limit_in(design, design.data, one);
-  if (!one.candidate.term.effect->description().steep_at_centre) return limit;
+  if (!limit) return limit;
+  if (!one.candidate.term.effect->description().steep_at_centre) {
+    const double uncertainty =
+        1.0 / design.fit_data.outside(one.columns * one.amplitudes(1.0)).norm();
+    return std::max(*limit, (design.gates().size + design.deviate) * uncertainty);
+  }
   Eigen::Index lost = 0;
   for (int round = 0; limit && round < kMostRounds; ++round) {
     const Eigen::MatrixXd undescribed =
@@ -203,10 +209,11 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
 }  // namespace
 
 std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Whitened& data,
+                                             const std::vector<Noise>& fit_noise,
                                              const Candidates& candidates,
                                              const Calibration& calibration) {
   const Gates& gates = fitted.model.gates;
-  const Design design{fitted, data,
+  const Design design{fitted, data, Whitened(fitted.fit.linear, fit_noise),
                       std::max(gates.delta_bic, calibration.threshold(gates.significance)),
                       student_limit(kNormal, 1.0 - gates.detection_power)};
   std::vector<std::optional<DetectionLimit>> limits(candidates.size());

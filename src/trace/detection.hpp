@@ -8,10 +8,12 @@ namespace slideway {
 
 /// For every candidate the size that is found with the probability Gates::detection_power, in the
 /// unit of its first parameter: its gain must pass what the search finds in noise, delta_bic and
-/// size. None for a candidate the model spans or all but spans (found only beyond a hundred times
-/// the range of a profile), or whose size is not one number. For an effect of several shapes the
-/// first runs from end to end and the others stand in the middle of what the search covers.
+/// size, in the search and under the noise of the fit. None for a candidate the model spans or all
+/// but spans (found only beyond a hundred times the range of a profile), or whose size is not one
+/// number. For an effect of several shapes the first runs from end to end and the others stand in
+/// the middle of what the search covers.
 std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Whitened& data,
+                                             const std::vector<Noise>& fit_noise,
                                              const Candidates& candidates,
                                              const Calibration& calibration);
 

@@ -53,7 +53,7 @@ class NonFinite {
     if (any) say();
   }
   void leave_out(std::vector<std::pair<std::string, double>>& numbers) {
-    for (auto& [name, number] : numbers) inside("." + name, [&] { leave_out(number); });
+    for (auto& entry : numbers) inside("." + entry.first, [&] { leave_out(entry.second); });
   }
   void leave_out(ParameterCorrelation& pair) { leave_out(std::get<double>(pair)); }
   template <typename T>

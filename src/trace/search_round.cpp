@@ -183,8 +183,7 @@ Eigen::MatrixXd undescribed_columns(const Model& model, const Solution& fit,
     first += observation.values.size();
   }
   std::ranges::sort(rows);
-  const auto [last, end] = std::ranges::unique(rows);
-  rows.erase(last, end);
+  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
   Eigen::MatrixXd out =
       Eigen::MatrixXd::Zero(first + fit.linear.prior_rows.rows(), std::ssize(rows));
   for (std::size_t j = 0; j < rows.size(); ++j) out(rows[j], static_cast<Eigen::Index>(j)) = 1.0;

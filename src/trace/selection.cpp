@@ -88,7 +88,6 @@ class Selector {
   std::string reason_against(const Effects& effects, std::size_t which) {
     const Effects others = all_but(effects, which);
     std::string why = worsens(extender_.summary(others), extender_.summary(effects));
-    if (why.empty()) why = too_small(effects, which, nullptr);
     if (why.empty() && effects[which].candidate->term.effect->is_carriage() &&
         !outdoes_process(effects, which))
       why = "a smooth process without a name fits as well";
@@ -193,6 +192,7 @@ class Selector {
       return "beside the others it gains too little";
     }
     std::string why = reason_against(out_.effects, i);
+    if (why.empty()) why = too_small(out_.effects, i, nullptr);
     if (!why.empty() || !left_over().significant(gates_)) return why;
     if (!outdoes_process(out_.effects, i)) return "a smooth process without a name fits as well";
     const FittedModel& fitted = extender_.extended(out_.effects);

@@ -133,8 +133,8 @@ class Loop {
     if (!extender_.calibration()) return;
     const FittedModel& base = extender_.base();
     out.detection_limits =
-        detection_limits(base, {base.fit.linear, data.noise()}, extender_.candidates_beside({}),
-                         *extender_.calibration());
+        detection_limits(base, {base.fit.linear, data.noise()}, fitted.fit.noise,
+                         extender_.candidates_beside({}), *extender_.calibration());
   }
 
   const Problem& problem_;

@@ -232,7 +232,7 @@ std::vector<DetectionLimit> limits_at(const Bench& bench, const Dictionary& dict
   Candidates candidates;
   for (const Candidate& candidate : dictionary.candidates) candidates.push_back(&candidate);
   const Whitened data = bench.white(first_order(0.4, innovation));
-  return detection_limits({bench.model, bench.fitted}, data, candidates, {20.0, 2.0});
+  return detection_limits({bench.model, bench.fitted}, data, data.noise(), candidates, {20.0, 2.0});
 }
 
 TEST(DetectionLimit, IsTheSizeWhoseGainPassesTheGateInFourOfFive) {

@@ -182,9 +182,8 @@ TEST(SeveralShapes, GridIsTheProductOfBothAndBounded) {
 
 TEST(SeveralShapes, LimitsRunOverTheFirstShapeWithTheOthersInTheMiddle) {
   const Searched searched(kBump, 0.0, 5.0, 1.0);
-  const auto limits =
-      detection_limits({searched.model, searched.fitted}, searched.data, {&searched.candidate},
-                       {20.0, 2.0});
+  const auto limits = detection_limits({searched.model, searched.fitted}, searched.data,
+                                       searched.data.noise(), {&searched.candidate}, {20.0, 2.0});
   ASSERT_EQ(limits.size(), 1U);
   EXPECT_THAT(limits[0].at, ::testing::HasSubstr("position_mm = "));
   EXPECT_THAT(limits[0].at, ::testing::HasSubstr(", width_mm = "));
