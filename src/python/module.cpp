@@ -91,9 +91,9 @@ py::tuple analysed(const py::object& problem,
   {
     const py::gil_scoped_release unlocked;
     const Problem read = given.read();
-    const Analysis analysis =
-        analyse(read, read_profiles(read, traces),
-                {ranks_only ? Scope::rank : Scope::identify, closes_loop, true, true}, let_interrupt);
+    const Analysis analysis = analyse(
+        read, read_profiles(read, traces),
+        {ranks_only ? Scope::rank : Scope::identify, closes_loop, true, true}, let_interrupt);
     json = json_report(analysis);
     report = text_report(analysis);
   }

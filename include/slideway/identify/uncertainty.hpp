@@ -24,10 +24,9 @@ struct Spread {
 ///
 /// with the long-run variance s_i of profile i's noise: the second part allows for weights that
 /// come from the same data (Kenward and Roger 1997, for columns slow against the noise; Meier 1953
-/// for a weighted mean). All is multiplied by the inflation for structure the model lacks (FitNoise).
-/// Degrees of freedom by Satterthwaite's formula (GUM G.4.1) from the
-/// uncertainty of the noise's parameters, and no more from a profile than it has effective
-/// observations.
+/// for a weighted mean). All is multiplied by the inflation for structure the model lacks
+/// (FitNoise). Degrees of freedom by Satterthwaite's formula (GUM G.4.1) from the uncertainty of
+/// the noise's parameters, and no more from a profile than it has effective observations.
 struct Uncertainty {
   Eigen::MatrixXd basis;                     // (A + S) by r
   Eigen::MatrixXd covariance;                // r by r, of w, before the inflation
