@@ -21,16 +21,16 @@ std::vector<Source> sources_of(const Solution& fit) {
     const bool declared = fit.noise[i].declared;
     out.push_back({"noise of " + fit.linear.observations[i]->profile->name +
                        (declared ? ", as declared" : ", estimated from the residual"),
-                   declared ? EvaluationType::B : EvaluationType::A,
+                   declared ? EvaluationType::type_b : EvaluationType::type_a,
                    fit.uncertainty.information[i]});
   }
   if (const Eigen::MatrixXd rows = fit.linear.prior_rows * fit.rank.basis; rows.rows() > 0)
-    out.push_back({"priors of the problem file", EvaluationType::B, rows.transpose() * rows});
+    out.push_back({"priors of the problem file", EvaluationType::type_b, rows.transpose() * rows});
   if (std::ranges::any_of(fit.noise, &Noise::is_estimated))
-    out.push_back({"noise that comes from the same data", EvaluationType::A,
+    out.push_back({"noise that comes from the same data", EvaluationType::type_a,
                    fit.uncertainty.covariance - Eigen::MatrixXd::Identity(r, r)});
   if (const double inflation = fit.uncertainty.inflation; inflation > 1.0)
-    out.push_back({"structure the model lacks", EvaluationType::A,
+    out.push_back({"structure the model lacks", EvaluationType::type_a,
                    (inflation - 1.0) * fit.uncertainty.covariance});
   return out;
 }
@@ -53,7 +53,7 @@ std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit,
         budget.lines.push_back({source.name, source.type, std::sqrt(std::max(variance, 0.0))});
       }
       if (more)
-        budget.lines.push_back({"structure without a name", EvaluationType::A,
+        budget.lines.push_back({"structure without a name", EvaluationType::type_a,
                                 std::sqrt(more(fit.parameters.jacobian.row(index)))});
       out.push_back(std::move(budget));
     }

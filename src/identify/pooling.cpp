@@ -257,15 +257,15 @@ PooledMachine pool(const std::string& machine, const std::vector<PoolItem>& item
   std::vector<MatrixXd> parts;
   std::vector<std::optional<double>> part_times;
   CarriageParameters parameters;
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (parts.empty()) parameters = carriage_parameters(items[i]);
-    if (parameters.names.empty() || carriage_parameters(items[i]) != parameters) {
-      out.left_out.push_back(items[i].id);
+  for (const PoolItem& item : items) {
+    if (parts.empty()) parameters = carriage_parameters(item);
+    if (parameters.names.empty() || carriage_parameters(item) != parameters) {
+      out.left_out.push_back(item.id);
       continue;
     }
-    out.items.push_back({items[i].id});
-    parts.push_back(carriage_rows(items[i]));
-    part_times.push_back(items[i].time);
+    out.items.push_back({item.id});
+    parts.push_back(carriage_rows(item));
+    part_times.push_back(item.time);
   }
   if (parts.empty()) return out;
 

@@ -85,8 +85,8 @@ ReferenceLine minimum_zone(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
 class Locus {
  public:
   Locus(const Model& model, const ModelTerm& term, const Solution& fit, const Reported& reported,
-        Setup setup)
-      : model_(model), term_(term), fit_(fit), reported_(reported), setup_(std::move(setup)) {}
+        const Setup& setup)
+      : model_(model), term_(term), fit_(fit), reported_(reported), setup_(setup) {}
 
   /// f_j at slide coordinates x; on a face x is turned into the radius.
   [[nodiscard]] Eigen::MatrixXd columns(const Eigen::VectorXd& x) const {

@@ -20,7 +20,7 @@ Eigen::MatrixXd information_under(const Noise& noise, const Observation& observa
   Eigen::MatrixXd rows(columns.rows(), m + r);
   rows << observation.nuisances, columns;
   noise.whiten(rows);
-  const Eigen::MatrixXd gram = rows.transpose() * rows;
+  Eigen::MatrixXd gram = rows.transpose() * rows;
   if (m == 0) return gram;
   const Eigen::MatrixXd cross = gram.topRightCorner(m, r);
   return gram.bottomRightCorner(r, r) -
@@ -98,7 +98,7 @@ Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
   }
   const Eigen::MatrixXd of_columns = basis * out.covariance * basis.transpose();
   for (const ProfileTriangle& profile : compressed.profiles)
-    out.nuisance_covariances.push_back(inflation * profile.levelling_covariance(of_columns));
+    out.nuisance_covariances.emplace_back(inflation * profile.levelling_covariance(of_columns));
   return out;
 }
 

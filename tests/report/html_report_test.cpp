@@ -57,7 +57,8 @@ Analysis sample_analysis() {
   final.rms_um = 0.05;
   declared.parameters[0] = fitted("squareness.dbeta_xz", "Δβxz", "rad", 3.0e-6, 1e-8);
   final.parameters[0] = fitted("squareness.dbeta_xz", "Δβxz", "rad", 2.8e-6, 1e-8);
-  final.budget = {{"squareness.dbeta_xz", "rad", {{"noise of feed2", EvaluationType::A, 1.1e-9}}}};
+  final.budget = {
+      {"squareness.dbeta_xz", "rad", {{"noise of feed2", EvaluationType::type_a, 1.1e-9}}}};
   return out;
 }
 

@@ -135,7 +135,7 @@ struct Straightness {
   std::string reason;  // why there is none; then all else is empty
 };
 
-enum class EvaluationType { A, B };  // GUM 3.3.4: by statistics, or otherwise
+enum class EvaluationType { type_a, type_b };  // GUM 3.3.4: by statistics, or otherwise
 template <>
 inline constexpr std::array<std::string_view, 2> kTexts<EvaluationType>{"A", "B"};
 
@@ -143,7 +143,7 @@ inline constexpr std::array<std::string_view, 2> kTexts<EvaluationType>{"A", "B"
 /// parameter add up to that of its standard uncertainty (GUM 5.1.2).
 struct BudgetLine {
   std::string source;  // "noise of feed2, estimated from the residual"
-  EvaluationType type = EvaluationType::A;
+  EvaluationType type = EvaluationType::type_a;
   double standard_uncertainty = 0.0;
 };
 
