@@ -151,7 +151,7 @@ std::vector<Html> warnings(const Analysis& analysis) {
     for (const UndeterminedDirection* direction : open_directions(*result.final)) {
       std::vector<std::string> names;
       for (const auto& [name, factor] : direction->combination) names.push_back(name);
-      out.push_back("These data do not determine " + joined(names) + " one by one.");
+      out.emplace_back("These data do not determine " + joined(names) + " one by one.");
     }
   for (const InputSummary& in : result.inputs) {
     std::vector<std::string> parts;

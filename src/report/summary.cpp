@@ -19,10 +19,10 @@ constexpr std::size_t kFewLetters = 36;  // names that leave room for a sentence
 
 bool is_harmless(const Result& result) {
   const std::optional<Shift> shift = largest_shift(result);
-  return shift && std::abs(shift->in_U) <= kHarmless;
+  return shift && std::abs(shift->in_expanded_uncertainties) <= kHarmless;
 }
 
-std::string in_U(double shift) {
+std::string in_expanded_uncertainties(double shift) {
   return number(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " U";  // no -0
 }
 
@@ -137,7 +137,8 @@ void say_missing(const Analysis& analysis, Summary& out) {
   out.has_missing = true;
   out.missing = found(*analysis.trace);
   if (const auto shift = largest_shift(analysis.result))
-    out.missing = "moved " + shift->what + " by " + in_U(shift->in_U) + ": " + out.missing;
+    out.missing = "moved " + shift->what + " by " +
+                  in_expanded_uncertainties(shift->in_expanded_uncertainties) + ": " + out.missing;
 }
 
 std::string next_step(const Analysis& analysis) {
@@ -220,7 +221,7 @@ std::optional<Shift> largest_shift(const Result& result) {
                            const QuantityValue& after) {
     if (!is_known(after) || !before.value || !(*after.expanded_uncertainty > 0.0)) return;
     const double shift = (*before.value - *after.value) / *after.expanded_uncertainty;
-    if (!most || std::abs(shift) > std::abs(most->in_U)) most = {what, shift};
+    if (!most || std::abs(shift) > std::abs(most->in_expanded_uncertainties)) most = {what, shift};
   };
   for (const FittedParameter& before : result.declared->parameters)
     if (const FittedParameter* const after = result.final->find(before.name))

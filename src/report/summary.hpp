@@ -48,7 +48,7 @@ std::string value_of(const Assumption& assumption);
 /// The declared quantity that the missing effects had moved most.
 struct Shift {
   std::string what;   // for people
-  double in_U = 0.0;  // declared minus final, in expanded uncertainties of the final
+  double in_expanded_uncertainties = 0.0;  // declared minus final, in expanded uncertainties of the final
 };
 
 /// None where the loop has added nothing or nothing can be compared.
