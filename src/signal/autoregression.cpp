@@ -88,39 +88,6 @@ void Autoregression::colour(Eigen::Ref<Eigen::MatrixXd> rows) const {
   }
 }
 
-// Z'Z, where Z, the transposed inverse of whiten() on X, is made from its end, a block of rows at a
-// time: row t, before it is scaled, is x_t + Σ_j φ_j z_(t+j), with φ of the predictor of t + j.
-Eigen::MatrixXd Autoregression::gram(const Eigen::Ref<const Eigen::MatrixXd>& x) const {
-  constexpr Eigen::Index kRows = 256;  // that stay in the cache
-  constexpr Eigen::Index kAtOnce = 4;  // columns
-  const Eigen::Index p = order(), width = (x.cols() + kAtOnce - 1) / kAtOnce * kAtOnce;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> z;
-  z.setZero(kRows + p, width);  // p rows that come after the block
-  std::vector<double> phi(predictor(static_cast<int>(p)).begin(),
-                          predictor(static_cast<int>(p)).end());
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(width, width);
-  for (Eigen::Index first = x.rows(); first > 0;) {
-    const Eigen::Index count = std::min(kRows, first);
-    first -= count;
-    z.middleRows(count, p) = z.topRows(p).eval();
-    z.topLeftCorner(count, x.cols()) = x.middleRows(first, count);
-    for (Eigen::Index t = count; t-- > 0;) {
-      for (Eigen::Index j = 1; first + t < p && j <= p; ++j)
-        phi[j - 1] = predictor(static_cast<int>(std::min(first + t + j, p)))[j - 1];
-      for (Eigen::Index column = 0; column < width; column += kAtOnce) {
-        double* row = z.row(t).data() + column;
-        Eigen::Map<Eigen::Array<double, kAtOnce, 1>> now(row);
-        for (Eigen::Index j = p; j > 0; --j)
-          now += phi[j - 1] * Eigen::Map<Eigen::Array<double, kAtOnce, 1>>(row + j * width);
-      }
-    }
-    for (Eigen::Index t = 0; first == 0 && t < std::min(p, count); ++t)
-      z.row(t) *= std::sqrt(relative_variance(static_cast<int>(t)));
-    out.noalias() += z.topRows(count).transpose() * z.topRows(count);
-  }
-  return out.topLeftCorner(x.cols(), x.cols());
-}
-
 double Autoregression::log_determinant(Eigen::Index n) const {
   double sum = 0.0;
   for (int m = 0; m < std::min<Eigen::Index>(n, order()); ++m)

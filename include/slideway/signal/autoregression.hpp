@@ -39,9 +39,6 @@ class Autoregression {
   /// The inverse of whiten(), in place: independent rows become this noise.
   void colour(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
-  /// X' R X, where R is the covariance of the noise with unit innovations.
-  [[nodiscard]] Eigen::MatrixXd gram(const Eigen::Ref<const Eigen::MatrixXd>& x) const;
-
   /// ln det of the correlation structure: Σ_t ln(relative_variance) over n rows.
   [[nodiscard]] double log_determinant(Eigen::Index n) const;
 
