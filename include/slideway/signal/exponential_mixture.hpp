@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace slideway {
+
+/// Stationary noise of several memories at once: white noise, and noises whose autocorrelation
+/// decays exponentially (Ornstein-Uhlenbeck). A value is the mean over a block of length 1, so the
+/// covariance of two values at a distance d is
+///
+///   w + Σ_k v_k 2 L_k (1 - L_k (1 - exp(-1/L_k)))     d = 0
+///   Σ_k v_k (2 L_k sinh(1 / (2 L_k)))² exp(-d/L_k)    d >= 1
+///
+/// Lengths and distances are in low-band values, variances in the square of the values' unit.
+/// Lengths a constant factor apart with v_k = L_k^(α-1) make noise with a spectrum near f^-α.
+struct ExponentialMixture {
+  static constexpr int kTerms = 6;
+  using Terms = Eigen::Array<double, kTerms, 1>;
+
+  double white = 1.0;               // w
+  Terms lengths = Terms::Ones();    // L_k
+  Terms variances = Terms::Zero();  // v_k
+
+  [[nodiscard]] bool is_white() const { return (variances == 0.0).all(); }
+  [[nodiscard]] double variance() const;
+  [[nodiscard]] double covariance(double distance) const;  // REQUIRES distance >= 1
+
+  /// Variance of the mean of n neighbours.
+  [[nodiscard]] double variance_of_mean(double n) const;
+
+  /// Spectral density: Σ of the covariance over all distances times cos(2π f d).
+  [[nodiscard]] double spectrum(double cycles_per_value) const;
+
+  /// Lengths from the first to the last, a constant factor apart.
+  static Terms spread_lengths(double first, double last);
+};
+
+/// The covariance of n values as L D L', L unit lower triangular: in O(n), for a sum of
+/// exponentials is semiseparable (Foreman-Mackey et al. 2017, Astron. J. 154:220, Eqs. 31-48).
+class MixtureFactor {
+ public:
+  /// Values at neighbouring places.
+  MixtureFactor(const ExponentialMixture& noise, Eigen::Index n);
+
+  /// @param stations  rising, at least 1 apart; what lies in a gap is no value
+  MixtureFactor(const ExponentialMixture& noise, std::span<const double> stations);
+
+  [[nodiscard]] Eigen::Index rows() const { return deviation_.size(); }
+
+  /// Rows made independent with unit variance, (L sqrt(D))^-1 rows, and the inverse. In place.
+  /// REQUIRES rows() rows.
+  void whiten(Eigen::Ref<Eigen::MatrixXd> rows) const;
+  void colour(Eigen::Ref<Eigen::MatrixXd> rows) const;
+
+  [[nodiscard]] double log_determinant() const;
+
+ private:
+  enum class Direction { whiten, colour };
+  void factorise(const ExponentialMixture& noise);
+  [[nodiscard]] ExponentialMixture::Terms decay(Eigen::Index row) const;
+  template <int Columns, Direction direction>
+  void filter(double* first, Eigen::Index stride) const;
+  template <Direction direction>
+  void filter(Eigen::Ref<Eigen::MatrixXd> rows) const;
+
+  using Terms = ExponentialMixture::Terms;
+  bool white_;
+  Terms rates_, amplitudes_;
+  std::vector<double> steps_;  // to the value before; empty: all 1
+  Eigen::Matrix<double, ExponentialMixture::kTerms, Eigen::Dynamic> gains_;
+  Eigen::ArrayXd deviation_;  // sqrt(D)
+};
+
+}  // namespace slideway
