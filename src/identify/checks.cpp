@@ -92,13 +92,14 @@ void check_plausibility(const Model& model, const Solution& fit, ModelResult& ou
 void explain_scaling(const Solution& fit, ModelResult& out) {
   const bool estimated =
       std::ranges::any_of(fit.noise, [](const Noise& noise) { return !noise.declared; });
-  const bool correlated = std::ranges::any_of(
-      fit.noise, [](const Noise& noise) { return noise.correlation.order() > 0; });
+  const bool correlated =
+      std::ranges::any_of(fit.noise, [](const Noise& noise) { return !noise.is_white(); });
   std::string text = "uncertainties rest on the declared standard uncertainties, taken as white";
   if (estimated)
     text = std::string("uncertainties rest on the residual, ") +
-           (correlated ? "taken as correlated noise (autoregressive, restricted likelihood)"
-                       : "taken as white noise") +
+           (correlated
+                ? "taken as correlated noise (white, texture, long memory; restricted likelihood)"
+                : "taken as white noise") +
            "; coverage factors from Student's t for 95.45 %";
   if (const double inflation = fit.uncertainty.inflation; inflation > 1.0)
     text += "; multiplied by " + significant(std::sqrt(inflation), 2) +
@@ -106,15 +107,19 @@ void explain_scaling(const Solution& fit, ModelResult& out) {
   out.notes.push_back(std::move(text));
 }
 
-void explain_long_correlation(const Solution& fit, ModelResult& out) {
+void explain_noise(const Solution& fit, ModelResult& out) {
+  constexpr double kFew = 8.0;  // effective values: the memory is as long as the trace
   for (std::size_t i = 0; i < fit.noise.size(); ++i) {
-    const Profile& profile = *fit.linear.observations[i]->profile;
-    const auto n = static_cast<double>(fit.linear.observations[i]->values.size());
-    if (fit.noise[i].correlation.long_run_ratio() >= n)
-      out.notes.push_back("profile '" + profile.name +
-                          "': the residual is correlated over the whole trace; all its values "
-                          "count as one observation, and a slow error that the model lacks would "
-                          "look the same");
+    const std::string profile = "profile '" + fit.linear.observations[i]->profile->name + "'";
+    const Noise& noise = fit.noise[i];
+    if (!noise.is_white() && noise.effective_values() < kFew)
+      out.notes.push_back(profile +
+                          ": the residual is correlated over the whole trace; a slow error that "
+                          "the model lacks would look the same");
+    if (noise.unlike_sisters)
+      out.notes.push_back(profile + " differs: its noise is " +
+                          significant(*noise.unlike_sisters, 2) +
+                          " times that of the profiles beside it");
   }
 }
 
@@ -124,7 +129,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   if (const std::optional<double> gap = neglected_height(model, fit))
     out.neglected_um = *gap / kMicrometre;
   explain_scaling(fit, out);
-  explain_long_correlation(fit, out);
+  explain_noise(fit, out);
   check_plausibility(model, fit, out);
   for (const Observation& observation : model.observations) {
     if (observation.low_band.resampled())

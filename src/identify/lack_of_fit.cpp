@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "slideway/base/distribution.hpp"
 #include "slideway/identify/identifiability.hpp"
@@ -63,6 +64,7 @@ LackOfFit lack_of_fit(const Linearisation& linear, const std::vector<Noise>& noi
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(total, total), inside(total, basis.cols());
   Eigen::VectorXd products(total);
   double mean = 0.0, variance = 0.0;
+  std::map<std::size_t, double> by_memory;  // profiles of one pool are wrong about it together
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const SlowProducts slow(*linear.observations[i], noise[i], linear.columns[i],
                             linear.residuals[i], counts[i]);
@@ -83,11 +85,14 @@ LackOfFit lack_of_fit(const Linearisation& linear, const std::vector<Noise>& noi
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const double share = static_cast<double>(rank * counts[i]) / static_cast<double>(total);
     const double spread = std::min(noise[i].log_long_run_variance(), kMostSpread);
+    const double size_spread = std::min(noise[i].log_size_variance(), spread);
     const double own = share * std::exp(0.5 * spread);
     const double below = noise[i].is_estimated() ? std::pow(gates.noise_extrapolation, 2) : 0.0;
     mean += own;
-    variance += own * own * (std::expm1(spread) + below);
+    variance += own * own * (std::expm1(size_spread) + below);
+    by_memory[noise[i].pool] += own * std::sqrt(std::expm1(spread - size_spread));
   }
+  for (const auto& [pool, common] : by_memory) variance += common * common;
   variance += 2.0 * mean * mean / static_cast<double>(rank);
   return {gamma_tail(mean * mean / variance, found * mean / variance), found / mean};
 }

@@ -18,9 +18,9 @@
 namespace slideway {
 namespace {
 
-constexpr Eigen::Index kLeastSpare = 6;  // values beyond what is free, else the whole residual
-constexpr double kRounding = 1e-13;      // of the values: no noise, only rounding
-constexpr int kLeastOrder = 1;           // BIC on the fine band alone overlooks a short correlation
+constexpr Eigen::Index kLeastSpare = 6;   // values beyond what is free, else the whole residual
+constexpr double kRounding = 1e-13;       // of the values: no noise, only rounding
+constexpr double kSameStep = 0.1;         // relative; values as far apart have the same memory
 constexpr Eigen::Index kNeighbours = 15;  // on either side, for the level of a spectrum
 
 double rms(const Eigen::VectorXd& values) {
@@ -181,7 +181,7 @@ std::optional<LinearProfile> fine_band(const Linearisation& linear, std::size_t 
   rest -= basis * (basis.transpose() * rest).eval();
   if (rest.norm() <= kRounding * observation.values.norm()) return std::nullopt;
   return LinearProfile{std::move(basis), Eigen::MatrixXd(n, 0), std::move(rest),
-                       observation.profile->standard_uncertainty, kLeastOrder};
+                       observation.profile->standard_uncertainty};
 }
 
 /// Whether two profiles read one cut at the same places.
@@ -211,24 +211,60 @@ std::optional<LinearProfile> from_repeats(const Linearisation& linear, std::size
   Eigen::MatrixXd basis = orthonormal(observation.nuisances);
   deviation -= basis * (basis.transpose() * deviation).eval();
   return LinearProfile{std::move(basis), Eigen::MatrixXd(deviation.size(), 0), std::move(deviation),
-                       observation.profile->standard_uncertainty, kLeastOrder};
+                       observation.profile->standard_uncertainty};
 }
 
-/// The noise of one profile beside the slow band: that of the fine band, or that of repeats if it
-/// is larger in the long run. Repeats hold no texture, and the fine band no slow noise.
-std::optional<Noise> beside(const Linearisation& linear, std::size_t i, const Gates& gates,
-                            const std::vector<Eigen::MatrixXd>& suspect) {
-  const auto estimated = [&](const LinearProfile& profile) {
-    return estimate_noise({&profile, 1}, Eigen::MatrixXd(0, 0), gates).front();
+/// What distinguishes instruments, as far as profiles tell: kind, quantity and low band.
+bool share_memory(const Observation& a, const Observation& b) {
+  const auto step = [](const Observation& each) {
+    return (each.profile->setup.last_mm - each.profile->setup.first_mm) /
+           static_cast<double>(each.values.size());
   };
-  std::optional<Noise> out;
-  if (const auto fine = fine_band(linear, i, gates, suspect)) out = estimated(*fine);
-  if (const auto repeats = from_repeats(linear, i)) {
-    Noise noise = estimated(*repeats);
-    if (!out || noise.long_run_deviation() > out->long_run_deviation()) out = std::move(noise);
+  const LowBandOptions &s = a.low_band.options(), &t = b.low_band.options();
+  return a.profile->setup.kind == b.profile->setup.kind &&
+         a.profile->setup.quantity == b.profile->setup.quantity && s.wavelet == t.wavelet &&
+         s.level == t.level && std::abs(step(a) - step(b)) <= kSameStep * step(a);
+}
+
+/// Index of the first profile that each shares its memory with.
+std::vector<std::size_t> pools_of(const Linearisation& linear) {
+  std::vector<std::size_t> out;
+  for (const Observation* observation : linear.observations) {
+    std::size_t first = 0;
+    while (first < out.size() && !share_memory(*linear.observations[first], *observation)) ++first;
+    out.push_back(first);
   }
   return out;
 }
+
+/// The rows of the values that are not left out.
+LinearProfile kept(LinearProfile profile, const Observation& observation) {
+  profile.values = observation.values.size();
+  if (observation.left_out() == 0) return profile;
+  const std::vector<Eigen::Index> left_out = left_out_values(observation);
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index i = 0; i < profile.values; ++i)
+    if (!std::ranges::binary_search(left_out, i)) rows.push_back(i);
+  profile.stations.assign(rows.begin(), rows.end());
+  profile.nuisances = orthonormal(profile.nuisances(rows, Eigen::all));
+  profile.columns = profile.columns(rows, Eigen::all).eval();
+  profile.residual = profile.residual(rows).eval();
+  return profile;
+}
+
+/// One estimate of the noise, from a part of some residuals.
+struct PartialEstimate {
+  std::vector<std::size_t> which;
+  std::vector<LinearProfile> profiles;
+
+  void add(std::size_t i, const std::optional<LinearProfile>& profile, const Observation& of,
+           std::size_t pool) {
+    if (!profile) return;
+    which.push_back(i);
+    profiles.push_back(kept(*profile, of));
+    profiles.back().pool = pool;
+  }
+};
 
 /// White, of the size of a residual that is only rounding.
 Noise rounding_noise(const Observation& observation, const Eigen::VectorXd& residual,
@@ -236,9 +272,9 @@ Noise rounding_noise(const Observation& observation, const Eigen::VectorXd& resi
   const Eigen::Index spare = std::max<Eigen::Index>(residual.size() - taken, 1);
   const double size = std::sqrt(residual.squaredNorm() / static_cast<double>(spare));
   const std::optional<double>& declared = observation.profile->standard_uncertainty;
-  Noise noise;
-  noise.innovation =
-      declared.value_or(std::max(size, 1e-17 * std::max(rms(observation.values), 1.0)));
+  Noise noise = Noise::white(
+      declared.value_or(std::max(size, 1e-17 * std::max(rms(observation.values), 1.0))),
+      observation.values.size());
   noise.declared = declared.has_value();
   return noise;
 }
@@ -249,8 +285,8 @@ void from_whole_residuals(const Linearisation& linear, const std::vector<std::si
   const Compressed compressed = compress(linear, noise);
   const Eigen::MatrixXd basis =
       analyse_rank(compressed.triangle, compressed.scale, gates.rank_tolerance).basis;
-  std::vector<LinearProfile> profiles;
-  std::vector<std::size_t> measured;
+  const std::vector<std::size_t> pools = pools_of(linear);
+  PartialEstimate part;
   for (const std::size_t i : which) {
     const Observation& observation = *linear.observations[i];
     const Eigen::VectorXd& residual = linear.residuals[i];
@@ -258,13 +294,15 @@ void from_whole_residuals(const Linearisation& linear, const std::vector<std::si
       noise[i] = rounding_noise(observation, residual, basis.cols() + observation.nuisances.cols());
       continue;
     }
-    measured.push_back(i);
-    profiles.push_back({observation.nuisances, linear.columns[i] * basis, residual,
-                        observation.profile->standard_uncertainty});
+    part.add(i,
+             LinearProfile{observation.nuisances, linear.columns[i] * basis, residual,
+                           observation.profile->standard_uncertainty},
+             observation, pools[i]);
   }
   const Eigen::MatrixXd priors = linear.prior_rows * basis;
-  const std::vector<Noise> estimated = estimate_noise(profiles, priors.transpose() * priors, gates);
-  for (std::size_t i = 0; i < measured.size(); ++i) noise[measured[i]] = estimated[i];
+  const std::vector<Noise> estimated =
+      estimate_noise(part.profiles, priors.transpose() * priors, gates);
+  for (std::size_t i = 0; i < estimated.size(); ++i) noise[part.which[i]] = estimated[i];
 }
 
 }  // namespace
@@ -290,8 +328,8 @@ std::vector<Noise> first_noise(const Model& model) {
         observation->values -
         observation->nuisances * fitted_nuisances(*observation, observation->values);
     const std::optional<double>& declared = observation->profile->standard_uncertainty;
-    Noise& noise = out.emplace_back();
-    noise.innovation = declared.value_or(rms(rest) > 0.0 ? rms(rest) : 1.0);
+    Noise& noise = out.emplace_back(
+        Noise::white(declared.value_or(rms(rest) > 0.0 ? rms(rest) : 1.0), rest.size()));
     noise.declared = declared.has_value();
   }
   return out;
@@ -299,18 +337,36 @@ std::vector<Noise> first_noise(const Model& model) {
 
 std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
                                 const std::vector<Eigen::MatrixXd>& suspect) {
-  std::vector<Noise> out(linear.observations.size());
-  std::vector<char> whole(out.size(), 0);
-  parallel_for(out.size(), [&](std::size_t i) {
-    if (std::optional<Noise> noise = beside(linear, i, gates, suspect))
-      out[i] = std::move(*noise);
-    else
-      whole[i] = 1, out[i].innovation = std::max(rms(linear.residuals[i]), 1e-300);
+  const std::size_t count = linear.observations.size();
+  std::vector<std::optional<LinearProfile>> fine(count), repeats(count);
+  parallel_for(count, [&](std::size_t i) {
+    fine[i] = fine_band(linear, i, gates, suspect);
+    repeats[i] = from_repeats(linear, i);
   });
-  std::vector<std::size_t> rest;
-  for (std::size_t i = 0; i < whole.size(); ++i)
-    if (whole[i] != 0) rest.push_back(i);
-  if (!rest.empty()) from_whole_residuals(linear, rest, gates, out);
+  // Noises from different parts of the residuals have no memory in common.
+  const std::vector<std::size_t> pools = pools_of(linear);
+  PartialEstimate beside, instrument;
+  for (std::size_t i = 0; i < count; ++i) {
+    beside.add(i, fine[i], *linear.observations[i], pools[i]);
+    instrument.add(i, repeats[i], *linear.observations[i], pools[i] + count);
+  }
+  std::vector<Noise> out(count);
+  std::vector<std::size_t> whole;
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i] = Noise::white(std::max(rms(linear.residuals[i]), 1e-300), linear.residuals[i].size());
+    if (!fine[i] && !repeats[i]) whole.push_back(i);
+  }
+  if (!whole.empty()) from_whole_residuals(linear, whole, gates, out);
+  const Eigen::MatrixXd no_priors(0, 0);
+  std::vector<Noise> found = estimate_noise(beside.profiles, no_priors, gates);
+  for (std::size_t k = 0; k < found.size(); ++k) out[beside.which[k]] = std::move(found[k]);
+  // Repeats hold no texture, and the fine band no slow noise: the larger in the long run.
+  found = estimate_noise(instrument.profiles, no_priors, gates);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    Noise& noise = out[instrument.which[k]];
+    if (!fine[instrument.which[k]] || found[k].long_run_deviation() > noise.long_run_deviation())
+      noise = std::move(found[k]);
+  }
   return out;
 }
 

@@ -5,20 +5,13 @@
 
 namespace slideway {
 
-double effective_values(const Noise& noise, Eigen::Index values) {
-  const auto n = static_cast<double>(values);
-  return n / std::min(noise.correlation.long_run_ratio(), n);  // the trace has no more
-}
-
 Reported::Reported(const Solution& solution, const MoreVariance& more)
     : solution_(solution), more_(more) {
   const auto is_declared = [](const Noise& noise) { return noise.declared; };
   if (solution.linear.prior_rows.rows() > 0 || std::ranges::any_of(solution.noise, is_declared))
     return;
   most_freedom_ = 0.0;
-  for (std::size_t i = 0; i < solution.noise.size(); ++i)
-    *most_freedom_ +=
-        effective_values(solution.noise[i], solution.linear.observations[i]->values.size());
+  for (const Noise& noise : solution.noise) *most_freedom_ += noise.effective_values();
 }
 
 Spread Reported::spread(const Eigen::RowVectorXd& row) const {

@@ -6,10 +6,6 @@
 
 namespace slideway {
 
-/// How many independent values tell as much of a smooth parameter as so many with that noise do:
-/// n σ² / (long-run variance), at least 1.
-double effective_values(const Noise& noise, Eigen::Index values);
-
 /// Numbers of a solution as a report has them. Every uncertainty that is reported is made here, so
 /// that what widens one widens all.
 class Reported {

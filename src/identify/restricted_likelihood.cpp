@@ -5,77 +5,98 @@
 #include <cmath>
 
 namespace slideway {
+namespace {
 
-Autoregression correlation_of(const Eigen::VectorXd& parameters) {
-  std::vector<double> partial(parameters.size() - 1);
-  for (std::size_t j = 0; j < partial.size(); ++j)
-    partial[j] = std::tanh(std::clamp(parameters[j], -kLargestAtanh, kLargestAtanh));
-  return Autoregression(partial);
-}
+constexpr double kLeastFreedom = 0.5;  // below: rounding
 
-WhitenedProducts::WhitenedProducts(const ColumnParts& columns, int max_order)
-    : head_(rows_of(columns, 0, max_order)) {
-  const Eigen::MatrixXd tail = rows_of(columns, columns.front().rows() - max_order, max_order);
-  products_.assign(max_order + 1, std::vector<Eigen::MatrixXd>(max_order + 1));
-  products_[0] = lagged_grams(columns, max_order);
-  for (int a = 1; a <= max_order; ++a)
-    for (int b = a; b <= max_order; ++b)
-      products_[a][b] = products_[a - 1][b - 1] +
-                        head_.row(max_order - a).transpose() * head_.row(max_order - b) -
-                        tail.row(max_order - a).transpose() * tail.row(max_order - b);
-  for (int a = 0; a <= max_order; ++a)  // they only come in pairs
-    for (int b = a + 1; b <= max_order; ++b) products_[a][b] += products_[a][b].transpose().eval();
-}
-
-Eigen::MatrixXd WhitenedProducts::under(const Autoregression& noise) const {
-  const int max_order = static_cast<int>(head_.rows());
-  const int p = noise.order();
-  std::vector<double> filter(p + 1, 1.0);
-  for (int j = 1; j <= p; ++j) filter[j] = -noise.predictor(p)[j - 1];
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(head_.cols(), head_.cols());
-  for (int a = 0; a <= p; ++a) {
-    out += filter[a] * filter[a] * products_[a][a];
-    for (int b = a + 1; b <= p; ++b) out += filter[a] * filter[b] * products_[a][b];
+/// ln σ where ν - rss / σ² + (ln σ - mean) / likeness² = 0, by Newton's method: the left side
+/// rises.
+double settled(double log_size, double freedom, double square, double mean, double likeness) {
+  const double tightness = 1.0 / (likeness * likeness);
+  log_size = 0.5 * std::log(square / freedom);
+  for (int step = 0; step < 50; ++step) {
+    const double in_units = square * std::exp(-2.0 * log_size);
+    const double change =
+        (freedom - in_units + tightness * (log_size - mean)) / (2.0 * in_units + tightness);
+    log_size -= std::clamp(change, -1.0, 1.0);
+    if (std::abs(change) < 1e-12) break;
   }
-  for (int t = 0; t < max_order; ++t) {
-    const int m = std::min(t, p);
-    Eigen::RowVectorXd row = head_.row(t);
-    for (int j = 1; j <= m; ++j) row -= noise.predictor(m)[j - 1] * head_.row(t - j);
-    out += row.transpose() * row / noise.relative_variance(m);
-  }
-  return out;
+  return log_size;
 }
 
-RestrictedLikelihood::RestrictedLikelihood(const LinearProfile& profile, int max_order)
-    : n_(profile.residual.size()),
-      m_(profile.nuisances.cols()),
-      r_(profile.columns.cols()),
-      products_({profile.nuisances, profile.columns, profile.residual}, max_order) {}
-
-Eigen::MatrixXd RestrictedLikelihood::information(const Eigen::VectorXd& parameters,
-                                                  double* cost) const {
-  const Autoregression noise = correlation_of(parameters);
-  const double log_variance = 2.0 * parameters[parameters.size() - 1];
-  Eigen::MatrixXd gram = products_.under(noise) * std::exp(-log_variance);
-  double own = static_cast<double>(n_) * log_variance + noise.log_determinant(n_);
-  if (m_ > 0) {
-    const Eigen::LLT<Eigen::MatrixXd> nuisance(gram.topLeftCorner(m_, m_));
-    if (nuisance.info() != Eigen::Success) own = INFINITY;
-    own += 2.0 * nuisance.matrixLLT().diagonal().array().log().sum();
-    const Eigen::MatrixXd cross = nuisance.matrixL().solve(gram.topRightCorner(m_, r_ + 1));
-    gram.bottomRightCorner(r_ + 1, r_ + 1) -= cross.transpose() * cross;
-  }
-  if (cost) *cost = own;
-  return gram.bottomRightCorner(r_ + 1, r_ + 1);
+Eigen::MatrixXd joint_information(std::span<const ProfileInformation> profiles,
+                                  const Eigen::MatrixXd& rest, const Eigen::VectorXd& log_sizes) {
+  Eigen::MatrixXd joint = rest;
+  for (std::size_t i = 0; i < profiles.size(); ++i)
+    joint += profiles[i].gram * std::exp(-2.0 * log_sizes[static_cast<Eigen::Index>(i)]);
+  return joint;
 }
 
-double RestrictedLikelihood::operator()(const Eigen::VectorXd& parameters,
-                                        const Eigen::MatrixXd& rest) const {
-  double own = 0.0;
-  const Eigen::LLT<Eigen::MatrixXd> joint(information(parameters, &own) + rest);
-  if (joint.info() != Eigen::Success || !std::isfinite(own)) return INFINITY;
+}  // namespace
+
+ProfileInformation::ProfileInformation(const LinearProfile& profile,
+                                       const ExponentialMixture& covariance) {
+  const Eigen::Index n = profile.residual.size(), m = profile.nuisances.cols();
+  const Eigen::Index r = profile.columns.cols();
+  const MixtureFactor factor = profile.stations.empty()
+                                   ? MixtureFactor(covariance, n)
+                                   : MixtureFactor(covariance, profile.stations);
+  Eigen::MatrixXd rows(n, m + r + 1);
+  rows << profile.nuisances, profile.columns, profile.residual;
+  factor.whiten(rows);
+  gram.setZero(m + r + 1, m + r + 1);
+  gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  freedom = static_cast<double>(n - m);
+  log_determinants = factor.log_determinant();
+  if (m == 0) return;
+  const Eigen::LLT<Eigen::MatrixXd> nuisance(gram.topLeftCorner(m, m));
+  if (nuisance.info() != Eigen::Success) log_determinants = INFINITY;
+  log_determinants += 2.0 * nuisance.matrixLLT().diagonal().array().log().sum();
+  const Eigen::MatrixXd cross = nuisance.matrixL().solve(gram.topRightCorner(m, r + 1));
+  gram = (gram.bottomRightCorner(r + 1, r + 1) - cross.transpose() * cross).eval();
+}
+
+double restricted_cost(std::span<const ProfileInformation> profiles, const Eigen::MatrixXd& rest,
+                       const Eigen::VectorXd& log_sizes) {
+  double cost = 0.0;
+  for (std::size_t i = 0; i < profiles.size(); ++i)
+    cost += profiles[i].log_determinants +
+            2.0 * profiles[i].freedom * log_sizes[static_cast<Eigen::Index>(i)];
+  const Eigen::LLT<Eigen::MatrixXd> joint(joint_information(profiles, rest, log_sizes));
+  if (joint.info() != Eigen::Success || !std::isfinite(cost)) return INFINITY;
+  const Eigen::Index r = rest.cols() - 1;
   const Eigen::VectorXd diagonal = joint.matrixLLT().diagonal();
-  return own + 2.0 * diagonal.head(r_).array().log().sum() + diagonal[r_] * diagonal[r_];
+  return cost + 2.0 * diagonal.head(r).array().log().sum() + diagonal[r] * diagonal[r];
+}
+
+FittedSizes fit_sizes(std::span<const ProfileInformation> profiles, const Eigen::MatrixXd& rest,
+                      double likeness, Eigen::VectorXd log_sizes) {
+  constexpr int kMostRounds = 30;
+  constexpr double kSettled = 1e-6;  // of ln σ
+  const auto count = static_cast<Eigen::Index>(profiles.size());
+  const Eigen::Index r = rest.cols() - 1;
+  FittedSizes out{std::move(log_sizes), Eigen::VectorXd::Ones(count)};
+  for (int round = 0; round < kMostRounds; ++round) {
+    const Eigen::MatrixXd joint = joint_information(profiles, rest, out.log_sizes);
+    const Eigen::LLT<Eigen::MatrixXd> root(joint.topLeftCorner(r, r));
+    Eigen::VectorXd change(r + 1);
+    change << -root.solve(joint.topRightCorner(r, 1)), 1.0;
+    const Eigen::VectorXd before = out.log_sizes;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const ProfileInformation& own = profiles[static_cast<std::size_t>(i)];
+      const double taken =
+          root.solve(own.gram.topLeftCorner(r, r)).trace() * std::exp(-2.0 * before[i]);
+      out.freedom[i] = std::max(own.freedom - taken, kLeastFreedom);
+      const double square = std::max((own.gram * change).dot(change), 1e-300);
+      out.log_sizes[i] = settled(before[i], out.freedom[i], square, before.mean(),
+                                 count > 1 ? likeness : INFINITY);
+    }
+    if ((out.log_sizes - before).lpNorm<Eigen::Infinity>() < kSettled) break;
+  }
+  const double unlike = (out.log_sizes.array() - out.log_sizes.mean()).square().sum();
+  out.cost = restricted_cost(profiles, rest, out.log_sizes) + unlike / (likeness * likeness);
+  return out;
 }
 
 }  // namespace slideway

@@ -11,6 +11,7 @@
 namespace slideway {
 namespace {
 
+constexpr int kMemoryParameters = 2;  // size and length, or size and slope
 constexpr double kWorthNaming = 0.1;  // smallest |correlation| listed
 
 bool is_slope(const Observation& observation) {
@@ -115,20 +116,18 @@ void add_noise(const Solution& fit, ModelResult& out) {
                          noise.declared    ? NoiseScaling::declared
                          : noise.overruled ? NoiseScaling::refuted
                                            : NoiseScaling::estimated,
-                         noise.correlation.order()};
+                         !noise.is_white(), noise.unlike_sisters};
     set_size(observation, noise.standard_deviation() * std::sqrt(n) / per_sample(observation),
              summary.standard_deviation_um, summary.standard_deviation_urad);
-    summary.effective_observations = effective_values(noise, observation.values.size());
-    summary.correlation_mm =
-        noise.correlation.order() > 0 ? n / summary.effective_observations * step : 0.0;
+    summary.effective_observations = noise.effective_values();
+    summary.correlation_mm = !noise.is_white() ? n / summary.effective_observations * step : 0.0;
     Eigen::MatrixXd whitened = fit.linear.residuals[i];
-    noise.correlation.whiten(whitened);
-    whitened /= noise.innovation;
+    noise.whiten(whitened);
     out.chi_square += whitened.squaredNorm();
     const int lags = static_cast<int>(std::clamp(n / 5.0, 1.0, 20.0));
     if (n > 2.0 * lags)
       summary.ljung_box_p = ljung_box_p_value({whitened.data(), static_cast<std::size_t>(n)}, lags,
-                                              noise.correlation.order());
+                                              noise.is_white() ? 0 : kMemoryParameters);
     out.observations += static_cast<std::size_t>(n);
     out.effective_observations += summary.effective_observations;
     out.degrees_of_freedom += n - static_cast<double>(observation.nuisances.cols());

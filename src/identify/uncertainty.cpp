@@ -10,16 +10,15 @@
 namespace slideway {
 namespace {
 
-constexpr Eigen::Index kLarge = 1 << 14;  // low-band values that are worth a second thread
 constexpr double kInfinite = 1e6;  // degrees of freedom: above it k is 2, and they are rounding
 
 /// Information of one profile on w under another noise, its nuisances eliminated.
-Eigen::MatrixXd information_under(const Noise& noise, const Observation& observation,
+Eigen::MatrixXd information_under(const ExponentialMixture& noise, const Observation& observation,
                                   const Eigen::MatrixXd& columns) {
   const Eigen::Index m = observation.nuisances.cols(), r = columns.cols();
   Eigen::MatrixXd rows(columns.rows(), m + r);
   rows << observation.nuisances, columns;
-  noise.whiten(rows);
+  MixtureFactor(noise, rows.rows()).whiten(rows);
   Eigen::MatrixXd gram = rows.transpose() * rows;
   if (m == 0) return gram;
   const Eigen::MatrixXd cross = gram.topRightCorner(m, r);
@@ -28,32 +27,49 @@ Eigen::MatrixXd information_under(const Noise& noise, const Observation& observa
              gram.topLeftCorner(m, m).completeOrthogonalDecomposition().solve(cross);
 }
 
-/// How the covariance of w moves with the noise of one profile: against the information.
-Uncertainty::NoiseEffect noise_effect(const Noise& noise, const Observation& observation,
-                                      const Eigen::MatrixXd& columns,
-                                      const Eigen::MatrixXd& information) {
-  constexpr double kStep = 1e-3;  // of atanh π
-  Uncertainty::NoiseEffect out;
-  out.covariance = noise.covariance;
-  const Eigen::VectorXd at = noise.parameters();
-  const auto count = static_cast<std::size_t>(at.size() - 1);
-  out.derivatives.resize(count + 1);
-  const auto differentiate = [&](std::size_t j) {
-    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(at.size(), std::ptrdiff_t(j));
-    out.derivatives[j] = (information_under(noise.at(at - step), observation, columns) -
-                          information_under(noise.at(at + step), observation, columns)) /
-                         (2.0 * kStep);
-  };
-  if (columns.rows() < kLarge) {
-    for (std::size_t j = 0; j < count; ++j) differentiate(j);
-  } else {
-    parallel_for(count, differentiate);
-  }
-  out.derivatives.back() = 2.0 * information;  // by ln σ
-  const auto n = static_cast<double>(columns.rows());
-  const double effective = n / std::min(noise.correlation.long_run_ratio(), n);
-  out.degrees_of_freedom = std::max(1.0, effective - information.trace());
+/// The covariance of w under each noise that the residuals of one pool allow.
+std::vector<Uncertainty::AllowedNoise> allowed_noises(const std::vector<std::size_t>& members,
+                                                      const std::vector<Noise>& noise,
+                                                      const Linearisation& linear,
+                                                      const Eigen::MatrixXd& basis,
+                                                      const Uncertainty& at_best) {
+  const std::size_t count = noise[members.front()].alternatives.size();
+  std::vector<Uncertainty::AllowedNoise> out(count);
+  parallel_for(count > 1 ? count : 0, [&](std::size_t g) {
+    Eigen::MatrixXd total = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
+    for (const std::size_t i : members)
+      total += information_under(noise[i].alternatives[g].covariance, *linear.observations[i],
+                                 linear.columns[i] * basis) -
+               at_best.information[i];
+    out[g] = {noise[members.front()].alternatives[g].probability,
+              total.completeOrthogonalDecomposition().pseudoInverse()};
+  });
+  if (count == 1) out.clear();
   return out;
+}
+
+/// The estimated profiles by their pool.
+std::vector<std::vector<std::size_t>> pools_of(const std::vector<Noise>& noise) {
+  std::vector<std::vector<std::size_t>> out;
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    if (!noise[i].is_estimated()) continue;
+    out.resize(std::max(out.size(), noise[i].pool + 1));
+    out[noise[i].pool].push_back(i);
+  }
+  std::erase_if(out, [](const auto& pool) { return pool.empty(); });
+  return out;
+}
+
+/// Variance of ln(variance of c w) over the noises of a pool.
+double log_spread(const std::vector<Uncertainty::AllowedNoise>& allowed,
+                  const Eigen::RowVectorXd& c) {
+  double mean = 0.0, square = 0.0;
+  for (const auto& [probability, covariance] : allowed) {
+    const double value = std::log((c * covariance * c.transpose()).value());
+    mean += probability * value;
+    square += probability * value * value;
+  }
+  return std::max(square - mean * mean, 0.0);
 }
 
 }  // namespace
@@ -62,17 +78,16 @@ Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
   const Eigen::RowVectorXd c = row * basis;
   const double variance = (c * covariance * c.transpose()).value();
   Spread spread{std::sqrt(std::max(inflation * variance, 0.0)), std::nullopt};
-  double spread_of_variance = 0.0;
-  for (const NoiseEffect& effect : noise) {
-    Eigen::VectorXd gradient(effect.derivatives.size());
-    for (std::size_t j = 0; j < effect.derivatives.size(); ++j)
-      gradient[j] = (c * effect.derivatives[j] * c.transpose()).value();
-    const double share = (c * information[effect.observation] * c.transpose()).value();
-    spread_of_variance += std::max(gradient.dot(effect.covariance * gradient),
-                                   2.0 * share * share / effect.degrees_of_freedom);
+  if (!(variance > 0.0)) return spread;
+  double spread_of_log = 0.0;
+  for (const std::vector<AllowedNoise>& pool : allowed) spread_of_log += log_spread(pool, c);
+  for (std::size_t i = 0; i < size_freedom.size(); ++i) {
+    if (size_freedom[i] == 0.0) continue;
+    const double share = (c * information[i] * c.transpose()).value() / variance;
+    spread_of_log += 2.0 * share * share / size_freedom[i];
   }
-  const double freedom = 2.0 * variance * variance / spread_of_variance;
-  if (spread_of_variance > 0.0 && freedom < kInfinite)
+  const double freedom = 2.0 / spread_of_log;
+  if (spread_of_log > 0.0 && freedom < kInfinite)
     spread.degrees_of_freedom = std::max(1.0, freedom);
   return spread;
 }
@@ -85,17 +100,18 @@ Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
   out.inflation = inflation;
   out.basis = basis;
   out.covariance = Eigen::MatrixXd::Identity(r, r);
+  const std::vector<std::vector<std::size_t>> pools = pools_of(noise);
   for (std::size_t i = 0; i < noise.size(); ++i) {
     const ProfileTriangle& profile = compressed.profiles[i];
     const Eigen::MatrixXd rows = profile.free().leftCols(profile.columns()) * basis;
     const Eigen::MatrixXd& information = out.information.emplace_back(rows.transpose() * rows);
-    if (!noise[i].is_estimated()) continue;
-    out.noise.push_back(
-        noise_effect(noise[i], *linear.observations[i], linear.columns[i] * basis, information));
-    out.noise.back().observation = i;
-    out.covariance +=
-        2.0 * noise[i].log_long_run_variance() * (information - information * information);
+    out.size_freedom.push_back(noise[i].is_estimated() ? noise[i].freedom : 0.0);
+    const double own =
+        pools.size() > 1 ? noise[i].log_long_run_variance() : noise[i].log_size_variance();
+    out.covariance += 2.0 * own * (information - information * information);
   }
+  for (const std::vector<std::size_t>& members : pools)
+    out.allowed.push_back(allowed_noises(members, noise, linear, basis, out));
   const Eigen::MatrixXd of_columns = basis * out.covariance * basis.transpose();
   for (const ProfileTriangle& profile : compressed.profiles)
     out.nuisance_covariances.emplace_back(inflation * profile.levelling_covariance(of_columns));

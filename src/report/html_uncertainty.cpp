@@ -42,17 +42,16 @@ Html budget(const ModelResult& model) {
 
 Html noise(const ModelResult& model) {
   HtmlTable table(
-      "How the uncertainties were scaled: noise of one low-band value, AR(p) correlation of the "
-      "residual",
+      "How the uncertainties were scaled: noise of one low-band value, correlation of the residual",
       {{"profile", Column::text},
        {"standard uncertainty", Column::text},
-       {"p", Column::number},
+       {"correlated", Column::text},
        {"standard deviation", Column::number},
        {"correlation length, mm", Column::number},
        {"effective values", Column::number},
        {"Ljung-Box p", Column::number}});
   for (const NoiseSummary& n : model.noise)
-    table.add({n.profile, text_of(n.scaling), std::to_string(n.order),
+    table.add({n.profile, text_of(n.scaling), n.correlated ? "yes" : "no",
                html_size(n.standard_deviation_um, n.standard_deviation_urad),
                html_number(n.correlation_mm, 3), html_number(n.effective_observations, 3),
                html_probability(n.ljung_box_p)});
@@ -97,7 +96,7 @@ Html held_out(const Crosscheck& checks) {
   HtmlTable table("Profiles held out: measured against predicted",
                   {{"profile", Column::text},
                    {"chi-square per value", Column::number},
-                   {"p", Column::number},
+                   {"correlated", Column::text},
                    {"largest difference", Column::number},
                    {"at, mm", Column::number},
                    {"verdict", Column::text}});

@@ -171,14 +171,14 @@ std::string fit(const ModelResult& model) {
 std::string noise(const ModelResult& model) {
   if (model.noise.empty()) return "";
   TextTable table(
-      {"profile", "uncertainty", "AR", "std. dev.", "corr., mm", "N_eff", "Ljung-Box p"},
-      {Column::name, Column::text, Column::number, Column::number, Column::number, Column::number,
+      {"profile", "uncertainty", "correlated", "std. dev.", "corr., mm", "N_eff", "Ljung-Box p"},
+      {Column::name, Column::text, Column::text, Column::number, Column::number, Column::number,
        Column::number});
   std::string notes;
   for (const NoiseSummary& n : model.noise) {
     const std::string scaling = text(n.scaling);
     const std::size_t colon = scaling.find(": ");
-    table.add({n.profile, scaling.substr(0, colon), std::to_string(n.order),
+    table.add({n.profile, scaling.substr(0, colon), n.correlated ? "yes" : "no",
                size_text(n.standard_deviation_um, n.standard_deviation_urad),
                number(n.correlation_mm, 3), number(n.effective_observations, 3),
                probability(n.ljung_box_p)});
@@ -186,7 +186,7 @@ std::string noise(const ModelResult& model) {
   }
   return heading(
              "How the uncertainties were scaled: standard deviation of one low-band value, "
-             "AR(p) correlation of the residual") +
+             "correlation of the residual") +
          table.text() + notes;
 }
 

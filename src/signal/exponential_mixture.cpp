@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "slideway/base/units.hpp"
+#include "slideway/base/wide.hpp"
 
 namespace slideway {
 namespace {
@@ -20,6 +22,12 @@ Terms continued(const ExponentialMixture& noise) {
 Terms mean_over(const Terms& length) {
   return (length < 1e-4)
       .select(1.0 - length / 3.0, 2.0 / length * (1.0 + (-length).expm1() / length));
+}
+
+std::vector<double> steps_between(std::span<const double> stations) {
+  std::vector<double> out(stations.size(), 1.0);
+  for (std::size_t i = 1; i < out.size(); ++i) out[i] = stations[i] - stations[i - 1];
+  return out;
 }
 
 }  // namespace
@@ -48,61 +56,73 @@ Terms ExponentialMixture::spread_lengths(double first, double last) {
 }
 
 MixtureFactor::MixtureFactor(const ExponentialMixture& noise, Eigen::Index n)
-    : gains_(kTerms, n), deviation_(n) {
-  factorise(noise);
-}
+    : MixtureFactor(noise, std::vector<double>{}, n) {}
 
 MixtureFactor::MixtureFactor(const ExponentialMixture& noise, std::span<const double> stations)
-    : gains_(kTerms, std::ssize(stations)), deviation_(std::ssize(stations)) {
-  for (std::size_t i = 0; i < stations.size(); ++i)
-    steps_.push_back(i == 0 ? 1.0 : stations[i] - stations[i - 1]);
-  factorise(noise);
+    : MixtureFactor(noise, steps_between(stations), std::ssize(stations)) {}
+
+MixtureFactor::MixtureFactor(const ExponentialMixture& noise, std::vector<double> steps,
+                             Eigen::Index n)
+    : steps_(std::move(steps)),
+      rates_(noise.lengths.inverse()),
+      amplitudes_(continued(noise)),
+      deviation_(n) {
+  const double variance = noise.variance();
+  const Eigen::Index terms = (noise.variances != 0.0).count();
+  if (terms == 0) {
+    deviation_.setConstant(std::sqrt(variance));
+  } else if (terms == 1) {
+    Eigen::Index which = 0;
+    amplitudes_.maxCoeff(&which);
+    rates_[0] = rates_[which];
+    amplitudes_[0] = amplitudes_[which];
+    factorise<1>(variance);
+  } else {
+    factorise<kTerms>(variance);
+  }
 }
 
 Terms MixtureFactor::decay(Eigen::Index row) const {
   return (-(steps_.empty() ? 1.0 : steps_[static_cast<std::size_t>(row)]) * rates_).exp();
 }
 
-void MixtureFactor::factorise(const ExponentialMixture& noise) {
-  white_ = noise.is_white();
-  rates_ = noise.lengths.inverse();
-  amplitudes_ = continued(noise);
-  const double variance = noise.variance();
-  if (white_) {
-    gains_.resize(kTerms, 0);
-    deviation_.setConstant(std::sqrt(variance));
-    return;
-  }
-  using Square = Eigen::Matrix<double, kTerms, kTerms>;
-  const auto amplitudes = amplitudes_.matrix();
-  Square state = Square::Zero();
-  Square decays = (decay(0).matrix() * decay(0).matrix().transpose()).eval();
+template <int Count>
+void MixtureFactor::factorise(double variance) {
+  count_ = Count;
+  gains_.resize(static_cast<std::size_t>(rows() * Count));
+  using Square = Eigen::Matrix<double, Count, Count>;
+  using Vector = Eigen::Matrix<double, Count, 1>;
+  const Vector amplitudes = amplitudes_.head<Count>();
+  Square state = Square::Zero(), decays = Square::Zero();
   for (Eigen::Index row = 0; row < rows(); ++row) {
-    if (row > 1 && !steps_.empty()) decays = decay(row).matrix() * decay(row).matrix().transpose();
+    if (row == 0 || !steps_.empty()) {
+      const Vector once = decay(row).head<Count>();
+      decays = once * once.transpose();
+    }
     state = state.cwiseProduct(decays).eval();
-    const Eigen::Matrix<double, kTerms, 1> product = state * amplitudes;
+    const Vector product = state * amplitudes;
     const double left = variance - amplitudes.dot(product);
-    const Eigen::Matrix<double, kTerms, 1> gain = (1.0 - product.array()).matrix() / left;
+    Eigen::Map<Vector> gain(gains_.data() + row * Count);
+    gain = (1.0 - product.array()).matrix() / left;
     deviation_[row] = std::sqrt(left);
-    gains_.col(row) = gain;
-    state.noalias() += left * gain * gain.transpose();
+    state += left * gain * gain.transpose();
   }
 }
 
-template <int Columns, MixtureFactor::Direction direction>
+template <int Count, int Columns, MixtureFactor::Direction direction>
 void MixtureFactor::filter(double* first, Eigen::Index stride) const {
   using Lane = std::array<double, Columns>;
-  std::array<Lane, kTerms> memory{};
+  std::array<Lane, Count> memory{};
   Terms decays = decay(0);
-  for (Eigen::Index row = 0; row < rows(); ++row) {
+  const double* gain = gains_.data();
+  for (Eigen::Index row = 0; row < rows(); ++row, gain += Count) {
     if (!steps_.empty()) decays = decay(row);
-    Lane predicted{};
-    for (int k = 0; k < kTerms; ++k)
+    Lane predicted{}, left;
+    for (int k = 0; k < Count; ++k)
       for (int c = 0; c < Columns; ++c) {
         memory[k][c] *= decays[k];
         predicted[c] += amplitudes_[k] * memory[k][c];
       }
-    Lane left;
     for (int c = 0; c < Columns; ++c) {
       double& value = first[row + c * stride];
       if constexpr (direction == Direction::whiten) {
@@ -113,34 +133,43 @@ void MixtureFactor::filter(double* first, Eigen::Index stride) const {
         value = left[c] + predicted[c];
       }
     }
-    const double* gain = gains_.data() + row * kTerms;
-    for (int k = 0; k < kTerms; ++k)
+    for (int k = 0; k < Count; ++k)
       for (int c = 0; c < Columns; ++c) memory[k][c] += gain[k] * left[c];
   }
 }
 
-template <MixtureFactor::Direction direction>
+template <int Count, MixtureFactor::Direction direction>
 void MixtureFactor::filter(Eigen::Ref<Eigen::MatrixXd> rows) const {
   constexpr int kMany = 8;  // columns at once keep the processor busy
-  Eigen::Index column = 0;
-  for (; column + kMany <= rows.cols(); column += kMany)
-    filter<kMany, direction>(rows.col(column).data(), rows.outerStride());
-  for (; column < rows.cols(); ++column)
-    filter<1, direction>(rows.col(column).data(), rows.outerStride());
+  const Eigen::Index whole = rows.cols() / kMany * kMany;
+  wide([&] {
+    for (Eigen::Index column = 0; column < whole; column += kMany)
+      filter<Count, kMany, direction>(rows.col(column).data(), rows.outerStride());
+  });
+  for (Eigen::Index column = whole; column < rows.cols(); ++column)
+    filter<Count, 1, direction>(rows.col(column).data(), rows.outerStride());
+}
+
+template <MixtureFactor::Direction direction>
+void MixtureFactor::filter_all(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  if (count_ == 1)
+    filter<1, direction>(rows);
+  else
+    filter<kTerms, direction>(rows);
 }
 
 void MixtureFactor::whiten(Eigen::Ref<Eigen::MatrixXd> rows) const {
-  if (white_)
+  if (count_ == 0)
     rows.array().colwise() /= deviation_;
   else
-    filter<Direction::whiten>(rows);
+    filter_all<Direction::whiten>(rows);
 }
 
 void MixtureFactor::colour(Eigen::Ref<Eigen::MatrixXd> rows) const {
-  if (white_)
+  if (count_ == 0)
     rows.array().colwise() *= deviation_;
   else
-    filter<Direction::colour>(rows);
+    filter_all<Direction::colour>(rows);
 }
 
 double MixtureFactor::log_determinant() const { return 2.0 * deviation_.log().sum(); }

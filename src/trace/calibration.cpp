@@ -1,6 +1,6 @@
 #include "calibration.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <cmath>
 
 #include "slideway/base/random.hpp"
@@ -9,18 +9,32 @@
 namespace slideway {
 namespace {
 
-constexpr double kMostSpread = 0.3;  // of atanh π and ln σ: a flat likelihood is no wider
 constexpr std::uint64_t kSeed = 20120712;
 
-/// Noise parameters as their estimate's covariance has them.
-Noise drawn(const Noise& noise, RandomStream& random) {
-  if (!noise.is_estimated()) return noise;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(noise.covariance);
-  Eigen::VectorXd deviation(noise.covariance.rows());
-  for (double& value : deviation) value = random.normal();
-  const Eigen::VectorXd spread =
-      eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().cwiseMin(kMostSpread);
-  return noise.at(noise.parameters() + eigen.eigenvectors() * spread.cwiseProduct(deviation));
+/// Which of the noises the residual allows has this share of their probabilities below it.
+std::size_t drawn(const std::vector<Noise::Alternative>& alternatives, double share) {
+  std::size_t which = 0;
+  while (which + 1 < alternatives.size() && share > alternatives[which].probability)
+    share -= alternatives[which++].probability;
+  return which;
+}
+
+/// White rows of one profile become noise: of the drawn memory, and of a size as well known as it
+/// is.
+void colour(const Noise& noise, const std::vector<double>& shares, const Eigen::VectorXd& normals,
+            Eigen::Ref<Eigen::MatrixXd> rows) {
+  if (!noise.is_estimated()) return noise.colour(rows);
+  std::vector<std::vector<Eigen::Index>> columns(noise.alternatives.size());
+  for (Eigen::Index j = 0; j < rows.cols(); ++j) {
+    columns[drawn(noise.alternatives, shares[static_cast<std::size_t>(j)])].push_back(j);
+    rows.col(j) *= std::exp(normals[j] / std::sqrt(2.0 * noise.freedom));
+  }
+  for (std::size_t g = 0; g < columns.size(); ++g) {
+    if (columns[g].empty()) continue;
+    Eigen::MatrixXd some = rows(Eigen::all, columns[g]);
+    MixtureFactor(noise.alternatives[g].covariance, rows.rows()).colour(some);
+    rows(Eigen::all, columns[g]) = some;
+  }
 }
 
 }  // namespace
@@ -35,15 +49,17 @@ double Calibration::threshold(double significance) const {
 
 Eigen::MatrixXd null_residuals(const Whitened& data, Eigen::Index count) {
   Eigen::MatrixXd out(data.rows(), count);
+  Eigen::MatrixXd normals(count, static_cast<Eigen::Index>(data.observations()));
+  std::vector<double> shares;  // one for all profiles: they share their memory
   for (Eigen::Index j = 0; j < count; ++j) {
     RandomStream random(kSeed + static_cast<std::uint64_t>(j), "null");
     for (double& value : out.col(j)) value = random.normal();
-    for (std::size_t i = 0; i < data.observations(); ++i) {
-      const Noise noise = drawn(data.noise()[i], random);
-      auto rows = out.block(data.first_row(i), j, data.count(i), 1);
-      noise.colour(rows);
-    }
+    for (double& value : normals.row(j)) value = random.normal();
+    shares.push_back(random.uniform());
   }
+  for (std::size_t i = 0; i < data.observations(); ++i)
+    colour(data.noise()[i], shares, normals.col(static_cast<Eigen::Index>(i)),
+           out.middleRows(data.first_row(i), data.count(i)));
   return data.outside(std::move(out));
 }
 

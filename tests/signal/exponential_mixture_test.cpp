@@ -142,7 +142,7 @@ TEST(ExponentialMixture, VarianceOfAMeanIsTheMeanOfTheCovariance) {
 }
 
 TEST(ExponentialMixture, WithWeightsOfAPowerHasASpectrumOfThatPower) {
-  // Six exponentials over three decades follow a power to a few per cent of its exponent.
+  // Seven exponentials over three decades follow a power to a few per cent of its exponent.
   for (const double slope : {1.0, 1.5}) {
     const ExponentialMixture noise = mixture(0.0, 1.0, slope, 1000.0);
     const double found = std::log(noise.spectrum(1e-3) / noise.spectrum(1e-2)) / std::log(10.0);

@@ -20,11 +20,16 @@ using namespace faces;  // NOLINT(google-build-using-namespace)
 
 constexpr double kRounding = 1e-9;  // some hundred operations on numbers of order one
 
-Noise first_order(double rho, double innovation) {
-  Noise noise;
-  noise.correlation = Autoregression({rho});
-  noise.innovation = innovation;
-  return noise;
+/// First-order autoregression as a block mean beside white noise: Var(e) ρ^d at every distance d.
+Noise first_order(double rho, double innovation, Eigen::Index n = 160) {
+  const double variance = innovation * innovation / (1.0 - rho * rho);
+  ExponentialMixture covariance;
+  covariance.white = 0.0;
+  covariance.lengths[0] = -1.0 / std::log(rho);
+  covariance.variances[0] = 1.0;
+  covariance.variances[0] = variance * rho / covariance.covariance(1.0);
+  covariance.white = variance - covariance.variance();
+  return {covariance, n};
 }
 
 /// One cut of 160 low-band values, its model and the noise it is whitened with.
@@ -200,8 +205,8 @@ TEST(LackOfFit, HasUniformPValuesWhereNothingIsMissing) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     RandomStream random(seed, "lack of fit");
     Eigen::MatrixXd rows(linear.residuals[0].size(), 1);
-    for (double& value : rows.reshaped()) value = noise.innovation * random.normal();
-    noise.correlation.colour(rows);
+    for (double& value : rows.reshaped()) value = random.normal();
+    noise.colour(rows);
     linear.residuals[0] = rows.col(0);
     p_values.push_back(lack_of_fit(linear, {noise}).p_value);
   }

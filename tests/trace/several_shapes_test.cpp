@@ -108,11 +108,7 @@ struct Searched {
     return face;
   }
 
-  static Noise noise() {
-    Noise white;
-    white.innovation = kNoise;
-    return white;
-  }
+  static Noise noise() { return Noise::white(kNoise, 250); }
 
   [[nodiscard]] double gain_at(double position, double width) const {
     return project(data, stacked_columns(model, candidate.term, std::vector{position, width}, 0))

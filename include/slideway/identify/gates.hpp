@@ -26,9 +26,10 @@ struct Gates {
   // The noise.
   double slow_cosines = 16.0;
   double values_per_cosine = 10.0;
-  double noise_order = 6.0;
-  double values_per_order = 10.0;
-  double correlation_traces = 8.0;
+  double values_for_memory = 40.0;
+  double longest_memory = 4.0;
+  double noise_likeness = 0.5;
+  double unlike_noise = 4.0;
   double declared_noise_bic = 10.0;
   double false_line = 1e-3;
   double most_lines = 12.0;

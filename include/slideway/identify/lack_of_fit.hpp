@@ -10,7 +10,8 @@ namespace slideway {
 ///
 /// The square found in q slow directions is, under noise alone, near a gamma variable with the
 /// moments of Σ_i s_i χ²(q_i): s_i is lognormal, for the long-run variance of profile i's noise is
-/// estimated, and measured in a faster band (Gates::noise_extrapolation).
+/// estimated, its memory together with that of its pool, and measured in a faster band
+/// (Gates::noise_extrapolation).
 struct LackOfFit {
   double p_value = 1.0;
   double ratio = 1.0;  // square found over square expected

@@ -69,7 +69,8 @@ inline constexpr std::array<std::string_view, 3> kTexts<NoiseScaling>{
 struct NoiseSummary {
   std::string profile;
   NoiseScaling scaling = NoiseScaling::estimated;
-  int order = 0;                                                         // p of AR(p)
+  bool correlated = false;
+  std::optional<double> unlike_sisters;  // its size over that of the profiles it shares memory with
   std::optional<double> standard_deviation_um, standard_deviation_urad;  // of one low-band value
   double correlation_mm = 0.0;          // integral correlation length, at most that of the trace
   double effective_observations = 0.0;  // at least 1

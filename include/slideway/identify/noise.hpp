@@ -1,60 +1,98 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "slideway/identify/gates.hpp"
-#include "slideway/signal/autoregression.hpp"
+#include "slideway/signal/exponential_mixture.hpp"
 
 namespace slideway {
 
-/// The noise of one profile's low band: AR(p) with innovations of standard deviation `innovation`.
-struct Noise {
-  Autoregression correlation;
-  double innovation = 1.0;  // mm or rad, of one low-band value
-  bool declared = false;    // white, as the problem file has it; else estimated from the residual
-  bool overruled = false;   // a declared uncertainty was there, and the residual refutes it
-  Eigen::MatrixXd covariance;  // of (atanh π_1 ... atanh π_p, ln innovation); empty if declared,
-                               // 0 across a limit they stand at
+/// The noise of one profile's low band: white noise, texture and long memory.
+class Noise {
+ public:
+  /// One noise the residual allows, and how probable it is.
+  struct Alternative {
+    double probability = 1.0;
+    ExponentialMixture covariance;
+  };
 
-  [[nodiscard]] bool is_estimated() const { return !declared && covariance.size() > 0; }
+  Noise() = default;
+  /// Of a trace of n values; mm² or rad².
+  Noise(const ExponentialMixture& covariance, Eigen::Index n);
+  /// White noise of a standard deviation, mm or rad.
+  static Noise white(double standard_deviation, Eigen::Index n);
+
+  bool declared = false;   // white, as the problem file has it; else estimated from the residual
+  bool overruled = false;  // a declared uncertainty was there, and the residual refutes it
+  std::size_t pool = 0;    // profiles with the same one have their memory in common
+  double freedom = 0.0;    // degrees of freedom of its size, its memory given
+  /// Noises the residual allows, those of one pool in the same order; empty if declared.
+  std::vector<Alternative> alternatives;
+  /// Size over that of the other profiles of the pool, where it is unlike theirs.
+  std::optional<double> unlike_sisters;
+
+  [[nodiscard]] const ExponentialMixture& covariance() const { return covariance_; }
+  [[nodiscard]] bool is_estimated() const { return !declared && !alternatives.empty(); }
+  [[nodiscard]] bool is_white() const { return covariance_.is_white(); }
+
+  /// Of one value about the mean of the trace.
   [[nodiscard]] double standard_deviation() const;
 
-  /// Square root of the long-run variance: the standard deviation of white noise that would leave
-  /// smooth parameters as uncertain.
+  /// Square root of the spectral density at one cycle a trace: the standard deviation of white
+  /// noise that would leave smooth parameters as uncertain.
   [[nodiscard]] double long_run_deviation() const;
 
-  /// Variance of the estimate of ln(long-run variance); 0 if declared.
+  /// Variance of the estimate of ln(long-run variance), and the part of it that this profile does
+  /// not share with its pool; 0 if declared.
   [[nodiscard]] double log_long_run_variance() const;
+  [[nodiscard]] double log_size_variance() const;
+
+  /// Values of white noise that would say as much about smooth parameters.
+  [[nodiscard]] double effective_values() const;
 
   /// Rows made independent with unit variance (whitening), and the inverse. In place.
   void whiten(Eigen::Ref<Eigen::MatrixXd> rows) const;
   void colour(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
-  /// The noise with the same declared flags at other parameters of `covariance`'s kind.
-  [[nodiscard]] Noise at(const Eigen::VectorXd& parameters) const;
-  [[nodiscard]] Eigen::VectorXd parameters() const;
+ private:
+  [[nodiscard]] double spectrum(const ExponentialMixture& covariance) const;
+
+  ExponentialMixture covariance_;
+  Eigen::Index values_ = 0;
+  std::shared_ptr<const MixtureFactor> factor_;
 };
 
 /// One profile, linearised: values ≈ nuisances * ν + columns * w + noise, with the columns reduced
 /// to directions all data together determine.
 struct LinearProfile {
-  Eigen::MatrixXd nuisances;       // #values by 0 ... 2
+  Eigen::MatrixXd nuisances;       // #values by m
   Eigen::MatrixXd columns;         // #values by r
   Eigen::VectorXd residual;        // at the current estimate
   std::optional<double> declared;  // standard uncertainty of one value, mm or rad
-  int least_order = 0;             // of the autoregression, whatever BIC says
+  std::size_t pool = 0;            // profiles with the same one have their memory in common
+  std::vector<double> stations;    // rising, at least 1 apart; empty: neighbours
+  Eigen::Index values = 0;         // of the whole trace, gaps included; 0: as many as there are
 };
 
-/// Estimates the noise of every profile by restricted maximum likelihood: the parameters of the
-/// model are left free, so what the fit has taken out of the residual is allowed for. The order of
-/// the autoregression is that of the least BIC.
+/// Estimates the noise of every profile by restricted likelihood (Patterson and Thompson 1971): the
+/// parameters of the model are left free, so what the fit has taken out of the residual is allowed
+/// for. The covariance of profile i is
 ///
-/// If the long-run variance is below the variance, white noise of that variance is used: a residual
-/// that alternates does not make a smooth parameter better known. A declared uncertainty stands
-/// unless the residual refutes it and has the larger long-run variance.
+///   σ_i² (I + g T + h K),  T = exp(-d/L),  K = Σ_k L_k^(α-1) exp(-d/L_k), block means of both,
+///
+/// scaled so that T and K fall by 1 from the distance 0 to 1: white noise, texture of one length,
+/// and a long memory from two values to Gates::longest_memory traces. g, L, h and α are those of
+/// all profiles of a pool: no profile alone makes its structure a memory. ln σ_i lies about that of
+/// its sisters (Gates::noise_likeness). The result is the most probable place of a lattice of (g,
+/// L, h, α); the alternatives are all that are plausible.
+///
+/// A declared uncertainty stands unless the residual refutes it and has the larger long-run
+/// variance.
 ///
 /// @param prior_information  r by r, what priors add to the information on w
 std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,

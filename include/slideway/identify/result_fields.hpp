@@ -184,7 +184,9 @@ template <>
 inline constexpr auto kRecord<NoiseSummary> = record(
     "Noise", "The noise of one profile as the fit has it.",
     field("profile", &NoiseSummary::profile), field("scaling", &NoiseSummary::scaling),
-    field("order", &NoiseSummary::order, "p of AR(p)"),
+    field("correlated", &NoiseSummary::correlated, "texture or long memory, not white"),
+    field("unlike_sisters", &NoiseSummary::unlike_sisters,
+          "size over that of the profiles it shares its memory with, where it differs"),
     field("standard_deviation_um", &NoiseSummary::standard_deviation_um, "of one low-band value"),
     field("standard_deviation_urad", &NoiseSummary::standard_deviation_urad),
     field("correlation_mm", &NoiseSummary::correlation_mm, "integral correlation length"),

@@ -22,23 +22,23 @@ struct Spread {
 ///
 ///   I + 2 Σ_i var(ln s_i) (G_i - G_i²)
 ///
-/// with the long-run variance s_i of profile i's noise: the second part allows for weights that
-/// come from the same data (Kenward and Roger 1997, for columns slow against the noise; Meier 1953
-/// for a weighted mean). All is multiplied by the inflation for structure the model lacks
-/// (FitNoise). Degrees of freedom by Satterthwaite's formula (GUM G.4.1) from the uncertainty of
-/// the noise's parameters, and no more from a profile than it has effective observations.
+/// where s_i is the part of the long-run variance of profile i's noise that the profiles do not
+/// share: the second part allows for weights that come from the same data (Kenward and Roger 1997,
+/// for columns slow against the noise; Meier 1953 for a weighted mean). All is multiplied by the
+/// inflation for structure the model lacks (FitNoise). Degrees of freedom by Satterthwaite's
+/// formula (GUM G.4.1) from how the variance differs between the noises the residual allows, and
+/// from the degrees of freedom of each noise's size.
 struct Uncertainty {
   Eigen::MatrixXd basis;                     // (A + S) by r
   Eigen::MatrixXd covariance;                // r by r, of w, before the inflation
   double inflation = 1.0;                    // of all variances
   std::vector<Eigen::MatrixXd> information;  // G_i, r by r, per fitted observation
-  struct NoiseEffect {                       // of one profile whose noise was estimated
-    std::size_t observation = 0;
-    Eigen::MatrixXd covariance;                // of the noise parameters
-    std::vector<Eigen::MatrixXd> derivatives;  // of the covariance of w, r by r each
-    double degrees_of_freedom = 1.0;           // most that this noise was found with
+  struct AllowedNoise {                      // of one pool of profiles
+    double probability = 0.0;
+    Eigen::MatrixXd covariance;  // r by r, of w under this noise
   };
-  std::vector<NoiseEffect> noise;
+  std::vector<std::vector<AllowedNoise>> allowed;  // per pool
+  std::vector<double> size_freedom;                // per fitted observation; 0: its size is known
   std::vector<Eigen::MatrixXd> nuisance_covariances;  // levelling, per fitted observation
 
   /// Of row * (amplitudes, shapes). REQUIRES the row to be orthogonal to the null space.

@@ -16,7 +16,7 @@ namespace slideway {
 /// Lengths and distances are in low-band values, variances in the square of the values' unit.
 /// Lengths a constant factor apart with v_k = L_k^(α-1) make noise with a spectrum near f^-α.
 struct ExponentialMixture {
-  static constexpr int kTerms = 6;
+  static constexpr int kTerms = 7;
   using Terms = Eigen::Array<double, kTerms, 1>;
 
   double white = 1.0;               // w
@@ -58,19 +58,25 @@ class MixtureFactor {
 
  private:
   enum class Direction { whiten, colour };
-  void factorise(const ExponentialMixture& noise);
-  [[nodiscard]] ExponentialMixture::Terms decay(Eigen::Index row) const;
-  template <int Columns, Direction direction>
-  void filter(double* first, Eigen::Index stride) const;
-  template <Direction direction>
-  void filter(Eigen::Ref<Eigen::MatrixXd> rows) const;
-
   using Terms = ExponentialMixture::Terms;
-  bool white_;
-  Terms rates_, amplitudes_;
+
+  explicit MixtureFactor(const ExponentialMixture& noise, std::vector<double> steps,
+                         Eigen::Index n);
+  [[nodiscard]] Terms decay(Eigen::Index row) const;
+  template <int Count>
+  void factorise(double variance);
+  template <int Count, int Columns, Direction direction>
+  void filter(double* first, Eigen::Index stride) const;
+  template <int Count, Direction direction>
+  void filter(Eigen::Ref<Eigen::MatrixXd> rows) const;
+  template <Direction direction>
+  void filter_all(Eigen::Ref<Eigen::MatrixXd> rows) const;
+
   std::vector<double> steps_;  // to the value before; empty: all 1
-  Eigen::Matrix<double, ExponentialMixture::kTerms, Eigen::Dynamic> gains_;
-  Eigen::ArrayXd deviation_;  // sqrt(D)
+  int count_ = 0;              // of terms: 0, 1 or all
+  Terms rates_, amplitudes_;   // of one term: the first
+  std::vector<double> gains_;  // count_ per value
+  Eigen::ArrayXd deviation_;   // sqrt(D)
 };
 
 }  // namespace slideway
