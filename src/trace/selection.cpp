@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "fit_numbers.hpp"
+#include "naming.hpp"
 #include "outcome.hpp"
 #include "slideway/base/text.hpp"
+#include "stability.hpp"
 #include "structure.hpp"
 #include "widening.hpp"
 
@@ -13,6 +15,8 @@ namespace slideway {
 namespace {
 
 using Effects = std::vector<AcceptedEffect>;
+
+constexpr const char* kUnnamedRival = "unnamed";  // among `ambiguous_with`
 
 /// "" if the residuals, in the units of the report, fall; else why the effect does not help. Where
 /// there are heights and slopes, the mean of their relative squares counts.
@@ -39,6 +43,7 @@ class Selector {
     grow();
     exchange();
     take_back();
+    hold_against_the_unnamed();
     name_rivals();
     out_.lack_of_fit = left_over();
     return std::move(out_);
@@ -110,7 +115,7 @@ class Selector {
     return "its size is only " + significant(size, 2) + " of its standard uncertainties";
   }
 
-  /// Whether an effect says more than a process without a name would in its place.
+  /// Whether a carriage's polynomial says more than a process without a name in its place.
   bool outdoes_process(const Effects& effects, std::size_t which) {
     const FittedModel& with = extender_.extended(effects);
     const FittedModel& without = extender_.extended(all_but(effects, which));
@@ -194,7 +199,6 @@ class Selector {
     std::string why = reason_against(out_.effects, i);
     if (why.empty()) why = too_small(out_.effects, i, nullptr);
     if (!why.empty() || !left_over().significant(gates_)) return why;
-    if (!outdoes_process(out_.effects, i)) return "a smooth process without a name fits as well";
     const FittedModel& fitted = extender_.extended(out_.effects);
     const SearchRound& last = extender_.search(out_.effects);
     const Widening unnamed = widening(
@@ -206,9 +210,44 @@ class Selector {
     for (std::size_t i = 0; i < out_.effects.size(); ++i) {
       AcceptedEffect& effect = out_.effects[i];
       const SearchRound& round = extender_.search(all_but(out_.effects, i));
-      for (const TestedCandidate* rival : round.rivals(*find_tested(round, effect, gates_), gates_))
+      const TestedCandidate& own = *find_tested(round, effect, gates_);
+      for (const TestedCandidate* rival : round.rivals(own, gates_))
         effect.round.ambiguous_with.push_back(rival->name());
+      const Stability found = stability(round, own);
+      effect.round.stability = found.share;
+      if (found.share >= gates_.stable_share || !effect.round.ambiguous_with.empty()) continue;
+      effect.round.ambiguous_with.push_back(found.other == "nothing" ? kUnnamedRival : found.other);
+      out_.notes.push_back(effect.name() + ": only " + significant(100.0 * found.share, 2) +
+                           " % of the resamples choose it; the others most often " + found.other);
     }
+  }
+
+  /// Names what nothing without a name explains as well.
+  void hold_against_the_unnamed() {
+    while (!out_.effects.empty()) {
+      const Standing found = standing(extender_, out_.effects, gates_);
+      if (found.margin >= 0.0) return;
+      if (found.margin >= -gates_.unnamed_tie) {
+        out_.unsure = found.in_place_of;
+        for (const std::size_t i : found.in_place_of) {
+          out_.effects[i].round.ambiguous_with.emplace_back(kUnnamedRival);
+          out_.notes.push_back(out_.effects[i].name() + ": " + found.rival +
+                               " explains as much, within " + significant(-found.margin, 2) +
+                               " nats of the margin");
+        }
+        return;
+      }
+      leave(weakest(found.in_place_of), found.rival + " without a name explains more, by " +
+                                            significant(-found.margin, 2) + " nats");
+      out_.withheld = true;
+      take_back();
+    }
+  }
+
+  /// The effect of a set that gains least beside the others.
+  std::size_t weakest(const std::vector<std::size_t>& among) {
+    return *std::ranges::min_element(among, {},
+                                     [&](std::size_t i) { return gain_beside(out_.effects, i); });
   }
 
   void tell(const std::string& stage, std::size_t i) const {

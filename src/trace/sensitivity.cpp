@@ -62,7 +62,7 @@ class Changes {
 TraceVerdict verdict_of(const Selection& selection, const Gates& gates) {
   TraceResult out;
   for (const AcceptedEffect& effect : selection.effects) out.rounds.push_back(effect.round);
-  if (selection.lack_of_fit.significant(gates)) out.unnamed.emplace();
+  if (selection.withheld || selection.lack_of_fit.significant(gates)) out.unnamed.emplace();
   return verdict(out, false);
 }
 

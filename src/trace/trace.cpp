@@ -116,11 +116,26 @@ class Loop {
                              ? "max_effects effects are in the model"
                              : "beside the others it does not help";
     out.lack_of_fit_p = selection.lack_of_fit.p_value;
-    if (!selection.lack_of_fit.significant(gates)) return;
+    if (!selection.lack_of_fit.significant(gates) && !selection.withheld) {
+      if (!selection.unsure.empty()) closed.widening = widening_instead(selection, fitted, last);
+      return;
+    }
     const Structure structure = find_structure(fitted.model, last.data, fitted.fit.linear);
     out.unnamed = describe(structure, last.data, fitted.fit.linear);
     out.unnamed->p_value = selection.lack_of_fit.p_value;
     closed.widening = widening(fitted.model, fitted.fit, structure, last);
+  }
+
+  /// What a process without a name would do in the place of the effects that are not sure.
+  Widening widening_instead(const Selection& selection, const FittedModel& fitted,
+                            const SearchRound& last) {
+    std::vector<AcceptedEffect> sure = selection.effects;
+    for (auto i = selection.unsure.rbegin(); i != selection.unsure.rend(); ++i)
+      sure = all_but(std::move(sure), *i);
+    const FittedModel& without = extender_.extended(sure);
+    const Whitened data(without.fit.linear, last.data.noise(), last.data.undescribed());
+    return widening(fitted.model, fitted.fit,
+                    find_structure(without.model, data, without.fit.linear), last);
   }
 
   void report_limits(const Selection& selection, TraceResult& out) {

@@ -18,6 +18,12 @@ struct Gates {
   double alike = 0.3;
   double holdout_share = 0.1;
 
+  // What a name must be better than.
+  double process_margin = 1.0;
+  double local_form_margin = 0.0;
+  double unnamed_tie = 5.0;
+  double stable_share = 0.8;
+
   // When the residual is structure.
   double lack_of_fit_p = 1e-3;
   double lack_of_fit_ratio = 2.0;

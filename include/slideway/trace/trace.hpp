@@ -33,6 +33,7 @@ struct TraceRound {
   std::optional<double> before_holdout_rms_um, after_holdout_rms_um;
   double delta_bic = 0.0;
   double p_value = 1.0;
+  double stability = 1.0;                   // share of the resamples that choose the same effect
   std::vector<FittedParameter> parameters;  // of the effect, in the final fit
   std::vector<TriedEffect> candidates;      // what else was tried in that round, best first
 };

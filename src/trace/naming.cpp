@@ -1,0 +1,69 @@
+#include "naming.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "local_forms.hpp"
+#include "process.hpp"
+
+namespace slideway {
+namespace {
+
+using Effects = std::vector<AcceptedEffect>;
+
+constexpr std::size_t kAllSubsets = 3;  // of a larger set those that lack one name or all
+
+/// Members of a set that a subset lacks, for every subset but the set itself.
+std::vector<std::vector<std::size_t>> absences(std::size_t members) {
+  std::vector<std::vector<std::size_t>> out;
+  if (members <= kAllSubsets) {
+    for (std::uint32_t bits = 1; bits < (1u << members); ++bits) {
+      std::vector<std::size_t>& absent = out.emplace_back();
+      for (std::size_t i = 0; i < members; ++i)
+        if (bits & (1u << i)) absent.push_back(i);
+    }
+    return out;
+  }
+  for (std::size_t i = 0; i < members; ++i) out.push_back({i});
+  std::vector<std::size_t>& all = out.emplace_back();
+  for (std::size_t i = 0; i < members; ++i) all.push_back(i);
+  return out;
+}
+
+Effects without(const Effects& effects, const std::vector<std::size_t>& absent) {
+  Effects out;
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    if (std::ranges::find(absent, i) == absent.end()) out.push_back(effects[i]);
+  return out;
+}
+
+}  // namespace
+
+Standing standing(ModelExtender& extender, const Effects& effects, const Gates& gates) {
+  const Whitened& named = extender.search(effects).data;
+  Standing out;
+  for (const std::vector<std::size_t>& absent : absences(effects.size())) {
+    const FittedModel& fitted = extender.extended(without(effects, absent));
+    const Linearisation& linear = fitted.fit.linear;
+    const Whitened data(linear, named.noise(), named.undescribed());
+    double gain = data.residual().squaredNorm() - named.residual().squaredNorm();
+    for (const std::size_t i : absent) {
+      const Candidate& candidate = *effects[i].candidate;
+      gain -= penalty(named, candidate.unknowns(candidate.amplitudes()));
+    }
+    const auto hold_against = [&](double log_evidence, const std::string& rival) {
+      const double margin = 0.5 * gain - log_evidence;
+      if (margin < out.margin) out = {margin, rival, absent};
+    };
+    for (const ProcessVariable& variable : process_variables(fitted.model, linear))
+      hold_against(best_process(data, linear, variable).log_evidence + gates.process_margin,
+                   "a process in " + variable.symbol);
+    if (absent.size() == 1 || absent.size() == effects.size())
+      hold_against(local_forms(fitted.model, data, linear) + gates.local_form_margin,
+                   "a local form");
+  }
+  return out;
+}
+
+}  // namespace slideway
