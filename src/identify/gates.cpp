@@ -30,10 +30,10 @@ std::span<const Gate> gate_table() {
            "A profile is predicted from the others if they hold this share of what all know of "
            "the effect.",
            "below a tenth the prediction is three times as uncertain as the effect"},
-      Gate{"process_margin", &Gates::process_margin, "nats", 0.0, 10.0,
+      Gate{"process_margin", &Gates::process_margin, "nats", -2.0, 10.0,
            "Effects are named if they outdo a process without a name on every variable by this "
            "much.",
-           "simulated ways and effects: no wrong name from 1 on, right names are lost above 5"},
+           "simulated ways and effects: no wrong name from -2 on, right names are lost above 3"},
       Gate{"local_form_margin", &Gates::local_form_margin, "nats", 0.0, 5.0,
            "An effect is named if it outdoes up to three kinks, bumps and steps by this much.",
            "simulated ways and effects: right names are lost above 1, a smooth step holds a step"},

@@ -93,9 +93,11 @@ class Selector {
   std::string reason_against(const Effects& effects, std::size_t which) {
     const Effects others = all_but(effects, which);
     std::string why = worsens(extender_.summary(others), extender_.summary(effects));
-    if (why.empty() && effects[which].candidate->term.effect->is_carriage() &&
-        !outdoes_process(effects, which))
-      why = "a smooth process without a name fits as well";
+    if (!why.empty() || !effects[which].candidate->term.effect->is_carriage()) return why;
+    const double margin = over_process(effects, which);
+    if (margin < gates_.process_margin)
+      why =
+          "a smooth process without a name fits as well: " + significant(margin, 2) + " nats less";
     return why;
   }
 
@@ -115,17 +117,17 @@ class Selector {
     return "its size is only " + significant(size, 2) + " of its standard uncertainties";
   }
 
-  /// Whether a carriage's polynomial says more than a process without a name in its place.
-  bool outdoes_process(const Effects& effects, std::size_t which) {
+  /// By how much a carriage's polynomial outdoes a process without a name in its place, nats.
+  double over_process(const Effects& effects, std::size_t which) {
     const FittedModel& with = extender_.extended(effects);
     const FittedModel& without = extender_.extended(all_but(effects, which));
     const std::vector<Noise>& noise = with.fit.noise;
     const Whitened with_it(with.fit.linear, noise), without_it(without.fit.linear, noise);
-    const double gain = (without_it.residual().squaredNorm() - with_it.residual().squaredNorm()) +
-                        find_structure(with.model, with_it, with.fit.linear).gain() -
-                        find_structure(without.model, without_it, without.fit.linear).gain();
     const Candidate& candidate = *effects[which].candidate;
-    return gain - penalty(with_it, candidate.unknowns(candidate.amplitudes())) >= gates_.delta_bic;
+    return 0.5 * (without_it.residual().squaredNorm() - with_it.residual().squaredNorm() -
+                  penalty(with_it, candidate.unknowns(candidate.amplitudes()))) +
+           find_structure(with.model, with_it, with.fit.linear).process.log_evidence -
+           find_structure(without.model, without_it, without.fit.linear).process.log_evidence;
   }
 
   /// -ΔBIC of an effect beside the others of the set.

@@ -11,9 +11,6 @@ struct Structure {
   Unnamed description;                   // variable and evidence only
   std::vector<Eigen::MatrixXd> columns;  // its cosines, per fitted profile
   Process process;
-
-  /// What it gains over noise alone, in BIC's measure.
-  [[nodiscard]] double gain() const { return 2.0 * process.log_evidence; }
 };
 Structure find_structure(const Model& model, const Whitened& data, const Linearisation& linear);
 

@@ -19,7 +19,7 @@ struct Gates {
   double holdout_share = 0.1;
 
   // What a name must be better than.
-  double process_margin = 1.0;
+  double process_margin = 0.0;
   double local_form_margin = 0.0;
   double unnamed_tie = 5.0;
   double stable_share = 0.8;
