@@ -38,12 +38,20 @@ Effects without(const Effects& effects, const std::vector<std::size_t>& absent) 
   return out;
 }
 
+/// A polynomial of the carriage of a higher degree: an unnamed process of the slide is the same way
+/// in other words, and was its rival when it entered.
+bool only_carriage(const Effects& effects, const std::vector<std::size_t>& which) {
+  return std::ranges::all_of(
+      which, [&](std::size_t i) { return effects[i].candidate->term.effect->is_carriage(); });
+}
+
 }  // namespace
 
 Standing standing(ModelExtender& extender, const Effects& effects, const Gates& gates) {
   const Whitened& named = extender.search(effects).data;
   Standing out;
   for (const std::vector<std::size_t>& absent : absences(effects.size())) {
+    if (only_carriage(effects, absent)) continue;
     const FittedModel& fitted = extender.extended(without(effects, absent));
     const Linearisation& linear = fitted.fit.linear;
     const Whitened data(linear, named.noise(), named.undescribed());

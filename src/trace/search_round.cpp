@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <tuple>
 
 #include "slideway/base/parallel.hpp"
@@ -15,6 +16,7 @@ namespace {
 constexpr double kWorthRefining = 30.0;  // behind the best on the grid, or
 constexpr double kWorthShare = 0.6;      // of it: a line between two points of the grid loses some
 constexpr std::size_t kMostRefined = 12;
+constexpr std::size_t kEnoughPass = 3;  // names: a later check may refuse the best ones
 constexpr int kNoiseRounds = 3;
 
 const Finding& best_of(const std::vector<Finding>& findings) {
@@ -59,8 +61,8 @@ bool alike(const TestedCandidate& a, const TestedCandidate& b, const Gates& gate
   return std::abs(a.fitted.dot(b.fitted)) > gates.alike * a.fitted.norm() * b.fitted.norm();
 }
 
-/// Candidates refined to their best shapes, best BIC first: those near the best, and on down while
-/// none of them passes.
+/// Candidates refined to their best shapes, best BIC first: those near the best, and on down until
+/// several effects pass.
 std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
                                        const Whitened& data, std::vector<Finding> findings,
                                        const Calibration& calibration) {
@@ -82,9 +84,15 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
   std::vector<TestedCandidate> out(worth(std::max(best + kWorthRefining, kWorthShare * best)));
   parallel_for(out.size(), [&](std::size_t i) { out[i] = test(findings[i]); });
   const std::size_t pay = worth(kWorthRefining - model.gates.delta_bic);
-  const auto passes = [&](const TestedCandidate& t) { return t.refused(model.gates).empty(); };
-  while (out.size() < pay && std::ranges::none_of(out, passes))
+  std::set<std::string> passing;
+  const auto note = [&](const TestedCandidate& tested) {
+    if (tested.refused(model.gates).empty()) passing.insert(tested.name());
+  };
+  std::ranges::for_each(out, note);
+  while (out.size() < pay && passing.size() < kEnoughPass) {
     out.push_back(test(findings[out.size()]));
+    note(out.back());
+  }
   std::ranges::stable_sort(out, {}, [](const auto& each) { return each.refined.delta_bic; });
   return out;
 }
