@@ -100,8 +100,8 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
   result.travel = summarise_travel(problem.lever, model);
   if (scope != Scope::fit) {
     result.ranking = rank_effects(model, fit);
-    result.dominant =
-        dominant_effects(result.ranking, lead_by_fit(model, fit), summary.identifiability);
+    result.dominant = dominant_effects(result.ranking, lead_by_fit(model, fit),
+                                       summary.identifiability, model.gates);
   }
   if (scope == Scope::rank) return result;
   result.declared = summary;

@@ -11,8 +11,6 @@
 namespace slideway {
 namespace {
 
-constexpr double kWorthNaming = 0.1;  // smallest |correlation| listed
-
 bool is_slope(const Observation& observation) {
   return observation.profile->setup.quantity == Quantity::slope;
 }
@@ -75,7 +73,7 @@ void add_correlations(const Model& model, const Solution& fit, ModelResult& out)
       const double scale = std::sqrt(covariance(i, i) * covariance(j, j));
       if (!fit.null.identifiable[i] || !fit.null.identifiable[j] || !(scale > 0.0)) continue;
       const double correlation = std::clamp(covariance(i, j) / scale, -1.0, 1.0);
-      if (std::abs(correlation) >= kWorthNaming)
+      if (std::abs(correlation) >= model.gates.listed_correlation)
         out.correlations.emplace_back(names[i], names[j], correlation);
     }
 }
