@@ -58,12 +58,12 @@ struct LeadByCorrelation {
 
 std::optional<LeadByCorrelation> lead_by_correlation(const RankingResult& ranking,
                                                      const Gates& gates) {
-  std::map<std::string, int> seen;
-  for (const Ranking& entry : ranking.entries) ++seen[entry.profile];
+  std::map<std::string, int> effects_in;
+  for (const Ranking& entry : ranking.entries) ++effects_in[entry.profile];
   std::map<std::string, double> sums;
   std::set<std::string> profiles, significant_effects;
   for (const Ranking& entry : ranking.entries) {
-    if (seen[entry.profile] < 2) continue;
+    if (effects_in[entry.profile] < 2) continue;
     sums[entry.effect] += std::abs(entry.low_band);
     profiles.insert(entry.profile);
     if (entry.p_value < gates.ranking_p) significant_effects.insert(entry.effect);
