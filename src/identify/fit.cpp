@@ -74,9 +74,9 @@ void move(const Compressed& compressed, const Eigen::VectorXd& change, Estimate&
 /// problem: iterative refinement.
 Compressed refined(const Model& model, Solution& fit) {
   const bool is_linear = model.shapes() == 0;
-  constexpr double kNear = 0.01;       // standard deviations of the noise: where solvers end
-  constexpr double kEnough = 1e-10;    // of the noise: 10 digits where u is as large as the value
-  constexpr double kRounding = 1e-15;  // of what the model makes
+  constexpr double kNear = 0.01;         // standard deviations of the noise: where solvers end
+  constexpr double kEnough = 1e-10;      // of the noise: 10 digits where u is as large as the value
+  constexpr double kLastDigits = 1e-15;  // of what the model makes
   constexpr double kShorter = 0.9;
   const int most = is_linear ? 3 : 50;
   Compressed compressed = compress(fit.linear, fit.noise);
@@ -93,7 +93,7 @@ Compressed refined(const Model& model, Solution& fit) {
     settle_residuals(model, fit.estimate, fit.linear);
     Eigen::VectorXd all(change.size());
     all << fit.estimate.amplitudes, fit.estimate.shapes;
-    const double enough = is_linear ? kRounding * (compressed.triangle * all).norm() : kEnough;
+    const double enough = is_linear ? kLastDigits * (compressed.triangle * all).norm() : kEnough;
     if (!(size > enough)) break;
     compressed = compress(fit.linear, fit.noise);
     fit.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);

@@ -216,7 +216,7 @@ std::string residuals(const ModelResult& model) {
     for (const Contribution& c : model.contributions)
       shares.add({effect_title(c.effect), c.profile, size_text(c.rms_um, c.rms_urad),
                   fixed_point(100.0 * c.share, 1) + " %"});
-    out += heading("Share of each effect in the low band at the fitted values") + shares.text();
+    out += heading("Share of each effect in the levelled low band") + shares.text();
   }
   if (!model.residuals.empty()) {
     TextTable table({"profile", "role", "rms", "p-v"},
