@@ -10,11 +10,7 @@
 namespace slideway {
 namespace {
 
-/// A good slide: 1 µm of straightness over 200 mm (air-bearing makers' figures).
-constexpr double kGoodStraightness = 1.0 * kMicrometre;
-constexpr double kGoodTravel = 200.0;
-constexpr double kTold = 5.0;          // standard uncertainties
-constexpr double kImplausible = 10.0;  // times the good slide's
+constexpr double kTravel = 200.0;  // mm: to which Gates::most_straightness belongs
 
 /// Errors of all bodies at a pose, from the fitted effects.
 std::vector<BodyErrors> body_errors(const Model& model, const Solution& fit, const Pose& pose,
@@ -60,12 +56,12 @@ double straightness_error(const Model& model, const ModelTerm& term, const Solut
 }
 
 /// Whether a curvature of the straightness is told from zero.
-bool is_curved(const ModelTerm& term, const ModelResult& out) {
+bool is_curved(const ModelTerm& term, const ModelResult& out, const Gates& gates) {
   const std::vector<Parameter>& parameters = term.effect->parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const FittedParameter& p = out.parameters[static_cast<std::size_t>(term.first_parameter) + i];
     if (!parameters[i].by_convention && p.value && p.standard_uncertainty &&
-        std::abs(*p.value) > kTold * *p.standard_uncertainty)
+        std::abs(*p.value) > gates.size * *p.standard_uncertainty)
       return true;
   }
   return false;
@@ -79,13 +75,15 @@ void check_plausibility(const Model& model, const Solution& fit, ModelResult& ou
   for (const Observation* observation : fit.linear.observations)
     face = face || observation->profile->setup.kind == Kind::face;
   const double found = straightness_error(model, *term, fit);
-  const double part = travel / kGoodTravel;
-  const double good = kGoodStraightness * (part < 1.0 ? part * part : part);
-  if (!face || found < kImplausible * good || !is_curved(*term, out)) return;
+  const double part = travel / kTravel;
+  const double most =
+      model.gates.most_straightness * kMicrometre * (part < 1.0 ? part * part : part);
+  if (!face || found < most || !is_curved(*term, out, model.gates)) return;
   out.implausible = "the fitted straightness is " + significant(found / kMicrometre, 2) +
                     " µm over " + significant(travel, 4) +
-                    " mm; a slide of 1 µm per 200 mm makes " + significant(good / kMicrometre, 2) +
-                    " µm there";
+                    " mm; the most a slide is taken to have there is " +
+                    significant(most / kMicrometre, 2) + " µm (" +
+                    significant(model.gates.most_straightness, 2) + " µm over 200 mm)";
   out.notes.push_back(out.implausible + ": look for another cause before blaming the slide");
 }
 

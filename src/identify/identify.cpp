@@ -74,9 +74,14 @@ LowBandSummary summarise_low_band(const Observation& observation) {
           static_cast<std::size_t>(observation.values.size())};
 }
 
-}  // namespace
+/// What the low band of a profile will be; without values where the samples are too few.
+LowBandSummary planned_low_band(const Profile& profile, const LowBandOptions& options) {
+  const bool enough = (profile.positions.size() >> options.level) > 0;
+  return {profile.name, options.wavelet, options.level, options.boundary,
+          enough ? LowBand(options, profile.positions).values() : 0};
+}
 
-Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles) {
+Result summarise_inputs(const Problem& problem, const std::vector<Profile>& profiles) {
   Result result;
   result.title = problem.title;
   result.version = SLIDEWAY_VERSION;
@@ -86,13 +91,22 @@ Result summarise_data(const Problem& problem, const std::vector<Profile>& profil
   return result;
 }
 
+}  // namespace
+
+Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles) {
+  Result result = summarise_inputs(problem, profiles);
+  for (const Profile& profile : profiles)
+    result.low_band.push_back(planned_low_band(profile, problem.low_band_of(profile)));
+  return result;
+}
+
 Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope) {
   return identify(problem, profiles, fit_declared(problem, profiles), scope);
 }
 
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
                 const FittedModel& declared, Scope scope, bool with_budget) {
-  Result result = summarise_data(problem, profiles);
+  Result result = summarise_inputs(problem, profiles);
   const auto& [model, fit] = declared;
   for (const Observation& observation : model.observations)
     result.low_band.push_back(summarise_low_band(observation));
@@ -100,8 +114,8 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
   result.travel = summarise_travel(problem.lever, model);
   if (scope != Scope::fit) {
     result.ranking = rank_effects(model, fit);
-    result.dominant =
-        dominant_effects(result.ranking, lead_by_fit(model, fit), summary.identifiability);
+    result.dominant = dominant_effects(result.ranking, lead_by_fit(model, fit),
+                                       summary.identifiability, model.gates);
   }
   if (scope == Scope::rank) return result;
   result.declared = summary;

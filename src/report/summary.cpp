@@ -8,18 +8,26 @@
 #include "slideway/base/units.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/identifiability.hpp"
+#include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "text_parts.hpp"
 
 namespace slideway {
 namespace {
 
-constexpr double kHarmless = 0.1;        // of U: a shift that is none of the digits that matter
-constexpr std::size_t kFewLetters = 36;  // names that leave room for a sentence
+constexpr std::size_t kFewLetters = 36;            // names that leave room for a sentence
+constexpr std::size_t kBoxText = kLineWidth - 11;  // beside the label
 
-bool is_harmless(const Result& result) {
-  const std::optional<Shift> shift = largest_shift(result);
-  return shift && std::abs(shift->in_expanded_uncertainties) <= kHarmless;
+/// Of the declared numbers, in U: what is no alarm.
+double harmless_shift(const TraceResult& trace) {
+  for (const auto& [name, value] : trace.gates)
+    if (name == "harmless_shift") return value;
+  return Gates{}.harmless_shift;
+}
+
+bool is_harmless(const Analysis& analysis) {
+  const std::optional<Shift> shift = largest_shift(analysis.result);
+  return shift && std::abs(shift->in_expanded_uncertainties) <= harmless_shift(*analysis.trace);
 }
 
 std::string in_expanded_uncertainties(double shift) {
@@ -34,6 +42,25 @@ std::string found(const TraceResult& trace) {
     out.push_back(effect_titles(names, " or "));
   }
   return joined(out, " and ");
+}
+
+/// The same in so many letters, if it can be: rivals are counted, and the last effects.
+std::string found_in_brief(const TraceResult& trace, std::size_t letters) {
+  std::string out = found(trace);
+  std::vector<std::string> names;
+  for (const TraceRound& round : trace.rounds)
+    names.push_back(effect_title(round.accepted) +
+                    (round.ambiguous_with.empty()
+                         ? ""
+                         : " (" + counted(round.ambiguous_with.size(), "rival") + ")"));
+  std::size_t left_out = 0;
+  while (code_points(out) > letters && left_out < trace.rounds.size()) {
+    out = joined(names, " and ") +
+          (left_out > 0 ? " and " + std::to_string(left_out) + " more" : std::string());
+    names.pop_back();
+    ++left_out;
+  }
+  return out;
 }
 
 std::string left_over(const TraceResult& trace) {
@@ -58,7 +85,6 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   const TraceResult& trace = *analysis.trace;
   const std::string names = found(trace);
   const bool few = names.size() <= kFewLetters;
-  const std::string beside = trace.rounds.empty() ? "" : ", beside what was found";
   switch (trace.verdict) {
     case TraceVerdict::nothing_missing:
       return say(Alarm::good, "Nothing missing", "the model explains the profiles down to noise");
@@ -67,9 +93,9 @@ void say_verdict(const Analysis& analysis, Summary& out) {
           Alarm::good, "Explained",
           (few ? names + " was" : "what is named below was") + " missing and is in the model now");
     case TraceVerdict::ambiguous:
-      if (is_harmless(analysis.result))
+      if (is_harmless(analysis))
         return say(Alarm::plain, "Ambiguous, without harm",
-                   "what is missing moves nothing by 0.1 U");
+                   "what is missing moves nothing by " + number(harmless_shift(trace), 2) + " U");
       return say(Alarm::warn, "Ambiguous",
                  few ? names + " is missing: the data cannot tell which"
                      : "the data cannot tell which effect is missing");
@@ -78,8 +104,7 @@ void say_verdict(const Analysis& analysis, Summary& out) {
     case TraceVerdict::unnamed:
       break;
   }
-  say(Alarm::bad, "Unnamed",
-      "structure is left that no known effect explains" + left_over(trace) + beside);
+  say(Alarm::bad, "Unnamed", "no known effect explains what is left" + left_over(trace));
 }
 
 std::string straightness_of(const Result& result) {
@@ -106,24 +131,28 @@ std::string squareness_of(const Result& result) {
 
 void say_crosscheck(const Result& result, Summary& out) {
   const Crosscheck& checks = result.crosscheck;
-  std::vector<std::string> parts;
+  std::vector<std::string> parts, consistent;
   const auto& angle = checks.squareness;
   if (angle && angle->En) {
     QuantityValue indirect;
     indirect.value = angle->indirect_rad;
     indirect.expanded_uncertainty = angle->indirect_U_rad;
-    parts.push_back(
-        std::string(angle->verdict == Consistency::inconsistent ? "INCONSISTENT" : "consistent") +
-        " with the run-out, Eq. (21): " + value_text(indirect, kMicroradian) +
-        " µm/m, E_n = " + number(*angle->En, 2));
+    const bool is_consistent = angle->verdict != Consistency::inconsistent;
+    (is_consistent ? consistent : parts)
+        .push_back(std::string(is_consistent ? "consistent" : "INCONSISTENT") +
+                   " with the run-out, Eq. (21): " + value_text(indirect, kMicroradian) +
+                   " µm/m, E_n = " + number(*angle->En, 2));
   }
   for (const ProfileCheck& check : checks.profiles)
     if (check.verdict == Consistency::inconsistent)
       parts.push_back("INCONSISTENT: " + check.what + " of " + joined(check.profiles, " and ") +
                       (check.En ? ", E_n = " + number(*check.En, 2) : ""));
-  for (const HeldOutCheck& check : checks.held_out)
-    parts.push_back(check.profile + ", held out, " +
-                    (check.verdict == HeldOutVerdict::fits ? "fits" : "DOES NOT FIT"));
+  for (const HeldOutCheck& check : checks.held_out) {
+    const bool fits = check.verdict == HeldOutVerdict::fits;
+    (fits ? consistent : parts)
+        .push_back(check.profile + ", held out, " + (fits ? "fits" : "DOES NOT FIT"));
+  }
+  std::ranges::move(consistent, std::back_inserter(parts));
   out.has_crosscheck = !parts.empty();
   if (parts.empty())
     parts.push_back("none" + (angle && !angle->reason.empty() ? ": " + angle->reason : ""));
@@ -131,14 +160,17 @@ void say_crosscheck(const Result& result, Summary& out) {
 }
 
 void say_missing(const Analysis& analysis, Summary& out) {
-  out.missing = "nothing that these data show";
-  if (!analysis.trace) out.missing = "not looked for";
+  out.missing = analysis.trace ? "nothing that these data show" : "not looked for";
+  out.missing_in_brief = out.missing;
   if (!was_extended(analysis)) return;
   out.has_missing = true;
-  out.missing = found(*analysis.trace);
+  std::string moved;
   if (const auto shift = largest_shift(analysis.result))
-    out.missing = "moved " + shift->what + " by " +
-                  in_expanded_uncertainties(shift->in_expanded_uncertainties) + ": " + out.missing;
+    moved = "moved " + shift->what + " by " +
+            in_expanded_uncertainties(shift->in_expanded_uncertainties) + ": ";
+  const std::size_t left = kBoxText - std::min(kBoxText, code_points(moved));
+  out.missing = moved + found(*analysis.trace);
+  out.missing_in_brief = moved + found_in_brief(*analysis.trace, left);
 }
 
 std::string next_step(const Analysis& analysis) {
@@ -146,7 +178,7 @@ std::string next_step(const Analysis& analysis) {
   if (!result.final) return "slideway identify, which fits and looks for what is missing";
   for (const UndeterminedDirection* direction : open_directions(*result.final))
     if (!direction->advice.empty()) return with_titles(direction->advice);
-  if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(result))
+  if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(analysis))
     return "none is needed for these numbers";
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::inconsistent)
@@ -270,6 +302,8 @@ Summary summary_of(const Analysis& analysis) {
   say_crosscheck(analysis.result, out);
   say_missing(analysis, out);
   out.next = next_step(analysis);
+  out.next_in_brief =
+      code_points(out.next) > kBoxText ? out.next.substr(0, out.next.find("; ")) : out.next;
   return out;
 }
 

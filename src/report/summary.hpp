@@ -21,6 +21,7 @@ struct Summary {
   std::string crosscheck;
   std::string missing;  // what was missing and what that had done
   std::string next;
+  std::string missing_in_brief, next_in_brief;  // in a line of the box, if it can be
   bool has_crosscheck = false, has_missing = false;
 };
 
@@ -47,8 +48,9 @@ std::string value_of(const Assumption& assumption);
 
 /// The declared quantity that the missing effects had moved most.
 struct Shift {
-  std::string what;   // for people
-  double in_expanded_uncertainties = 0.0;  // declared minus final, in expanded uncertainties of the final
+  std::string what;  // for people
+  double in_expanded_uncertainties =
+      0.0;  // declared minus final, in expanded uncertainties of the final
 };
 
 /// None where the loop has added nothing or nothing can be compared.

@@ -9,17 +9,16 @@
 namespace slideway {
 namespace {
 
-constexpr double kMostSpread = 0.3;  // of atanh π and ln σ: a flat likelihood is no wider
 constexpr std::uint64_t kSeed = 20120712;
 
 /// Noise parameters as their estimate's covariance has them.
-Noise drawn(const Noise& noise, RandomStream& random) {
+Noise drawn(const Noise& noise, double most_spread, RandomStream& random) {
   if (!noise.is_estimated()) return noise;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(noise.covariance);
   Eigen::VectorXd deviation(noise.covariance.rows());
   for (double& value : deviation) value = random.normal();
   const Eigen::VectorXd spread =
-      eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().cwiseMin(kMostSpread);
+      eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().cwiseMin(most_spread);
   return noise.at(noise.parameters() + eigen.eigenvectors() * spread.cwiseProduct(deviation));
 }
 
@@ -33,13 +32,14 @@ double Calibration::threshold(double significance) const {
   return location - scale * std::log(-std::log1p(-significance));
 }
 
-Eigen::MatrixXd null_residuals(const Whitened& data, Eigen::Index count) {
+Eigen::MatrixXd null_residuals(const Whitened& data, const Gates& gates) {
+  const auto count = static_cast<Eigen::Index>(gates.resamples);
   Eigen::MatrixXd out(data.rows(), count);
   for (Eigen::Index j = 0; j < count; ++j) {
     RandomStream random(kSeed + static_cast<std::uint64_t>(j), "null");
     for (double& value : out.col(j)) value = random.normal();
     for (std::size_t i = 0; i < data.observations(); ++i) {
-      const Noise noise = drawn(data.noise()[i], random);
+      const Noise noise = drawn(data.noise()[i], gates.resample_spread, random);
       auto rows = out.block(data.first_row(i), j, data.count(i), 1);
       noise.colour(rows);
     }
@@ -51,7 +51,7 @@ Calibration calibrate(const Whitened& data, const Candidates& candidates, const 
                       const std::function<void(double)>& progress) {
   const auto resamples = static_cast<Eigen::Index>(gates.resamples);
   const Eigen::VectorXd gains =
-      largest_gains(data, candidates, null_residuals(data, resamples), progress);
+      largest_gains(data, candidates, null_residuals(data, gates), progress);
   constexpr double kEuler = 0.5772156649015329;
   const double mean = gains.mean();
   const double variance =

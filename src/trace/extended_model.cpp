@@ -5,11 +5,8 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kMostValues = 2048;  // of a profile, in a search
-
-bool is_long(const Observation& observation) {
-  return (observation.profile->positions.size() >> observation.low_band.options().level) >
-         kMostValues;
+bool has_more_values(const Observation& observation, std::size_t most) {
+  return (observation.profile->positions.size() >> observation.low_band.options().level) > most;
 }
 
 Model with(Model model, const std::vector<AcceptedEffect>& effects) {
@@ -31,8 +28,10 @@ std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::si
 ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
                              const FittedModel& declared, const Progress& progress)
     : declared_(declared), progress_(progress) {
+  const auto most = static_cast<std::size_t>(declared.model.gates.search_values);
+  const auto is_long = [&](const Observation& each) { return has_more_values(each, most); };
   if (std::ranges::any_of(declared.model.observations, is_long))
-    coarser_ = fit_model(build_model(problem, profiles, kMostValues));
+    coarser_ = fit_model(build_model(problem, profiles, most));
   if (progress_) progress_("making the columns of every candidate", 0.0);
   dictionary_ = make_dictionary(base().model, problem, base().fit.linear.prior_rows.rows());
 }

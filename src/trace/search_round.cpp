@@ -13,9 +13,6 @@
 namespace slideway {
 namespace {
 
-constexpr double kWorthRefining = 30.0;  // behind the best on the grid, or
-constexpr double kWorthShare = 0.6;      // of it: a line between two points of the grid loses some
-constexpr std::size_t kMostRefined = 12;
 constexpr std::size_t kEnoughPass = 3;  // names: a later check may refuse the best ones
 constexpr int kNoiseRounds = 3;
 
@@ -78,12 +75,14 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
   const auto worth = [&](double most) {
     const auto first_not = std::ranges::find_if(
         findings, [&](const Finding& f) { return f.rank == 0 || f.delta_bic > most; });
-    return std::min<std::size_t>(first_not - findings.begin(), kMostRefined);
+    return std::min<std::size_t>(first_not - findings.begin(),
+                                 static_cast<std::size_t>(model.gates.most_refined));
   };
   const double best = findings.front().delta_bic;
-  std::vector<TestedCandidate> out(worth(std::max(best + kWorthRefining, kWorthShare * best)));
+  std::vector<TestedCandidate> out(
+      worth(std::max(best + model.gates.refine_bic, model.gates.refine_share * best)));
   parallel_for(out.size(), [&](std::size_t i) { out[i] = test(findings[i]); });
-  const std::size_t pay = worth(kWorthRefining - model.gates.delta_bic);
+  const std::size_t pay = worth(model.gates.refine_bic - model.gates.delta_bic);
   std::set<std::string> passing;
   const auto note = [&](const TestedCandidate& tested) {
     if (tested.refused(model.gates).empty()) passing.insert(tested.name());

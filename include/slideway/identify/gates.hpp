@@ -47,6 +47,24 @@ struct Gates {
   double rank_tolerance = 1e-9;
   double resamples = 99.0;
   double detection_power = 0.8;
+  double search_values = 2048.0;
+  double refine_bic = 30.0;
+  double refine_share = 0.6;
+  double most_refined = 12.0;
+  double rival_reach = 4.0;
+  double tried_changes = 4.0;
+  double noise_spread = 1.0;
+  double resample_spread = 0.3;
+
+  // What is said beside the verdict.
+  double nearly_alike = 0.95;
+  double ranking_p = 0.05;
+  double ranking_lead = 0.8;
+  double listed_correlation = 0.1;
+  double most_straightness = 10.0;
+  double most_of_range = 100.0;
+  double absorbed_share = 0.02;
+  double harmless_shift = 0.1;
 };
 
 /// One gate, as the problem file and the help have it.

@@ -82,7 +82,7 @@ using ParameterCorrelation = std::tuple<std::string, std::string, double>;
 /// One effect's share of the low band at the fitted values.
 struct Contribution {
   std::string effect, profile;
-  std::optional<double> rms_um, rms_urad;  // about its mean
+  std::optional<double> rms_um, rms_urad;  // of what levelling leaves
   double share = 0.0;  // of the sum of mean squares of all effects on that profile
 };
 

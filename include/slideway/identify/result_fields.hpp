@@ -195,7 +195,7 @@ template <>
 inline constexpr auto kRecord<Contribution> =
     record("Contribution", "An effect's part of a profile's low band.",
            field("effect", &Contribution::effect), field("profile", &Contribution::profile),
-           field("rms_um", &Contribution::rms_um, "about its mean"),
+           field("rms_um", &Contribution::rms_um, "of what levelling leaves of it"),
            field("rms_urad", &Contribution::rms_urad),
            field("share", &Contribution::share, "of the sum of mean squares of all effects"));
 

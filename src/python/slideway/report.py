@@ -344,7 +344,7 @@ class Contribution:
     effect: str
     profile: str
     rms_um: float | None
-    """about its mean"""
+    """of what levelling leaves of it"""
     rms_urad: float | None
     share: float
     """of the sum of mean squares of all effects"""
