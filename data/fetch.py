@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """fetch.py DIR [--list sources.tsv]: the public measured data that tests and problems use.
 
-Each line of the list is a file of DIR, its SHA-256, how it is made, and the addresses it is made from:
+Each line of the list is a file of DIR, its SHA-256, how it is made, and the addresses for it:
   copy      the file, byte for byte
   test_bar  rows made from the two logs of the indicators on the test bar
   level     station readings from the log of an electronic level
@@ -22,7 +22,7 @@ TIMEOUT = 60.0  # seconds without a byte
 
 
 def test_bar(logs: list[bytes]) -> bytes:
-    """Rows of two logs of (UNIX time s, reading mm) pairs, little-endian float64; the first is the bar's."""
+    """Rows of two logs of pairs of float64, UNIX time and reading in mm: of the bar, of the feed."""
     bar, feed = (list(struct.iter_unpack("<dd", log)) for log in logs)
     begin = bar[0][0]
     rows = ["index,t712_s,bar_mm,t710_s,zind_mm"]
@@ -84,7 +84,8 @@ def fetch(path: Path, wanted: str, how: str, addresses: list[str]) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--list", type=Path, default=Path(__file__).with_name("sources.tsv"))
     options = parser.parse_args()

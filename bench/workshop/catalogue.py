@@ -82,13 +82,11 @@ def time_periodic(shop: Shop, rng: Rng, size: float) -> Effect:
 
 
 def revolution_periodic(shop: Shop, rng: Rng, size: float) -> Effect:
-    """A spindle line near a whole number of cycles a turn: what a turned face samples of it is slow."""
-    cycles, whole_turns = shop.feed / wavelength(shop, rng), int(rng.integers(0, 4))
+    """A spindle line near 0 to 3 cycles a turn: read once a turn, along a radius, it is slow."""
+    cycles, harmonic = shop.feed / wavelength(shop, rng), int(rng.integers(0, 4))
     phase = rng.uniform(0, 2 * np.pi)
-    def motion(tool: Pass) -> Array:
-        angle = 2 * np.pi * (cycles * tool.turns + whole_turns * np.floor(tool.turns))
-        return abs(size) * np.cos(angle + phase)
-    return Effect("amplitude_um", abs(size), cycles, motion, twins=("time_periodic",))
+    return Effect("amplitude_um", abs(size), cycles, lambda tool: abs(size) * np.cos(
+        2 * np.pi * (harmonic + cycles) * tool.turns + phase), twins=("time_periodic",))
 
 
 def centre_height(shop: Shop, rng: Rng, size: float) -> Effect:
@@ -108,7 +106,8 @@ def speed_effect(shop: Shop, rng: Rng, size: float) -> Effect:
 def edge_roll_off(shop: Shop, rng: Rng, size: float) -> Effect:
     """The metal yields at the rim, over one to six hundredths of the radius."""
     wide = shop.radius * between(rng, 0.01, 0.06)
-    return Effect("amplitude_um", size, wide, form=lambda r, theta: size * np.exp((r - shop.radius) / wide))
+    return Effect("amplitude_um", size, wide,
+                  form=lambda r, theta: size * np.exp((r - shop.radius) / wide))
 
 
 def cup(shop: Shop, rng: Rng, size: float) -> Effect:

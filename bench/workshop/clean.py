@@ -64,7 +64,9 @@ def unequal(rng: Rng, draw: Rng) -> Case:
 def one_tenfold(rng: Rng, draw: Rng) -> Case:
     """One cut is ten times as noisy as its sisters."""
     bad = int(rng.integers(3))
-    return of(rng, draw, lambda shop, d, cut: (10 if cut == bad else 1) * noise.white(d, shop.points))
+    def values(shop: Shop, d: Rng, cut: int) -> Array:
+        return (10.0 if cut == bad else 1.0) * noise.white(d, shop.points)
+    return of(rng, draw, values)
 
 
 def long_memory(rng: Rng, draw: Rng) -> Case:
@@ -85,7 +87,7 @@ def random_walk(rng: Rng, draw: Rng) -> Case:
 
 
 def repeats(rng: Rng, draw: Rng) -> Case:
-    """Every trace taken twice on one line, nm apart: texture repeats, the instrument's noise does not."""
+    """Every trace taken twice, nm apart: texture repeats, the noise of the instrument does not."""
     shop = draw_shop(rng)
     share = float(rng.uniform(0.3, 1))
     base = [carriage(shop, polynomial_way(shop))]
@@ -96,7 +98,8 @@ def repeats(rng: Rng, draw: Rng) -> Case:
             errors = grain + share * shop.sigma * noise.white(draw, shop.points)
             setup = Setup(keys={"surface": name})
             one = profile(shop, draw, name + number, cut, base, errors, setup=setup)
-            profiles.append(replace(one, x=one.x + draw.normal(0, 5e-6) if number == "2" else one.x))
+            off = draw.normal(0, 5e-6) if number == "2" else 0.0
+            profiles.append(replace(one, x=one.x + off))
     return Case(shop, profiles)
 
 

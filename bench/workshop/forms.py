@@ -7,7 +7,7 @@ import numpy as np
 
 import noise
 from shop import NAMES, Case, Hidden, Profile, Setup, Shop, Way, between, carriage, draw_shop
-from shop import drawn_way, polynomial_way, profile, sign, three_cuts, whole
+from shop import Value, drawn_way, polynomial_way, profile, sign, three_cuts, whole
 from surface import Array, Pass
 
 Rng = np.random.Generator
@@ -35,8 +35,10 @@ def kink(rng: Rng, draw: Rng) -> Case:
 
 def joint(rng: Rng, draw: Rng) -> Case:
     """Two lengths of bed: a step of 0.2 to 2 µm and a change of slope."""
-    place, angle, step = rng.uniform(0.2, 0.85), rng.normal(0, 0.01), sign(rng) * between(rng, 0.2, 2)
-    return bent(rng, draw, lambda shop, u: (u > place) * (step + angle * shop.radius * (u - place)))
+    place, angle = rng.uniform(0.2, 0.85), rng.normal(0, 0.01)
+    step = sign(rng) * between(rng, 0.2, 2)
+    return bent(rng, draw, lambda shop, u: (u > place) * (
+        step + angle * shop.radius * (u - place)))
 
 
 def dip(rng: Rng, draw: Rng) -> Case:
@@ -48,7 +50,8 @@ def dip(rng: Rng, draw: Rng) -> Case:
 def narrow_dip(rng: Rng, draw: Rng) -> Case:
     """A dent of 0.2 to 2 µm, one or two hundredths of the radius wide."""
     place, depth, width = rng.uniform(0.2, 0.9), between(rng, 0.2, 2), between(rng, 0.01, 0.02)
-    return bent(rng, draw, lambda shop, u: -depth * np.exp(-0.5 * ((u - place) / width) ** 2), pad=0.01)
+    return bent(rng, draw, lambda shop, u: -depth * np.exp(-0.5 * ((u - place) / width) ** 2),
+                pad=0.01)
 
 
 def worn_zone(rng: Rng, draw: Rng) -> Case:
@@ -62,14 +65,15 @@ def worn_zone(rng: Rng, draw: Rng) -> Case:
 def varying_wave(rng: Rng, draw: Rng) -> Case:
     """A wave of the way whose amplitude grows from the axis and whose pitch drifts."""
     waves, drift, size = rng.uniform(4, 12), rng.uniform(-0.3, 0.3), between(rng, 0.1, 1)
-    return bent(rng, draw, lambda shop, u: size * u**2 * np.cos(2 * np.pi * waves * (u + drift * u**2)),
-                (*LOCAL, "slide_periodic"))
+    return bent(rng, draw, lambda shop, u: size * u**2 * np.cos(
+        2 * np.pi * waves * (u + drift * u**2)), (*LOCAL, "slide_periodic"))
 
 
 def walking_way(rng: Rng, draw: Rng) -> Case:
     """A scraped way: a random walk that grows from the axis, 0.2 to 2 µm."""
     walk, size = noise.random_walk(rng, 400), between(rng, 0.2, 2)
-    return bent(rng, draw, lambda shop, u: size * u * np.interp(u, np.linspace(0, 1, 400), walk - walk[0]))
+    at = np.linspace(0, 1, 400)
+    return bent(rng, draw, lambda shop, u: size * u * np.interp(u, at, walk - walk[0]))
 
 
 def sag(rng: Rng, draw: Rng) -> Case:
@@ -85,7 +89,7 @@ def bore(rng: Rng, draw: Rng) -> Case:
 
 
 def lobes(rng: Rng, draw: Rng, order: int) -> Case:
-    """Chucking: lobes 0.2 to 1.9 µm high, growing as (r/R)^n; three azimuths of one disc, or of two."""
+    """Lobes 0.2 to 1.9 µm high, growing as (r/R)^n; three azimuths of one disc, or of two."""
     shop = draw_shop(rng)
     size, start = between(rng, 0.2, 1.9), float(rng.uniform(0, 40))
     azimuths = start + np.array([0, rng.uniform(35, 80), rng.uniform(95, 160)])
@@ -95,9 +99,11 @@ def lobes(rng: Rng, draw: Rng, order: int) -> Case:
         phase = rng.uniform(0, 2 * np.pi)
         form = lambda r, theta, p=phase: size * (r / shop.radius) ** order * np.cos(order * theta - p)
         for number, azimuth in enumerate(azimuths):
-            setup = Setup(float(azimuth), keys={"azimuth_deg": float(azimuth), "surface": f"disc {name}"})
+            keys: dict[str, Value] = {"azimuth_deg": float(azimuth), "surface": f"disc {name}"}
+            setup = Setup(float(azimuth), keys=keys)
             profiles.append(profile(shop, draw, f"{name}{number}", cut,
-                                    [carriage(shop, polynomial_way(shop))], forms=[form], setup=setup))
+                                    [carriage(shop, polynomial_way(shop))], forms=[form],
+                                    setup=setup))
     hidden = Hidden(("chucking_lobes",), of_noise=size / shop.sigma)
     return Case(shop, profiles, [hidden])
 
@@ -228,7 +234,8 @@ def thousand(rng: Rng, draw: Rng) -> Case:
 
 def metres(rng: Rng, draw: Rng) -> Case:
     """Positions of one profile are metres and declared mm."""
-    return blundered(rng, draw, r"\bmetres?\b|\bm instead\b|1000", lambda p: replace(p, x=p.x / 1000))
+    return blundered(rng, draw, r"\bmetres?\b|\bm instead\b|1000",
+                     lambda p: replace(p, x=p.x / 1000))
 
 
 def swapped_direction(rng: Rng, draw: Rng) -> Case:
@@ -250,7 +257,8 @@ def clock_blunder(rng: Rng, draw: Rng, words: str, key: str) -> Case:
     starts = [late if key == "start_s" and i == where else 0.0 for i in range(3)]
     def only(cut: int) -> Motions:
         return [lambda tool: size * (1 - np.exp(-(tool.seconds + starts[cut]) / part))]
-    hidden = Hidden(("thermal_drift",), cuts=(NAMES[where],), words=words, of_noise=abs(size) / shop.sigma)
+    hidden = Hidden(("thermal_drift",), cuts=(NAMES[where],), words=words,
+                    of_noise=abs(size) / shop.sigma)
     case = whole(shop, draw, [hidden], only=only)
     profiles = list(case.profiles)
     if key == "cut_direction":

@@ -1,4 +1,4 @@
-"""Noise of instruments and textures of metal: each function gives n values of standard deviation 1."""
+"""Noise of instruments and textures of metal: n values of standard deviation 1 each."""
 
 import numpy as np
 

@@ -71,7 +71,8 @@ def within(estimate: Record | None, truth: float) -> Record | None:
 
 def limit(report: Record, hidden: Hidden) -> float | None:
     """The stated detection limit of the effect at its shape, between those printed by logarithms."""
-    stated = [x for x in report["trace"].get("detection_limits", []) if x["effect"] == hidden.names[0]]
+    limits = report["trace"].get("detection_limits", [])
+    stated = [x for x in limits if x["effect"] == hidden.names[0]]
     if not stated or stated[0]["value"] is None:
         return None
     points = [(math.log(p["shape"]), math.log(p["value"])) for p in stated[0]["by_shape"]

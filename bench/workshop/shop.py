@@ -57,7 +57,7 @@ def draw_shop(rng: Rng, diameter: bool | None = None, cone: tuple[float, float] 
     nose = between(rng, 0.4, 1.6)
     scallop = between(rng, 2e-5, 3e-4)  # mm: f = sqrt(8 r h), the finishing feed of that height
     degree = int(rng.choice([3, 3, 3, 2, 5]))
-    lever = str(rng.choice(["paper", "split"]))
+    lever = str(rng.choice(["paper", "paper", "paper", "split"]))
     return Shop(
         radius=between(rng, 40, 300), rpm=between(rng, 200, 1500), nose=nose,
         feed=float(np.sqrt(8 * nose * scallop)), points=int(rng.integers(600, 1401)),
@@ -82,7 +82,7 @@ NAMES = ["inward", "coarse", "outward"]
 
 @dataclass(frozen=True)
 class Way:
-    """Form of the guideway along the slide, µm, and its slope, µm/mm, in its own gauge: 0 at x = 0."""
+    """Form of the guideway along the slide, µm, and its slope, µm/mm."""
 
     height: Callable[[Array], Array]
     slope: Callable[[Array], Array]
@@ -93,7 +93,8 @@ def polynomial_way(shop: Shop) -> Way:
     def height(x: Array) -> Array:
         return np.sum([b * (x / shop.radius) ** k for k, b in terms], axis=0)
     def slope(x: Array) -> Array:
-        return np.sum([k * b * (x / shop.radius) ** (k - 1) for k, b in terms], axis=0) / shop.radius
+        slopes = [k * b * (x / shop.radius) ** (k - 1) for k, b in terms]
+        return np.sum(slopes, axis=0) / shop.radius
     return Way(height, slope)
 
 
@@ -138,7 +139,8 @@ class Setup:
 
 
 def profile(shop: Shop, rng: Rng, name: str, cut: Cut, motions: Sequence[Motion],
-            errors: Array | None = None, forms: Sequence[Form] = (), setup: Setup = Setup()) -> Profile:
+            errors: Array | None = None, forms: Sequence[Form] = (),
+            setup: Setup = Setup()) -> Profile:
     """A trace with its noise (white unless given) and the keys a user would write for it."""
     along = shop.stations()
     trace = Trace(along - setup.off_centre, np.radians(setup.azimuth_deg), setup.aside, shop.tip,
@@ -187,7 +189,8 @@ def whole(shop: Shop, rng: Rng, hidden: Sequence[Hidden] = (), motions: Sequence
     base = [carriage(shop, polynomial_way(shop))]
     if way is not None:
         base.append(carriage(replace(shop, squareness=0.0), way))
-    profiles = [profile(shop, rng, NAMES[i], cut, [*base, *motions, *only(i)], errors(i), forms, setup(i))
+    profiles = [profile(shop, rng, NAMES[i], cut, [*base, *motions, *only(i)], errors(i), forms,
+                        setup(i))
                 for i, cut in enumerate(three_cuts(shop)[:cuts])]
     return Case(shop, profiles, list(hidden))
 

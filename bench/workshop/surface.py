@@ -77,7 +77,7 @@ def cut_face(cut: Cut, motion: Motion, r: Array, theta: Array) -> Array:
 
 
 def rolled_ball(height: Array, step: float, tip: float) -> Array:
-    """Lowest point of a ball of radius tip that rolls over a profile sampled at step (dilation)."""
+    """Lowest point of a ball of radius tip that rolls over a profile sampled at step."""
     reach = min(int(np.ceil(0.15 * tip / step)), 12)
     path = height.copy()
     for shift in range(1, reach + 1):

@@ -31,8 +31,8 @@ GROUPS: dict[str, Sequence[Maker]] = {
     "one profile": [catalogue.effect_of_one_profile],
 }
 CLASSES = {maker.__name__: (group, maker) for group, makers in GROUPS.items() for maker in makers}
-STABLE = ["white", "long_memory", "joint", "kink", "worn_zone", "step_in_one", "two_lobes", "off_centre",
-          "slide_periodic", "thermal_drift"]
+STABLE = ["white", "long_memory", "joint", "kink", "worn_zone", "step_in_one", "two_lobes",
+          "off_centre", "slide_periodic", "thermal_drift"]
 DRAWS = 20
 
 
@@ -43,7 +43,8 @@ def make(name: str, seed: int, draw: int) -> Case:
                             np.random.default_rng([seed, number, 1 + draw]))
 
 
-def one(program: str, name: str, seed: int, draw: int, group: str, keep: Path | None = None) -> Record:
+def one(program: str, name: str, seed: int, draw: int, group: str,
+        keep: Path | None = None) -> Record:
     about = {"class": name, "group": group, "seed": seed, "draw": draw}
     return about | score(make(name, seed, draw), program, f"{name} {seed}", keep)
 
@@ -84,13 +85,15 @@ def run(options: argparse.Namespace) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawTextHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
     running = commands.add_parser("run", help="score the program")
-    running.add_argument("--classes", default="all", help="classes and groups, with commas between them")
+    running.add_argument("--classes", default="all",
+                         help="classes and groups, with commas between them")
     running.add_argument("--cases", type=int, default=40, help="of each class")
     running.add_argument("--seed-base", type=int, default=1000,
-                         help="first seed: 1000 is the part that tuning may look at, 500000 the fresh part")
+                         help="first seed; from 1000: may be looked at, from 500000: fresh")
     running.add_argument("--jobs", type=int, default=1)
     running.add_argument("--out", default="build/workshop.jsonl")
     single = commands.add_parser("case", help="one case, its files kept")

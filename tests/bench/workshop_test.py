@@ -1,6 +1,7 @@
 """bench/workshop against published formulas: geometry of the cut, of the ball, of the filters."""
 
 import json
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -168,6 +169,31 @@ class Table(unittest.TestCase):
     def test_stability_counts_the_statement_said_most_often(self):
         cases = [record("white", 1, 0, group="stability", verdict=v) for v in ["unnamed"] * 3 + ["ambiguous"]]
         self.assertIn("3 of 4 (75.0 %) | unnamed; 2 statements |", table.page(cases))
+
+
+PROGRAM = """#!/usr/bin/python3
+import pathlib, sys
+_, command, problem, quiet, json, out = sys.argv
+text = pathlib.Path(problem).read_text()
+if "surface" in text:
+    sys.exit("slideway: problem.toml:28: profile.surface: unknown key")
+pathlib.Path(out).write_text('{report}')
+"""
+
+
+class Run(unittest.TestCase):
+    def test_records_of_a_program_become_a_table(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program, records = Path(folder, "program"), Path(folder, "records.jsonl")
+            program.write_text(PROGRAM.replace("{report}", json.dumps(REPORT)))
+            program.chmod(0o755)
+            command = [sys.executable, "-B", workshop.__file__]
+            subprocess.run([*command, "run", "--classes", "white,two_lobes", "--cases", "2", "--jobs", "2",
+                            "--program", program, "--out", records], check=True)
+            table = subprocess.run([*command, "table", records], check=True, capture_output=True, text=True)
+        self.assertIn("| clean: a wrong name alone | ≤ 1 % | 2 of 2 (100.0 %) | `white 100", table.stdout)
+        self.assertIn("| failed: slideway: problem.toml:28: profile.surface: unknown key | 2 | `two_lobes 1000` |",
+                      table.stdout)
 
 
 if __name__ == "__main__":
