@@ -91,7 +91,7 @@ def revolution_periodic(shop: Shop, rng: Rng, size: float) -> Effect:
 
 def centre_height(shop: Shop, rng: Rng, size: float) -> Effect:
     """The edge passes the axis at a distance: A (sqrt(r^2 + h^2) - r) / h."""
-    high = between(rng, 0.3, 5)
+    high = between(rng, 0.5, 10)
     return Effect("amplitude_um", size, high,
                   lambda tool: size * (np.hypot(tool.r, high) - tool.r) / high)
 

@@ -129,10 +129,10 @@ def torn(rng: Rng, draw: Rng) -> Case:
 
 
 def ultrasonic(rng: Rng, draw: Rng) -> Case:
-    """Ultrasonic vibration of the tool: thousands of cycles a turn, the phase wanders in between."""
+    """Ultrasonic vibration of the tool: thousands of cycles a turn, its phase soon lost."""
     shop = draw_shop(rng)
     size = shop.sigma * between(rng, 1, 5)
-    cycles, wander = float(rng.uniform(800, 6000)), between(rng, 0.05, 1)
+    cycles, wander = float(rng.uniform(800, 6000)), between(rng, 0.3, 2)
     def only(cut: int) -> list[Callable[[Pass], Array]]:
         number = int(three_cuts(shop)[cut].turns(np.array([0.0, shop.radius])).max()) + 10
         phase = np.cumsum(draw.normal(0, wander, number))

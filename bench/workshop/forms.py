@@ -15,71 +15,69 @@ Motions = list[Callable[[Pass], Array]]
 LOCAL = ("local_form", "straightness")
 
 
-def bent(rng: Rng, draw: Rng, form: Callable[[Shop, Array], Array], names: tuple[str, ...] = LOCAL,
+def bent(rng: Rng, draw: Rng, form: Callable[[Array], Array], names: tuple[str, ...] = LOCAL,
          pad: float = 0.03, most: int = 5) -> Case:
-    """A case whose way has a form beside its polynomial; 0 with slope 0 at the spindle axis."""
+    """A case whose way has a form beside its polynomial, 0 with slope 0 at the spindle axis.
+
+    The form is scaled: with its pitch on its lever it moves the tool by 5 to 60 sigma.
+    """
     shop = draw_shop(rng)
     shop = replace(shop, degree=min(shop.degree, most), bow=shop.bow[: most - 1])
-    way = drawn_way(shop, lambda x: form(shop, x / shop.radius), pad)
-    x = np.linspace(0, shop.radius, 400)
-    size = float(np.ptp(carriage(replace(shop, squareness=0.0), way)(
-        Pass(x, x, x, x, x)))) / shop.sigma
-    return whole(shop, draw, [Hidden(names, of_noise=size)], way=way)
+    way = drawn_way(shop, lambda x: form(x / shop.radius), pad)
+    x, times = np.linspace(0, shop.radius, 2000), between(rng, 5, 60)
+    moved = carriage(replace(shop, squareness=0.0), way)(Pass(x, x, x, x, x))
+    scale = times * shop.sigma / float(np.ptp(moved))
+    scaled = Way(lambda at: scale * way.height(at), lambda at: scale * way.slope(at))
+    return whole(shop, draw, [Hidden(names, of_noise=times)], way=scaled)
 
 
 def kink(rng: Rng, draw: Rng) -> Case:
-    """A way ground in two settings: its slope changes by 2 to 40 µrad at one place."""
-    place, angle = rng.uniform(0.2, 0.85), sign(rng) * between(rng, 0.002, 0.04)
-    return bent(rng, draw, lambda shop, u: angle * shop.radius * np.maximum(u - place, 0))
+    """A way ground in two settings: its slope changes at one place."""
+    place, side = rng.uniform(0.2, 0.85), sign(rng)
+    return bent(rng, draw, lambda u: side * np.maximum(u - place, 0))
 
 
 def joint(rng: Rng, draw: Rng) -> Case:
-    """Two lengths of bed: a step of 0.2 to 2 µm and a change of slope."""
-    place, angle = rng.uniform(0.2, 0.85), rng.normal(0, 0.01)
-    step = sign(rng) * between(rng, 0.2, 2)
-    return bent(rng, draw, lambda shop, u: (u > place) * (
-        step + angle * shop.radius * (u - place)))
+    """Two lengths of bed: a step and a change of slope."""
+    place, slope, side = rng.uniform(0.2, 0.85), rng.normal(0, 3), sign(rng)
+    return bent(rng, draw, lambda u: side * (u > place) * (1 + slope * (u - place)))
 
 
 def dip(rng: Rng, draw: Rng) -> Case:
-    """A dip of 0.3 to 3 µm, a tenth of the radius wide."""
-    place, depth, width = rng.uniform(0.3, 0.8), between(rng, 0.3, 3), between(rng, 0.05, 0.15)
-    return bent(rng, draw, lambda shop, u: -depth * np.exp(-0.5 * ((u - place) / width) ** 2))
+    """A dip, a tenth of the radius wide."""
+    place, width = rng.uniform(0.4, 0.8), between(rng, 0.05, 0.1)
+    return bent(rng, draw, lambda u: -np.exp(-0.5 * ((u - place) / width) ** 2))
 
 
 def narrow_dip(rng: Rng, draw: Rng) -> Case:
-    """A dent of 0.2 to 2 µm, one or two hundredths of the radius wide."""
-    place, depth, width = rng.uniform(0.2, 0.9), between(rng, 0.2, 2), between(rng, 0.01, 0.02)
-    return bent(rng, draw, lambda shop, u: -depth * np.exp(-0.5 * ((u - place) / width) ** 2),
-                pad=0.01)
+    """A dent, one or two hundredths of the radius wide, under a short carriage."""
+    place, width = rng.uniform(0.2, 0.9), between(rng, 0.01, 0.02)
+    return bent(rng, draw, lambda u: -np.exp(-0.5 * ((u - place) / width) ** 2), pad=0.01)
 
 
 def worn_zone(rng: Rng, draw: Rng) -> Case:
-    """A flat worn zone where the carriage works most, 0.3 to 3 µm deep, with soft edges."""
-    start, wide = rng.uniform(0.25, 0.5), rng.uniform(0.15, 0.4)
-    depth, edge = between(rng, 0.3, 3), between(rng, 0.01, 0.05)
-    return bent(rng, draw, lambda shop, u: -0.5 * depth * (
-        np.tanh((u - start) / edge) - np.tanh((u - start - wide) / edge)))
+    """A flat worn zone where the carriage works most, with soft edges."""
+    start, wide, edge = rng.uniform(0.3, 0.5), rng.uniform(0.15, 0.4), between(rng, 0.01, 0.06)
+    return bent(rng, draw, lambda u: np.tanh((u - start - wide) / edge) - np.tanh((u - start) / edge))
 
 
 def varying_wave(rng: Rng, draw: Rng) -> Case:
     """A wave of the way whose amplitude grows from the axis and whose pitch drifts."""
-    waves, drift, size = rng.uniform(4, 12), rng.uniform(-0.3, 0.3), between(rng, 0.1, 1)
-    return bent(rng, draw, lambda shop, u: size * u**2 * np.cos(
-        2 * np.pi * waves * (u + drift * u**2)), (*LOCAL, "slide_periodic"))
+    waves, drift = rng.uniform(4, 12), rng.uniform(-0.3, 0.3)
+    return bent(rng, draw, lambda u: u**2 * np.cos(2 * np.pi * waves * (u + drift * u**2)),
+                (*LOCAL, "slide_periodic"))
 
 
 def walking_way(rng: Rng, draw: Rng) -> Case:
-    """A scraped way: a random walk that grows from the axis, 0.2 to 2 µm."""
-    walk, size = noise.random_walk(rng, 400), between(rng, 0.2, 2)
-    at = np.linspace(0, 1, 400)
-    return bent(rng, draw, lambda shop, u: size * u * np.interp(u, at, walk - walk[0]))
+    """A scraped way: a random walk that grows from the axis."""
+    walk, at = noise.random_walk(rng, 400), np.linspace(0, 1, 400)
+    return bent(rng, draw, lambda u: u * np.interp(u, at, walk - walk[0]), pad=0.1)
 
 
 def sag(rng: Rng, draw: Rng) -> Case:
-    """Sag with the fourth power of x, 0.3 to 3 µm, a cubic declared."""
-    size = sign(rng) * between(rng, 0.3, 3)
-    return bent(rng, draw, lambda shop, u: size * u**4, (*LOCAL, "gantry_sag"), most=3)
+    """Sag with the fourth power of x, a cubic or a parabola declared."""
+    side = sign(rng)
+    return bent(rng, draw, lambda u: side * u**4, (*LOCAL, "gantry_sag"), most=3)
 
 
 def bore(rng: Rng, draw: Rng) -> Case:
