@@ -99,7 +99,8 @@ def centre_height(shop: Shop, rng: Rng, size: float) -> Effect:
 def speed_effect(shop: Shop, rng: Rng, size: float) -> Effect:
     """The cutting force grows as the speed falls: A ((max(r, 0.02 mm)/R)^-m - 1)."""
     power = float(rng.uniform(0.1, 0.5))
-    return Effect("amplitude_um", abs(size), power, lambda tool: abs(size) * (
+    lift = abs(size) / (0.02**-power - 1)  # from the rim to a fiftieth of the radius it is `size`
+    return Effect("amplitude_um", lift, power, lambda tool: lift * (
         (np.maximum(tool.r, 0.02) / shop.radius) ** -power - 1))
 
 

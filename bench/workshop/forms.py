@@ -186,7 +186,7 @@ def backlash(rng: Rng, draw: Rng) -> Case:
     shop = draw_shop(rng)
     size, part = shop.sigma * between(rng, 5, 30), rng.uniform(0.02, 0.1)
     def only(cut: int) -> Motions:
-        way = -1.0 if NAMES[cut] == "outward" else 1.0
+        way = 1.0 if three_cuts(shop)[cut].inward else -1.0
         seconds = three_cuts(shop)[cut].seconds()
         return [lambda tool: way * size * np.exp(-tool.seconds / (part * seconds))]
     return whole(shop, draw, [Hidden(("hysteresis",), of_noise=size / shop.sigma)], only=only)
@@ -221,18 +221,18 @@ def wrong_sign(rng: Rng, draw: Rng) -> Case:
 def inch(rng: Rng, draw: Rng) -> Case:
     """Heights of one profile were written in inch and read in mm, or the other way round."""
     factor = float(rng.choice([25.4, 1 / 25.4]))
-    return blundered(rng, draw, r"25\.4|inch", lambda p: replace(p, z=p.z * factor))
+    return blundered(rng, draw, r"25\.4|\binch|0\.0394", lambda p: replace(p, z=p.z * factor))
 
 
 def thousand(rng: Rng, draw: Rng) -> Case:
     """Heights of one profile are in nm or mm and declared µm."""
     factor = float(rng.choice([1000.0, 0.001]))
-    return blundered(rng, draw, r"1000|\bnm\b|\bmm\b", lambda p: replace(p, z=p.z * factor))
+    return blundered(rng, draw, r"\b1000\b|\b0\.001\b|thousand", lambda p: replace(p, z=p.z * factor))
 
 
 def metres(rng: Rng, draw: Rng) -> Case:
     """Positions of one profile are metres and declared mm."""
-    return blundered(rng, draw, r"\bmetres?\b|\bm instead\b|1000",
+    return blundered(rng, draw, r"\bmetres?\b|\b1000\b|\b0\.001\b",
                      lambda p: replace(p, x=p.x / 1000))
 
 
@@ -243,7 +243,7 @@ def swapped_direction(rng: Rng, draw: Rng) -> Case:
 
 def shifted_start(rng: Rng, draw: Rng) -> Case:
     """start_s of one cut is wrong by a good part of the cut, and the tool warmed up as it cut."""
-    return clock_blunder(rng, draw, r"start_s|shifted|clock", "start_s")
+    return clock_blunder(rng, draw, r"start_s|shift|\blate\b", "start_s")
 
 
 def clock_blunder(rng: Rng, draw: Rng, words: str, key: str) -> Case:

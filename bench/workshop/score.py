@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 import threading
 import time
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -43,7 +44,7 @@ def run(program: str, problem: Path) -> Record:
 
 
 def effect_of(label: str) -> str:
-    """The effect's name of a label such as `step (coarse)` or `step.height_um`."""
+    """The effect's name of a label such as `step (cut2)` or `step.height_um`."""
     return re.match(r"[a-z_]*", label).group()  # type: ignore[union-attr]
 
 
@@ -54,6 +55,19 @@ def said(report: Record) -> list[Record]:
              "rivals": [effect_of(rival) for rival in one["ambiguous_with"]],
              "profiles": one.get("profiles") or []}
             for one in rounds if effect_of(one["accepted"]) not in OF_EVERY_FACE]
+
+
+def sayings(node: Any) -> Iterator[str]:
+    """Every text of a part of the report, and the scalars of every object as one text."""
+    if isinstance(node, str):
+        yield node
+    elif isinstance(node, list):
+        for item in node:
+            yield from sayings(item)
+    elif isinstance(node, dict):
+        yield ", ".join(f"{k} {v}" for k, v in node.items() if not isinstance(v, (dict, list)))
+        for item in node.values():
+            yield from sayings(item)
 
 
 def parameter(report: Record, name: str) -> Record | None:
@@ -105,7 +119,7 @@ def judge(report: Record, case: Case) -> Record:
     right = {name for hidden in case.hidden for name in hidden.names}
     wrong = [one["name"] for one in names if not one["rivals"] and one["name"] not in right]
     listed = {name for one in names for name in [one["name"], *one["rivals"]]}
-    advice = json.dumps(report["trace"], ensure_ascii=False)
+    remarks = list(sayings([report["trace"], report.get("crosscheck"), report.get("notes")]))
     hidden_ones = []
     for hidden in case.hidden:
         own = [one for one in names if one["name"] in hidden.names]
@@ -113,7 +127,8 @@ def judge(report: Record, case: Case) -> Record:
             "in_set": bool(listed & set(hidden.names)),
             "alone": any(set(one["rivals"]) <= set(hidden.names) for one in own),
             "with_cut": any(sorted(one["profiles"]) == sorted(hidden.cuts) for one in own),
-            "said": bool(hidden.words and re.search(hidden.words, advice)),
+            "said": bool(hidden.words) and any(
+                hidden.cuts[0] in text and re.search(hidden.words, text) for text in remarks),
             "limit": limit(report, hidden) if hidden.parameter else None,
             "found": size_of(report, hidden)})
     dbeta = within(parameter(report, "squareness.dbeta_xz"), case.shop.squareness)

@@ -77,7 +77,7 @@ def three_cuts(shop: Shop) -> list[Cut]:
     return [cut(shop.feed, True), cut(2.5 * shop.feed, True), cut(shop.feed, False)]
 
 
-NAMES = ["inward", "coarse", "outward"]
+NAMES = ["cut1", "cut2", "cut3"]
 
 
 @dataclass(frozen=True)

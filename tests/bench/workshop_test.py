@@ -111,7 +111,7 @@ class Classes(unittest.TestCase):
             texts = []
             for number, draw in enumerate([0, 0, 1]):
                 write(workshop.make("joint", 5, draw), Path(folder, str(number)), "joint")
-                texts.append([Path(folder, str(number), f).read_text() for f in ("problem.toml", "coarse.csv")])
+                texts.append([Path(folder, str(number), f).read_text() for f in ("problem.toml", "cut2.csv")])
         self.assertEqual(texts[0], texts[1])
         self.assertEqual(texts[0][0], texts[2][0])
         self.assertNotEqual(texts[0][1], texts[2][1])
@@ -125,7 +125,8 @@ REPORT = {
         "verdict": "ambiguous",
         "rounds": [{"accepted": "feed_marks", "ambiguous_with": []},
                    {"accepted": "slide_periodic", "ambiguous_with": ["time_periodic"]},
-                   {"accepted": "step", "ambiguous_with": [], "profiles": ["coarse"]}],
+                   {"accepted": "step", "ambiguous_with": [], "profiles": ["cut2"]}],
+        "advice": ["heights of cut2 have the wrong sign", "unit of cut1: mm"],
         "detection_limits": [{"effect": "slide_periodic", "value": 0.01, "by_shape": [
             {"shape": 1.0, "value": 0.01}, {"shape": 100.0, "value": 0.04}]}]}}
 
@@ -144,8 +145,14 @@ class Score(unittest.TestCase):
         self.assertAlmostEqual(one["found"]["error"], -0.02)
 
     def test_cut_of_an_effect_is_read(self):
-        case = Case(draw_shop(np.random.default_rng(1)), [], [Hidden(("step",), cuts=("coarse",))])
+        case = Case(draw_shop(np.random.default_rng(1)), [], [Hidden(("step",), cuts=("cut2",))])
         self.assertTrue(score.judge(REPORT, case)["hidden"][0]["with_cut"])
+
+    def test_blunder_is_said_only_beside_the_name_of_its_profile(self):
+        shop = draw_shop(np.random.default_rng(1))
+        for cut, said in (("cut2", True), ("cut1", False)):
+            hidden = Hidden((), cuts=(cut,), words=r"\bsign\b")
+            self.assertEqual(score.judge(REPORT, Case(shop, [], [hidden]))["hidden"][0]["said"], said)
 
 
 def record(name, seed, error, **changes):
