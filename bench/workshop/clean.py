@@ -151,5 +151,21 @@ def filtered(rng: Rng, draw: Rng) -> Case:
     return replace(case, profiles=passed)
 
 
+def point_samples(rng: Rng, draw: Rng) -> Case:
+    """Single points, further apart than the feed: the grooves alias, with a phase of each cut."""
+    shop = draw_shop(rng)
+    step = (2 if shop.diameter else 1) * shop.radius / shop.points
+    feed = min(step * float(rng.uniform(0.3, 0.95)), float(np.sqrt(8 * shop.nose * 1e-3)))
+    return whole(replace(shop, averages=False, feed=feed), draw)
+
+
+def coarse_feed(rng: Rng, draw: Rng) -> Case:
+    """An ordinary feed of 0.08 to 0.2 mm a turn: grooves of some µm, each read at several points."""
+    shop = draw_shop(rng, diameter=False)
+    feed = between(rng, max(0.08, 3 * 40 / shop.points), 0.21)
+    return whole(replace(shop, feed=feed, radius=shop.points * feed / 3), draw)
+
+
 CLASSES = [white, one_profile, correlated, heavy_tails, quantised, growing, unequal, one_tenfold,
-           long_memory, random_walk, repeats, chatter, torn, ultrasonic, filtered]
+           long_memory, random_walk, repeats, chatter, torn, ultrasonic, filtered, point_samples,
+           coarse_feed]
