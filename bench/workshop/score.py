@@ -38,7 +38,7 @@ def run(program: str, problem: Path) -> Record:
         return {"status": "done", "report": json.loads(report.read_text()), **timing}
     if timing["elapsed"] >= TIME_LIMIT:
         return {"status": "out of time", **timing}
-    message = (errors.read_text().strip().splitlines() or [f"exit {process.returncode}"])[-1]
+    message = (errors.read_text().strip().splitlines() or [f"exit {process.returncode}"])[0]
     return {"status": "refused" if process.returncode in (2, 3) else "failed",
             "message": message.replace(f"{problem.parent}/", ""), **timing}
 
