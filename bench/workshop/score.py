@@ -38,7 +38,8 @@ def run(program: str, problem: Path) -> Record:
         return {"status": "done", "report": json.loads(report.read_text()), **timing}
     if timing["elapsed"] >= TIME_LIMIT:
         return {"status": "out of time", **timing}
-    message = (errors.read_text().strip().splitlines() or [f"exit {process.returncode}"])[0]
+    said = [line for line in errors.read_text().splitlines() if not line.startswith("WARNING")]
+    message = (said or [f"exit {process.returncode}"])[0]
     return {"status": "refused" if process.returncode in (2, 3) else "failed",
             "message": message.replace(f"{problem.parent}/", ""), **timing}
 
