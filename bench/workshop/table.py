@@ -166,8 +166,7 @@ def lost_rows(cases: list[Record]) -> list[list[str]]:
     """Each way a run ended without a report: how often, and one case of it."""
     lost: dict[str, list[Record]] = {}
     for case in cases:
-        if case["status"] != "done":
-            lost.setdefault(f"{case['status']}: {case.get('message', '')}"[:160], []).append(case)
+        lost.setdefault(f"{case['status']}: {case.get('message', '')}"[:160], []).append(case)
     return [[why, str(len(own)), f"`{own[0]['class']} {own[0]['seed']}`"]
             for why, own in lost.items()]
 
@@ -178,12 +177,14 @@ def page(cases: list[Record]) -> str:
     for case in cases:
         if case["group"] != "stability":
             classes.setdefault(case["class"], []).append(case)
-    text = markdown(["what", "wanted", "measured", "worst case"], wanted_rows(done))
+    lost = [case for case in cases if case not in done]
+    silent = ["runs without a report", "never", share(len(lost), len(cases)), ""]
+    text = markdown(["what", "wanted", "measured", "worst case"], [silent, *wanted_rows(done)])
     text += "\nBy class; \"in the set\" and \"alone\" are of all its cases, below the limit too:\n\n"
     text += markdown(["class", "cases", "verdicts", "named", "wrong name alone", "in the set",
                       "alone", "Δβxz within U", "median s", "longest s"],
                      [class_row(name, own) for name, own in classes.items()])
-    lost = lost_rows(cases)
     if lost:
-        text += "\nRuns without a report:\n\n" + markdown(["why", "runs", "for example"], lost)
+        text += "\nRuns without a report:\n\n"
+        text += markdown(["why", "runs", "for example"], lost_rows(lost))
     return text
