@@ -30,6 +30,12 @@ std::span<const Gate> gate_table() {
            "A profile is predicted from the others if they hold this share of what all know of "
            "the effect.",
            "below a tenth the prediction is three times as uncertain as the effect"},
+      Gate{"modulation_widths", &Gates::modulation_widths, "cycles a profile", 0.0, 20.0,
+           "A line nearer than this to one of the model is a modulation of it, no effect.",
+           "one cycle is the resolution of the spectrum; a drift over the profile fills 3"},
+      Gate{"modulation_share", &Gates::modulation_share, "of its rate", 0.0, 0.5,
+           "A line is a modulation only if it is also nearer than this share of its own rate.",
+           "a modulation is slow beside what it modulates"},
       Gate{"lack_of_fit_p", &Gates::lack_of_fit_p, "", 1e-6, 0.05,
            "The residual is structure if noise explains it with a smaller probability.",
            "one false alarm in a thousand problems"},

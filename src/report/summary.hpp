@@ -28,6 +28,8 @@ Summary summary_of(const Analysis& analysis);
 
 /// An effect's name for people: "thermal_drift" as "thermal drift".
 std::string effect_title(const std::string& name);
+// An accepted effect, with the profiles it is confined to, and its rivals.
+std::vector<std::string> names_of(const TraceRound& round);
 std::string effect_titles(const std::vector<std::string>& names, const std::string& separator);
 /// "straightness.b2" with its symbol: "straightness b_2".
 std::string parameter_title(const FittedParameter& parameter);
@@ -47,8 +49,9 @@ std::string value_of(const Assumption& assumption);
 
 /// The declared quantity that the missing effects had moved most.
 struct Shift {
-  std::string what;   // for people
-  double in_expanded_uncertainties = 0.0;  // declared minus final, in expanded uncertainties of the final
+  std::string what;  // for people
+  double in_expanded_uncertainties =
+      0.0;  // declared minus final, in expanded uncertainties of the final
 };
 
 /// None where the loop has added nothing or nothing can be compared.

@@ -17,6 +17,8 @@ struct Gates {
   double exchange_bic = 2.0;
   double alike = 0.3;
   double holdout_share = 0.1;
+  double modulation_widths = 5.0;
+  double modulation_share = 0.1;
 
   // When the residual is structure.
   double lack_of_fit_p = 1e-3;
