@@ -17,9 +17,8 @@ struct Shares {
 };
 
 bool sees_two(const Model& model, const Profile& profile) {
-  return std::ranges::count_if(model.terms, [&](const ModelTerm& term) {
-           return term.effect->applies_to(profile.setup);
-         }) > 1;
+  return std::ranges::count_if(model.terms,
+                               [&](const ModelTerm& term) { return term.acts_on(profile); }) > 1;
 }
 
 /// Of one profile; nothing where the model puts nothing into it, or one effect only.

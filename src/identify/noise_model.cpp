@@ -190,7 +190,7 @@ bool is_repeat(const Observation& a, const Observation& b) {
   return a.values.size() == b.values.size() && a.profile->positions == b.profile->positions &&
          s.kind == t.kind && s.quantity == t.quantity && s.base_mm == t.base_mm &&
          s.center_mm == t.center_mm && s.spindle_position_mm == t.spindle_position_mm &&
-         s.z_mm == t.z_mm && s.overhang_mm == t.overhang_mm &&
+         s.z_mm == t.z_mm && s.azimuth_deg == t.azimuth_deg && s.overhang_mm == t.overhang_mm &&
          s.feed_mm_per_min == t.feed_mm_per_min && s.spindle_rpm == t.spindle_rpm &&
          s.cut_direction == t.cut_direction && s.cut_radius_mm == t.cut_radius_mm &&
          s.start_s == t.start_s && s.traverse_mm_per_s == t.traverse_mm_per_s;

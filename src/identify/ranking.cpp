@@ -124,7 +124,7 @@ RankingResult rank_effects(const Model& model, const Solution& fit) {
   for (const Observation& observation : model.observations) {
     std::vector<const ModelTerm*> terms;
     for (const ModelTerm& term : model.terms)
-      if (term.effect->applies_to(observation.profile->setup)) terms.push_back(&term);
+      if (term.acts_on(*observation.profile)) terms.push_back(&term);
     std::vector<Signal> signals(terms.size());
     std::vector<Ranking> entries(terms.size());
     const Eigen::VectorXd values = levelled_series(observation, observation.values);

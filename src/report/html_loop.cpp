@@ -34,7 +34,7 @@ Html accepted(const TraceResult& trace) {
                    {"p", Column::number},
                    {"not told apart from", Column::text}});
   for (const TraceRound& round : trace.rounds)
-    table.add({effect_title(round.accepted), values(round.parameters),
+    table.add({effect_title(names_of(round).front()), values(round.parameters),
                change(round.before_rms_um, round.after_rms_um, round.before_rms_urad,
                       round.after_rms_urad),
                change(round.before_holdout_rms_um, round.after_holdout_rms_um),
@@ -51,8 +51,9 @@ Html tried(const TraceResult& trace) {
                                     {"residual rms, µm", Column::number},
                                     {"why it is not in the model", Column::text}});
   const auto add = [&](const TriedEffect& effect, const std::string& round) {
-    table.add({effect_title(effect.effect), round, html_number(effect.delta_bic),
-               html_probability(effect.p_value), html_number(effect.rms_um),
+    table.add({effect_title(term_name(effect.effect, effect.profiles)), round,
+               html_number(effect.delta_bic), html_probability(effect.p_value),
+               html_number(effect.rms_um),
                with_titles(effect.refused.value_or("a rival of the accepted one"))});
   };
   for (std::size_t i = 0; i < trace.rounds.size(); ++i)

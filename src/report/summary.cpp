@@ -37,9 +37,7 @@ std::string in_expanded_uncertainties(double shift) {
 std::string found(const TraceResult& trace) {
   std::vector<std::string> out;
   for (const TraceRound& round : trace.rounds) {
-    std::vector<std::string> names{round.accepted};
-    names.insert(names.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
-    out.push_back(effect_titles(names, " or "));
+    out.push_back(effect_titles(names_of(round), " or "));
   }
   return joined(out, " and ");
 }
@@ -193,9 +191,15 @@ std::string next_step(const Analysis& analysis) {
 
 }  // namespace
 
+std::vector<std::string> names_of(const TraceRound& round) {
+  std::vector<std::string> names{term_name(round.accepted, round.profiles)};
+  names.insert(names.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
+  return names;
+}
+
 std::string effect_title(const std::string& name) {
   std::string title = name;
-  std::ranges::replace(title, '_', ' ');
+  std::replace(title.begin(), std::ranges::find(title, '['), '_', ' ');
   return title;
 }
 

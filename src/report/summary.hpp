@@ -29,6 +29,8 @@ Summary summary_of(const Analysis& analysis);
 
 /// An effect's name for people: "thermal_drift" as "thermal drift".
 std::string effect_title(const std::string& name);
+// An accepted effect, with the profiles it is confined to, and its rivals.
+std::vector<std::string> names_of(const TraceRound& round);
 std::string effect_titles(const std::vector<std::string>& names, const std::string& separator);
 /// "straightness.b2" with its symbol: "straightness b_2".
 std::string parameter_title(const FittedParameter& parameter);

@@ -34,14 +34,12 @@ std::string verdict(const TraceResult& trace) {
 }
 
 std::string round(const TraceRound& round, std::size_t index) {
-  std::vector<std::string> names{round.accepted};
-  names.insert(names.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
-  std::string text =
-      item(std::to_string(index + 1) + ". " + effect_titles(names, " or ") + ": residual " +
-           residual_change(round.before_rms_um, round.after_rms_um, round.before_rms_urad,
-                           round.after_rms_urad) +
-           ", difference in BIC " + number(round.delta_bic, 3) + ", p " +
-           (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value));
+  std::string text = item(std::to_string(index + 1) + ". " +
+                          effect_titles(names_of(round), " or ") + ": residual " +
+                          residual_change(round.before_rms_um, round.after_rms_um,
+                                          round.before_rms_urad, round.after_rms_urad) +
+                          ", difference in BIC " + number(round.delta_bic, 3) + ", p " +
+                          (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value));
   if (const std::string change =
           residual_change(round.before_holdout_rms_um, round.after_holdout_rms_um, {}, {});
       !change.empty())
@@ -124,7 +122,8 @@ std::string trace_text(const TraceResult& trace) {
                  " are one column here: not separable");
   for (const TriedEffect& tried : trace.refused)
     if (tried.refused && tried.delta_bic < -10.0)
-      text += note(effect_title(tried.effect) + " was refused: " + with_titles(*tried.refused));
+      text += note(effect_title(term_name(tried.effect, tried.profiles)) +
+                   " was refused: " + with_titles(*tried.refused));
   return text + untestable(trace) + limits(trace) + gates(trace);
 }
 

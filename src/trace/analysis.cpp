@@ -34,7 +34,8 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
               out.result);
     out.trace = std::move(loop.trace);
     for (TraceRound& round : out.trace->rounds)
-      round.parameters = parameters_of(*out.result.final, round.accepted);
+      round.parameters =
+          parameters_of(*out.result.final, term_name(round.accepted, round.profiles));
   }
   if (options.with_details)
     out.details =

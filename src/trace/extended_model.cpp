@@ -14,7 +14,8 @@ Model with(Model model, const std::vector<AcceptedEffect>& effects) {
     if (effect.candidate->raises_degree)
       remake_term(model, effect.name(), effect.candidate->options);
     else
-      append_term(model, {effect.name(), effect.candidate->options, {}}, model.range);
+      append_term(model, {effect.candidate->effect_name(), effect.candidate->options, {}},
+                  model.range);
   return model;
 }
 
@@ -93,16 +94,29 @@ FittedModel ModelExtender::in_declared_band(const std::vector<AcceptedEffect>& e
 Candidates ModelExtender::candidates_beside(const std::vector<AcceptedEffect>& effects) const {
   Candidates out;
   for (const Candidate& candidate : dictionary_.candidates)
-    if (std::ranges::find(effects, candidate.name(), &AcceptedEffect::name) == effects.end())
+    if (std::ranges::none_of(effects, [&](const AcceptedEffect& effect) {
+          return effect.candidate->effect_name() == candidate.effect_name();
+        }))
       out.push_back(&candidate);
   return out;
 }
 
 Eigen::VectorXd ModelExtender::shapes_of(const std::vector<AcceptedEffect>& effects) const {
-  const Eigen::VectorXd& own = base().fit.estimate.shapes;
-  std::vector<double> all(own.begin(), own.end());
+  std::vector<double> all;
+  const auto append = [&](std::span<const double> shape) {
+    all.insert(all.end(), shape.begin(), shape.end());
+  };
+  for (const ModelTerm& term : base().model.terms) {
+    const auto raised = std::ranges::find_if(effects, [&](const AcceptedEffect& effect) {
+      return effect.candidate->raises_degree && effect.name() == term.name;
+    });
+    if (raised != effects.end())
+      append(raised->shape);
+    else
+      append(slideway::shapes_of(term, base().fit.estimate.shapes));
+  }
   for (const AcceptedEffect& effect : effects)
-    all.insert(all.end(), effect.shape.begin(), effect.shape.end());
+    if (!effect.candidate->raises_degree) append(effect.shape);
   return Eigen::Map<const Eigen::VectorXd>(all.data(), std::ssize(all));
 }
 

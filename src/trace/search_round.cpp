@@ -5,6 +5,7 @@
 #include <set>
 #include <tuple>
 
+#include "modulation.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/left_out.hpp"
@@ -69,6 +70,7 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     tested.refined = refine(model, data, finding);
     tested.p_value = calibration.p_value(-tested.refined.delta_bic);
     tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
+    tested.modulates = modulated_effect(model, fit.estimate.shapes, tested.refined);
     tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
     return tested;
   };
@@ -121,6 +123,7 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
 
 std::string TestedCandidate::refused(const Gates& gates) const {
   if (refined.projection.rank == 0) return "the model makes the same columns";
+  if (!modulates.empty()) return "its line is a modulation of " + modulates;
   if (refined.delta_bic > -gates.delta_bic)
     return "gains too little: difference in BIC " + significant(refined.delta_bic, 3);
   if (p_value > gates.significance) return "noise gives as much: p = " + significant(p_value, 2);
@@ -153,6 +156,9 @@ const TestedCandidate* SearchRound::choice(const Gates& gates,
 std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& chosen,
                                                         const Gates& gates) const {
   std::vector<const TestedCandidate*> out;
+  const auto is_same_effect = [](const TestedCandidate& a, const TestedCandidate& b) {
+    return a.refined.candidate->effect_name() == b.refined.candidate->effect_name();
+  };
   const auto unknowns = [](const TestedCandidate& each) {
     return each.refined.candidate->unknowns(each.refined.projection.rank);
   };
@@ -162,8 +168,8 @@ std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& c
         (each.is_possible() && (unknowns(each) <= unknowns(chosen) ||
                                 chosen.refined.candidate->term.effect->is_carriage()));
     const bool known =
-        std::ranges::any_of(out, [&](const auto* other) { return other->name() == each.name(); });
-    if (counts && !known && each.name() != chosen.name() &&
+        std::ranges::any_of(out, [&](const auto* other) { return is_same_effect(*other, each); });
+    if (counts && !known && !is_same_effect(each, chosen) &&
         each.refined.delta_bic <= chosen.refined.delta_bic + gates.tie_bic &&
         alike(each, chosen, gates))
       out.push_back(&each);

@@ -33,6 +33,14 @@ std::string worsens(const ModelResult& without, const ModelResult& with) {
   return "";
 }
 
+/// Size of an effect in the declared low band, in its standard uncertainties.
+double size_in_report(const ModelResult& told, const ModelTerm& term) {
+  const std::string name = term.name + "." + term.effect->parameters()[0].name;
+  const auto own = std::ranges::find(told.parameters, name, &FittedParameter::name);
+  if (!own->value || !own->standard_uncertainty) return INFINITY;
+  return std::abs(*own->value) / *own->standard_uncertainty;
+}
+
 class Selector {
  public:
   Selector(const Problem& problem, ModelExtender& extender, const Gates& gates,
@@ -58,7 +66,8 @@ class Selector {
   /// The effect a candidate becomes, with the statistics of the search that found it.
   AcceptedEffect accepted(const SearchRound& round, const TestedCandidate& choice) {
     AcceptedEffect out{choice.refined.candidate, choice.refined.shape, {}};
-    out.round.accepted = choice.name();
+    out.round.accepted = choice.refined.candidate->effect_name();
+    out.round.profiles = choice.refined.candidate->term.profiles;
     out.round.delta_bic = choice.refined.delta_bic;
     out.round.p_value = choice.p_value;
     out.round.candidates = tried(round, gates_, &choice, extender_.summary({}).rms_um);
@@ -110,9 +119,10 @@ class Selector {
     if (!term->effect->has_one_size() || effects[which].candidate->raises_degree) return "";
     const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term->first_parameter);
     const double more = unnamed ? unnamed->variance(row) : 0.0;
-    const double size =
+    const double size = std::min(
         std::abs(fitted.fit.parameters.values[term->first_parameter]) /
-        std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more));
+            std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more)),
+        size_in_report(extender_.summary(effects), *term));
     if (!(size < gates_.size)) return "";
     return "its size is only " + significant(size, 2) + " of its standard uncertainties";
   }

@@ -195,6 +195,185 @@ TEST(SpindleRunout, GrowsAlongTheReading) {
   EXPECT_NEAR(second[3], -1.0, 1e-12);
 }
 
+// A phase q P_2(τ), P_2 = (3τ² - 1)/2, is q at both ends and -q/2 in the middle; a quarter turn
+// makes a cosine of the wave into nothing, half a turn into its negative.
+TEST(SpindleRunout, DriftOfTheSpeedTurnsThePhase) {
+  Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), {0.0, 50.0, 100.0}};
+  profile.setup.feed_mm_per_min = 60.0;  // whole turns at whole mm
+  const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(10);
+  values[0] = 1.0;
+  values[8] = 60.0;
+  values[9] = 0.5;
+  for (const CutDirection direction : {CutDirection::inward, CutDirection::outward}) {
+    profile.setup.cut_direction = direction;
+    const Eigen::VectorXd z = signal(*effect, profile, values) * 1e3;
+    EXPECT_NEAR(z[0], -1.0, 1e-12);
+    EXPECT_NEAR(z[1], 0.0, 1e-12);
+    EXPECT_NEAR(z[2], -1.0, 1e-12);
+  }
+}
+
+// P_3 is odd: what a reading has at its start it has with the other sign at its end.
+TEST(SpindleRunout, AnOddDriftFollowsTheTimeAndNotThePosition) {
+  Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), {0.0, 100.0}};
+  profile.setup.feed_mm_per_min = 60.0;
+  const auto effect = make_effect("spindle_runout", {.degree = 3}, lathe(), kTravel);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(11);
+  values[1] = 1.0;  // a sine
+  values[8] = 60.0;
+  values[10] = 0.25;
+  for (const double sign : {1.0, -1.0}) {
+    profile.setup.cut_direction = sign > 0.0 ? CutDirection::outward : CutDirection::inward;
+    const Eigen::VectorXd z = signal(*effect, profile, values) * 1e3;
+    EXPECT_NEAR(z[0], -sign, 1e-12);
+    EXPECT_NEAR(z[1], sign, 1e-12);
+  }
+}
+
+// The rate of t n/60 + q P_2(τ) over the reading changes from -3q·2 to 3q·2 cycles, P_2' = 3τ.
+TEST(SpindleRunout, ItsLinesCoverTheDrift) {
+  Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), spaced(0, 100, 10001)};
+  profile.setup.feed_mm_per_min = 60.0;
+  const Stations stations(profile.positions, profile.setup, lathe());
+  const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
+  const std::vector<LineBand> lines = effect->lines(stations, std::vector<double>{60.0, 0.5});
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_NEAR(lines[0].low, 97.0, 1e-3);  // steps of the profile: a chord over 1e-4 of it
+  EXPECT_NEAR(lines[0].high, 103.0, 1e-3);
+  EXPECT_NEAR(lines[1].high, 206.0, 2e-3);
+}
+
+TEST(SpindleRunout, AFaceKnowsNoDrift) {
+  const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
+  EXPECT_FALSE(effect->applies_to(all_cases()[0].setup));
+  EXPECT_TRUE(make("spindle_runout")->applies_to(all_cases()[0].setup));
+}
+
+// At X = ±R/2 two lobes have a quarter, three an eighth, odd ones with the sign of X.
+TEST(ChuckingLobes, ArePowersOfTheRadiusWithTheSymmetryOfTheirNumber) {
+  Case diameter{"", setup_of(Kind::face, Quantity::height, -10, 10), {-5.0, 0.0, 5.0, 10.0}};
+  const auto expect = [&](std::initializer_list<double> values, double near, double rim,
+                          double sign) {
+    const Eigen::VectorXd z = height_um("chucking_lobes", diameter, values);
+    EXPECT_NEAR(z[0], sign * near, 1e-15);
+    EXPECT_EQ(z[1], 0.0);
+    EXPECT_NEAR(z[2], near, 1e-15);
+    EXPECT_NEAR(z[3], rim, 1e-15);
+  };
+  expect({1, 0, 0, 0, 0, 0}, 0.25, 1.0, 1.0);
+  expect({0, 0, 1, 0, 0, 0}, 0.125, 1.0, -1.0);
+  expect({0, 0, 0, 0, 1, 0}, 0.0625, 1.0, 1.0);
+  diameter.setup.azimuth_deg = 30.0;  // cos 60° and sin 60°; cos 90° and sin 90°; cos 120°
+  expect({1, 0, 0, 0, 0, 0}, 0.125, 0.5, 1.0);
+  expect({0, 1, 0, 0, 0, 0}, std::sqrt(3.0) / 8.0, std::sqrt(3.0) / 2.0, 1.0);
+  expect({0, 0, 1, 0, 0, 0}, 0.0, 0.0, -1.0);
+  expect({0, 0, 0, 1, 0, 0}, 0.125, 1.0, -1.0);
+  expect({0, 0, 0, 0, 1, 0}, -0.03125, -0.5, 1.0);
+}
+
+// r^n cos nθ is harmonic: its mean over a circle is its value at the centre, 0.
+TEST(ChuckingLobes, VanishInTheMeanOverACircle) {
+  Case radius = face({7.0});
+  const Eigen::VectorXd all = Eigen::VectorXd::Ones(6);
+  double sum = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    radius.setup.azimuth_deg = 30.0 * i;
+    sum += signal(*make("chucking_lobes"), radius, all)[0];
+  }
+  EXPECT_NEAR(sum, 0.0, 1e-15);
+}
+
+TEST(ChuckingLobes, NeedThreeDirections) {
+  const auto effect = make("chucking_lobes");
+  const auto lacking = [&](const std::vector<double>& azimuths) {
+    std::vector<slideway::Setup> setups(azimuths.size(), all_cases()[2].setup);
+    std::vector<const slideway::Setup*> all;
+    for (std::size_t i = 0; i < setups.size(); ++i) {
+      setups[i].azimuth_deg = azimuths[i];
+      all.push_back(&setups[i]);
+    }
+    return effect->lacking_together(all);
+  };
+  EXPECT_EQ(lacking({0.0, 60.0, 120.0}).size(), 0U);
+  EXPECT_EQ(lacking({0.0, 60.0, 180.0}),  // a diameter looks both ways
+            std::vector<std::string>{"azimuth_deg of at least three traces in three directions"});
+}
+
+// At one width from its place a Gaussian has exp(-1/2) of its height and its largest slope, A/w
+// times that; a base from -w to w around the place sees no difference.
+TEST(LocalForm, IsAGaussianInHeightSlopeAndOverABase) {
+  const Case heights = {"", setup_of(Kind::slide, Quantity::height, 0, 600), {100.0, 110.0, 600.0}};
+  const Eigen::VectorXd z = height_um("local_form", heights, {2.0, 100.0, 10.0});
+  EXPECT_DOUBLE_EQ(z[0], 2.0);
+  EXPECT_NEAR(z[1], 2.0 * std::exp(-0.5), 1e-14);
+  EXPECT_EQ(z[2], 0.0);
+  Case slopes = {"", setup_of(Kind::slide, Quantity::slope, 0, 600), {100.0, 110.0}};
+  const Eigen::VectorXd bump = values({2.0, 100.0, 10.0});
+  const Eigen::VectorXd local = signal(*make("local_form"), slopes, bump);
+  EXPECT_EQ(local[0], 0.0);
+  EXPECT_NEAR(local[1], -2e-3 / 10.0 * std::exp(-0.5), 1e-17);
+  slopes.setup.base_mm = 20.0;
+  const Eigen::VectorXd bridge = signal(*make("local_form"), slopes, bump);
+  EXPECT_NEAR(bridge[0], 0.0, 1e-19);
+  EXPECT_NEAR(bridge[1], 2e-3 / 20.0 * (std::exp(-2.0) - 1.0), 1e-17);
+}
+
+TEST(LocalForm, OfTheWayStaysAtItsPlaceOfTheSlide) {
+  Case at_axis = face({5.0});
+  at_axis.setup.spindle_position_mm = 100.0;
+  EXPECT_DOUBLE_EQ(height_um("local_form", at_axis, {1.0, 105.0, 1.0})[0], 1.0);
+}
+
+// A cone Θ r read off the centre by X0 is Θ |X - X0|: less Θ |X| that is -Θ X0 sgn X beyond X0,
+// and of a parabola z r² less it -2 z X0 X + z X0².
+TEST(Centring, IsTheFormOffTheCentre) {
+  const Case diameter{"", setup_of(Kind::face, Quantity::height, -10, 10), {-5.0, 0.0, 2.5}};
+  const double cone = 2e-4, parabola = 3e-6, off = 0.05;  // Θ, mm^-1, mm
+  const auto effect = make_effect("centring", {.degree = 2}, lathe(), kTravel);
+  const Eigen::VectorXd z =
+      signal(*effect, diameter, values({-off * cone * 1e3, -off * 2.0 * parabola * 10.0 * 1e3}));
+  const auto form = [&](double x) { return cone * std::abs(x) + parabola * x * x; };
+  for (const Eigen::Index i : {0, 2}) {
+    const double x = diameter.positions[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(z[i], form(x - off) - form(x) - parabola * off * off, 1e-17);
+  }
+  EXPECT_EQ(z[1], 0.0);
+  EXPECT_FALSE(effect->applies_to(face({0.0}).setup));
+}
+
+TEST(Centring, OnAConeIsTheCentreStep) {
+  const Case diameter = all_cases()[2];
+  EXPECT_EQ(columns(*make("centring"), diameter), columns(*make("centre_step"), diameter));
+}
+
+// 3, 4, 5: a cone of 200 µm/m at r = 4 mm read beside the diameter by 3 mm is that at 5 mm.
+TEST(Chord, IsTheConeFurtherOut) {
+  const Eigen::VectorXd z = height_um("chord", face({4.0, 0.0}), {200.0, 3.0});
+  EXPECT_NEAR(z[0], 0.2 * (5.0 - 4.0), 1e-15);
+  EXPECT_NEAR(z[1], 0.2 * 3.0, 1e-15);
+}
+
+TEST(Chord, IsTheNubOfATooHighTool) {
+  const Case profile = face(spaced(0, 10, 21));
+  const Eigen::VectorXd chord = height_um("chord", profile, {200.0, 0.5});
+  const Eigen::VectorXd nub = height_um("centre_height", profile, {0.2 * 0.5, 0.5});
+  EXPECT_LT((chord - nub).norm(), 1e-14 * nub.norm());
+}
+
+TEST(Hysteresis, ChangesSignWithTheDirection) {
+  Case cut = face({0.0, 5.0, 10.0});
+  cut.setup.cut_direction = CutDirection::outward;
+  const Eigen::VectorXd out = height_um("hysteresis", cut, {0.1, 0.2, 0.4});
+  EXPECT_NEAR(out[0], 0.1, 1e-16);
+  EXPECT_NEAR(out[1], 0.1 + 0.1 + 0.1, 1e-15);
+  EXPECT_NEAR(out[2], 0.7, 1e-15);
+  cut.setup.cut_direction = CutDirection::inward;
+  EXPECT_EQ(height_um("hysteresis", cut, {0.1, 0.2, 0.4}), -out);
+  const slideway::Setup inward = cut.setup;
+  EXPECT_EQ(make("hysteresis")->lacking_together({&inward, &inward}).size(), 1U);
+}
+
 TEST(SearchRange, StaysWithinWhatTheProfileShows) {
   const Case profile = face(spaced(0, 10, 1001));  // 0.01 mm, 0.3 s, 0.55 turns a step; 300 s
   const Stations stations(profile.positions, profile.setup, lathe());

@@ -70,6 +70,8 @@ struct Shape {
   int parameter = 0;         // index into parameters()
   bool logarithmic = false;  // search and step on a log scale
   bool stepwise = false;     // columns are piecewise constant in it: scanned, not differentiated
+  /// A correction of higher order: 0 on a search grid, moved from there once those before it are.
+  bool higher_order = false;
 
   /// The optimiser's view of a value and back: its logarithm where it is logarithmic.
   [[nodiscard]] double inner(double value) const { return logarithmic ? std::log(value) : value; }
@@ -97,6 +99,14 @@ struct EffectOptions {
   std::optional<double> span_mm = std::nullopt;  // between the supports of a beam
   /// Only the terms above this degree: what a search adds to a declared effect.
   std::optional<int> above = std::nullopt;
+  /// Names of the profiles it acts in; empty: all.
+  std::vector<std::string> profiles = {};
+};
+
+/// Rates between which a line of an effect lies, in cycles over one profile: the resolution of the
+/// profile's spectrum is 1.
+struct LineBand {
+  double low = 0.0, high = 0.0;
 };
 
 class Effect;
@@ -135,6 +145,10 @@ class Effect {
   /// Keys of the problem file this profile lacks for the effect's variable; see missing_for().
   [[nodiscard]] virtual std::vector<std::string> lacking(const Setup& setup) const;
 
+  /// What all the profiles it acts in lack together ("azimuth_deg of at least three traces").
+  [[nodiscard]] virtual std::vector<std::string> lacking_together(
+      const std::vector<const Setup*>& setups) const;
+
   /// Fills `out` (#stations by #amplitudes): mm per unit of amplitude for heights, rad for slopes.
   /// Finite for every shape inside the bounds. REQUIRES lacking(stations.setup()) empty.
   virtual void columns(const Stations& stations, std::span<const double> shape,
@@ -155,6 +169,10 @@ class Effect {
 
   /// The reverse: amplitudes (first) and shape (behind them) from parameter values.
   [[nodiscard]] virtual Eigen::VectorXd from_parameters(const Eigen::VectorXd& values) const = 0;
+
+  /// Lines of the effect's spectrum in a profile; empty: it has none. REQUIRES as search_range().
+  [[nodiscard]] virtual std::vector<LineBand> lines(const Stations& stations,
+                                                    std::span<const double> shape) const;
 
   /// True if parameter_values() is linear in the amplitudes (no phase, no modulus).
   [[nodiscard]] virtual bool linear_parameters() const { return true; }

@@ -17,6 +17,8 @@ struct Gates {
   double exchange_bic = 2.0;
   double alike = 0.3;
   double holdout_share = 0.1;
+  double modulation_widths = 5.0;
+  double modulation_share = 0.1;
 
   // What a name must be better than.
   double process_margin = 0.0;

@@ -32,6 +32,8 @@ struct InputSummary {
   Kind kind = Kind::face;
   Quantity quantity = Quantity::height;
   Role role = Role::fit;
+  std::optional<double> azimuth_deg;  // of a face
+  std::optional<std::string> surface, instrument;
   std::size_t samples = 0;
   std::size_t missing = 0;
   std::size_t left_out = 0;

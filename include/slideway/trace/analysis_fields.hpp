@@ -9,23 +9,25 @@ namespace slideway {
 template <>
 inline constexpr auto kRecord<TriedEffect> =
     record("Tried", "A candidate of the loop.", field("effect", &TriedEffect::effect),
+           field("profiles", &TriedEffect::profiles, "those it acts in; empty: all"),
            field("delta_bic", &TriedEffect::delta_bic), field("p_value", &TriedEffect::p_value),
            field("rms_um", &TriedEffect::rms_um), field("parameters", &TriedEffect::parameters),
            field("refused", &TriedEffect::refused, "why it was not accepted; none: a rival"));
 
 template <>
-inline constexpr auto kRecord<TraceRound> =
-    record("Round", "One effect that entered the model.", field("accepted", &TraceRound::accepted),
-           field("ambiguous_with", &TraceRound::ambiguous_with),
-           field("before_rms_um", &TraceRound::before_rms_um),
-           field("after_rms_um", &TraceRound::after_rms_um),
-           field("before_rms_urad", &TraceRound::before_rms_urad),
-           field("after_rms_urad", &TraceRound::after_rms_urad),
-           field("before_holdout_rms_um", &TraceRound::before_holdout_rms_um),
-           field("after_holdout_rms_um", &TraceRound::after_holdout_rms_um),
-           field("delta_bic", &TraceRound::delta_bic), field("p_value", &TraceRound::p_value),
-           field("stability", &TraceRound::stability), field("parameters", &TraceRound::parameters),
-           field("candidates", &TraceRound::candidates));
+inline constexpr auto kRecord<TraceRound> = record(
+    "Round", "One effect that entered the model.", field("accepted", &TraceRound::accepted),
+    field("profiles", &TraceRound::profiles, "those it acts in; empty: all"),
+    field("ambiguous_with", &TraceRound::ambiguous_with),
+    field("before_rms_um", &TraceRound::before_rms_um),
+    field("after_rms_um", &TraceRound::after_rms_um),
+    field("before_rms_urad", &TraceRound::before_rms_urad),
+    field("after_rms_urad", &TraceRound::after_rms_urad),
+    field("before_holdout_rms_um", &TraceRound::before_holdout_rms_um),
+    field("after_holdout_rms_um", &TraceRound::after_holdout_rms_um),
+    field("delta_bic", &TraceRound::delta_bic), field("p_value", &TraceRound::p_value),
+    field("stability", &TraceRound::stability, "share of resamples that choose the effect"),
+    field("parameters", &TraceRound::parameters), field("candidates", &TraceRound::candidates));
 
 template <>
 inline constexpr auto kRecord<Unnamed> =

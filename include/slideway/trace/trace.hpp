@@ -15,8 +15,9 @@ namespace slideway {
 /// A candidate as a round saw it, best shape.
 struct TriedEffect {
   std::string effect;
-  double delta_bic = 0.0;  // of adding it; below 0 it would pay
-  double p_value = 1.0;    // chance that the search finds as much in noise, over all candidates
+  std::vector<std::string> profiles;  // those it acts in; empty: all
+  double delta_bic = 0.0;             // of adding it; below 0 it would pay
+  double p_value = 1.0;  // chance that the search finds as much in noise, over all candidates
   std::optional<double> rms_um;  // residual of the height profiles with it
   std::vector<FittedParameter> parameters;
   std::optional<std::string> refused;  // why it was not accepted; none: it was, or is a rival
@@ -25,6 +26,7 @@ struct TriedEffect {
 /// One effect that entered the model.
 struct TraceRound {
   std::string accepted;
+  std::vector<std::string> profiles;        // those it acts in; empty: all
   std::vector<std::string> ambiguous_with;  // rivals within 10 of its BIC, in the final model
   std::optional<double> before_rms_um, after_rms_um;      // residual of the height profiles
   std::optional<double> before_rms_urad, after_rms_urad;  // and of the slope profiles
