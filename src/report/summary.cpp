@@ -56,6 +56,10 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   if (!analysis.trace)
     return say(Alarm::plain, "Fitted", "the declared model; no missing effect was looked for");
   const TraceResult& trace = *analysis.trace;
+  if (!trace.blunders.empty())
+    return say(Alarm::bad, "Blunder",
+               "profile " + trace.blunders.front().profile + " disagrees with the others: " +
+                   std::string(text_of(trace.blunders.front().what)));
   const std::string names = found(trace);
   const bool few = names.size() <= kFewLetters;
   const std::string beside = trace.rounds.empty() ? "" : ", beside what was found";
@@ -123,7 +127,9 @@ void say_crosscheck(const Result& result, Summary& out) {
                       (check.En ? ", E_n = " + number(*check.En, 2) : ""));
   for (const HeldOutCheck& check : checks.held_out)
     parts.push_back(check.profile + ", held out, " +
-                    (check.verdict == HeldOutVerdict::fits ? "fits" : "DOES NOT FIT"));
+                    (check.verdict == HeldOutVerdict::fits
+                         ? "fits"
+                         : "DOES NOT FIT at " + number(check.at_mm, 4) + " mm"));
   out.has_crosscheck = !parts.empty();
   if (parts.empty())
     parts.push_back("none" + (angle && !angle->reason.empty() ? ": " + angle->reason : ""));
@@ -144,6 +150,7 @@ void say_missing(const Analysis& analysis, Summary& out) {
 std::string next_step(const Analysis& analysis) {
   const Result& result = analysis.result;
   if (!result.final) return "slideway identify, which fits and looks for what is missing";
+  if (analysis.trace && !analysis.trace->blunders.empty()) return analysis.trace->advice.front();
   for (const UndeterminedDirection* direction : open_directions(*result.final))
     if (!direction->advice.empty()) return with_titles(direction->advice);
   if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(result))
