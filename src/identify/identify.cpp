@@ -6,9 +6,12 @@
 #include <limits>
 
 #include "closure_summary.hpp"
+#include "repeats.hpp"
 #include "slideway/base/statistics.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/agreement.hpp"
 #include "slideway/identify/crosscheck.hpp"
+#include "slideway/identify/held_out.hpp"
 #include "slideway/identify/ranking.hpp"
 
 namespace slideway {
@@ -122,14 +125,17 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
   }
   if (scope == Scope::rank) return result;
   result.declared = summary;
-  set_final(problem, model, std::move(summary), scope, result);
+  set_final(problem, declared, std::move(summary), scope, result);
   return result;
 }
 
-void set_final(const Problem& problem, const Model& model, ModelResult summary, Scope scope,
+void set_final(const Problem& problem, const FittedModel& fitted, ModelResult summary, Scope scope,
                Result& result) {
   if (scope == Scope::identify) {
-    result.crosscheck.squareness = check_squareness(model, problem.runout, summary);
+    const auto& [model, fit] = fitted;
+    result.crosscheck = {check_squareness(model, problem.runout, summary),
+                         check_profiles(model, fit), check_held_out(model, fit),
+                         check_repeats(fit.linear, model.gates)};
   } else {
     result.crosscheck.squareness.emplace();
     result.crosscheck.squareness->reason = "this command makes no cross-check";
@@ -137,10 +143,23 @@ void set_final(const Problem& problem, const Model& model, ModelResult summary, 
   result.final = std::move(summary);
 }
 
+namespace {
+
+bool is_inconsistent(const Crosscheck& checks) {
+  return (checks.squareness && checks.squareness->verdict == Consistency::inconsistent) ||
+         std::ranges::any_of(checks.profiles,
+                             [](const ProfileCheck& check) {
+                               return check.verdict == Consistency::inconsistent;
+                             }) ||
+         std::ranges::any_of(checks.held_out, [](const HeldOutCheck& check) {
+           return check.verdict == HeldOutVerdict::does_not_fit;
+         });
+}
+
+}  // namespace
+
 bool is_negative(const Result& result) {
-  if (result.crosscheck.squareness &&
-      result.crosscheck.squareness->verdict == Consistency::inconsistent)
-    return true;
+  if (is_inconsistent(result.crosscheck)) return true;
   if (!result.final) return false;
   const auto matters = [](const UndeterminedDirection& direction) {
     return std::any_of(direction.combination.begin(), direction.combination.end(),

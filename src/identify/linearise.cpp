@@ -68,24 +68,28 @@ Eigen::VectorXd fitted_nuisances(const Observation& observation, const Eigen::Ve
   return observation.nuisances.householderQr().solve(rest);
 }
 
+Eigen::MatrixXd linear_columns(const Model& model, const Estimate& estimate,
+                               const Observation& observation) {
+  const Eigen::Index a = model.amplitudes();
+  Eigen::MatrixXd columns(observation.values.size(), a + model.shapes());
+  for (const ModelTerm& term : model.terms) {
+    const auto shape = shapes_of(term, estimate.shapes);
+    const Eigen::Index count = term.effect->amplitudes();
+    columns.middleCols(term.first_amplitude, count) =
+        low_band_columns(model, term, observation, shape);
+    for (int j = 0; j < static_cast<int>(shape.size()); ++j)
+      columns.col(a + term.first_shape + j) =
+          low_band_derivatives(model, term, observation, shape, j) *
+          estimate.amplitudes.segment(term.first_amplitude, count);
+  }
+  return columns;
+}
+
 Linearisation linearise(const Model& model, const Estimate& estimate) {
   Linearisation linear;
-  const Eigen::Index a = model.amplitudes(), s = model.shapes();
   linear.observations = fitted_observations(model);
-  for (const Observation* observation : linear.observations) {
-    Eigen::MatrixXd columns(observation->values.size(), a + s);
-    for (const ModelTerm& term : model.terms) {
-      const auto shape = shapes_of(term, estimate.shapes);
-      const Eigen::Index count = term.effect->amplitudes();
-      columns.middleCols(term.first_amplitude, count) =
-          low_band_columns(model, term, *observation, shape);
-      for (int j = 0; j < static_cast<int>(shape.size()); ++j)
-        columns.col(a + term.first_shape + j) =
-            low_band_derivatives(model, term, *observation, shape, j) *
-            estimate.amplitudes.segment(term.first_amplitude, count);
-    }
-    linear.columns.push_back(std::move(columns));
-  }
+  for (const Observation* observation : linear.observations)
+    linear.columns.push_back(linear_columns(model, estimate, *observation));
   set_residuals(model, estimate, linear);
   return linear;
 }

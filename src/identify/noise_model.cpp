@@ -7,6 +7,7 @@
 #include <complex>
 #include <numeric>
 
+#include "repeats.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/identifiability.hpp"
@@ -184,36 +185,6 @@ std::optional<LinearProfile> fine_band(const Linearisation& linear, std::size_t 
                        observation.profile->standard_uncertainty, kLeastOrder};
 }
 
-/// Whether two profiles read one cut at the same places.
-bool is_repeat(const Observation& a, const Observation& b) {
-  const Setup &s = a.profile->setup, &t = b.profile->setup;
-  return a.values.size() == b.values.size() && a.profile->positions == b.profile->positions &&
-         s.kind == t.kind && s.quantity == t.quantity && s.base_mm == t.base_mm &&
-         s.center_mm == t.center_mm && s.spindle_position_mm == t.spindle_position_mm &&
-         s.z_mm == t.z_mm && s.azimuth_deg == t.azimuth_deg && s.overhang_mm == t.overhang_mm &&
-         s.feed_mm_per_min == t.feed_mm_per_min && s.spindle_rpm == t.spindle_rpm &&
-         s.cut_direction == t.cut_direction && s.cut_radius_mm == t.cut_radius_mm &&
-         s.start_s == t.start_s && s.traverse_mm_per_s == t.traverse_mm_per_s;
-}
-
-/// Deviations of a profile from the mean of its repeats, of the size its noise has; or nothing.
-std::optional<LinearProfile> from_repeats(const Linearisation& linear, std::size_t i) {
-  const Observation& observation = *linear.observations[i];
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(observation.values.size());
-  double count = 0.0;
-  for (std::size_t j = 0; j < linear.observations.size(); ++j)
-    if (is_repeat(observation, *linear.observations[j])) mean += linear.residuals[j], ++count;
-  if (count < 2.0) return std::nullopt;
-  Eigen::VectorXd deviation =
-      (linear.residuals[i] - mean / count) * std::sqrt(count / (count - 1.0));
-  constexpr double kCopy = 1e-9;  // of the values: one file given twice is no repeat
-  if (deviation.norm() <= kCopy * observation.values.norm()) return std::nullopt;
-  Eigen::MatrixXd basis = orthonormal(observation.nuisances);
-  deviation -= basis * (basis.transpose() * deviation).eval();
-  return LinearProfile{std::move(basis), Eigen::MatrixXd(deviation.size(), 0), std::move(deviation),
-                       observation.profile->standard_uncertainty, kLeastOrder};
-}
-
 /// The noise of one profile beside the slow band: that of the fine band, or that of repeats if it
 /// is larger in the long run. Repeats hold no texture, and the fine band no slow noise.
 std::optional<Noise> beside(const Linearisation& linear, std::size_t i, const Gates& gates,
@@ -223,7 +194,7 @@ std::optional<Noise> beside(const Linearisation& linear, std::size_t i, const Ga
   };
   std::optional<Noise> out;
   if (const auto fine = fine_band(linear, i, gates, suspect)) out = estimated(*fine);
-  if (const auto repeats = from_repeats(linear, i)) {
+  if (const auto repeats = deviation_from_repeats(linear, i, gates)) {
     Noise noise = estimated(*repeats);
     if (!out || noise.long_run_deviation() > out->long_run_deviation()) out = std::move(noise);
   }

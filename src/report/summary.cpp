@@ -81,6 +81,10 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   if (!analysis.trace)
     return say(Alarm::plain, "Fitted", "the declared model; no missing effect was looked for");
   const TraceResult& trace = *analysis.trace;
+  if (!trace.blunders.empty())
+    return say(Alarm::bad, "Blunder",
+               "profile " + trace.blunders.front().profile + " disagrees with the others: " +
+                   std::string(text_of(trace.blunders.front().what)));
   const std::string names = found(trace);
   const bool few = names.size() <= kFewLetters;
   switch (trace.verdict) {
@@ -148,7 +152,8 @@ void say_crosscheck(const Result& result, Summary& out) {
   for (const HeldOutCheck& check : checks.held_out) {
     const bool fits = check.verdict == HeldOutVerdict::fits;
     (fits ? consistent : parts)
-        .push_back(check.profile + ", held out, " + (fits ? "fits" : "DOES NOT FIT"));
+        .push_back(check.profile + ", held out, " +
+                   (fits ? "fits" : "DOES NOT FIT at " + number(check.at_mm, 4) + " mm"));
   }
   std::ranges::move(consistent, std::back_inserter(parts));
   out.has_crosscheck = !parts.empty();
@@ -174,6 +179,7 @@ void say_missing(const Analysis& analysis, Summary& out) {
 std::string next_step(const Analysis& analysis) {
   const Result& result = analysis.result;
   if (!result.final) return "slideway identify, which fits and looks for what is missing";
+  if (analysis.trace && !analysis.trace->blunders.empty()) return analysis.trace->advice.front();
   for (const UndeterminedDirection* direction : open_directions(*result.final))
     if (!direction->advice.empty()) return with_titles(direction->advice);
   if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(analysis))

@@ -269,6 +269,12 @@ std::string crosscheck(const Crosscheck& checks) {
                 number(check.chi2, 3) + ", p = " + probability(check.p_value) + "), off by up to " +
                 size_text(check.largest_um, check.largest_urad) + " at " + number(check.at_mm, 4) +
                 " mm");
+  for (const PureErrorCheck& check : checks.repeats)
+    out += note("repeats " + joined(check.profiles, " and ") + ": what they have in common " +
+                (check.verdict == RepeatFit::fits ? "is no more than noise"
+                                                  : "is LACK OF FIT of the model") +
+                " (F = " + number(check.F, 3) + ", p = " + probability(check.p_value) + ", " +
+                size_text(check.common_um, check.common_urad) + " rms)");
   return out.empty() ? "" : heading("Cross-check") + out;
 }
 

@@ -16,6 +16,9 @@ using Column = TextTable::Column;
 std::string last_name(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
 std::string verdict(const TraceResult& trace) {
+  if (!trace.blunders.empty())
+    return "profile " + trace.blunders.front().profile +
+           " disagrees with the others; no effect was looked for.";
   switch (trace.verdict) {
     case TraceVerdict::nothing_missing:
       return "nothing is missing that these data tell from noise (lack of fit p = " +
@@ -100,6 +103,17 @@ std::string untestable(const TraceResult& trace) {
   return text;
 }
 
+std::string cross_validation(const TraceResult& trace) {
+  if (!trace.gain) return "";
+  std::vector<std::string> gaps;
+  for (const BlockPrediction& each : trace.cross_validation)
+    gaps.push_back(number(each.block_mm, 3) + " mm " +
+                   residual_change(each.before_rms_um, each.after_rms_um, each.before_rms_urad,
+                                   each.after_rms_urad));
+  return item("Predicted over gaps of " + joined(gaps, ", ") + ": the gain is " +
+              std::string(text_of(*trace.gain)) + ".");
+}
+
 std::string gates(const TraceResult& trace) {
   std::vector<std::string> values;
   for (const auto& [gate, value] : trace.gates) values.push_back(gate + " " + number(value, 4));
@@ -115,6 +129,7 @@ std::string gates(const TraceResult& trace) {
 std::string trace_text(const TraceResult& trace) {
   std::string text = heading("Closed loop: " + verdict(trace));
   for (std::size_t i = 0; i < trace.rounds.size(); ++i) text += round(trace.rounds[i], i);
+  text += cross_validation(trace);
   if (trace.unnamed) text += left_over(*trace.unnamed);
   for (const std::string& line : trace.advice) text += note(with_titles(line));
   for (const NotSeparable& each : trace.not_separable)

@@ -29,9 +29,8 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
     MoreVariance unnamed;
     if (loop.widening)
       unnamed = [&](const Eigen::RowVectorXd& row) { return loop.widening->variance(row); };
-    set_final(problem, last->model,
-              summarise(last->model, last->fit, unnamed, options.with_details), options.scope,
-              out.result);
+    set_final(problem, *last, summarise(last->model, last->fit, unnamed, options.with_details),
+              options.scope, out.result);
     out.trace = std::move(loop.trace);
     for (TraceRound& round : out.trace->rounds)
       round.parameters =

@@ -285,6 +285,13 @@ const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffec
   return found == round.tested.end() ? nullptr : &*found;
 }
 
+Selection nothing_selected(ModelExtender& extender, const Gates& gates) {
+  Selection out;
+  out.lack_of_fit =
+      lack_of_fit(extender.base().fit.linear, extender.search({}).data.noise(), gates);
+  return out;
+}
+
 Selection select_effects(const Problem& problem, ModelExtender& extender, const Gates& gates,
                          const Progress& progress) {
   return Selector(problem, extender, gates, progress).run();

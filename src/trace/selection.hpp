@@ -25,6 +25,9 @@ struct Selection {
 Selection select_effects(const Problem& problem, ModelExtender& extender, const Gates& gates,
                          const Progress& progress);
 
+/// The declared model as it is: what is left of it, and no effect.
+Selection nothing_selected(ModelExtender& extender, const Gates& gates);
+
 /// The candidate of a search that is this effect and passes, or null.
 const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,
                                    const Gates& gates);

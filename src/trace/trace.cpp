@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "advice.hpp"
+#include "blunder.hpp"
+#include "cross_validation.hpp"
 #include "detection.hpp"
 #include "fit_numbers.hpp"
 #include "loop.hpp"
@@ -30,12 +32,15 @@ class Loop {
 
   ClosedLoop run() {
     const Gates& gates = problem_.trace.gates;
-    Selection selection = select_effects(problem_, extender_, gates, progress_);
+    std::vector<Blunder> blunders = find_blunders(extender_.base());
+    Selection selection = blunders.empty() ? select_effects(problem_, extender_, gates, progress_)
+                                           : nothing_selected(extender_, gates);
     tell_rounds(selection.effects);
     if (progress_) progress_("describing what is left", 0.0);
     ClosedLoop closed;
     TraceResult& out = closed.trace;
     for (const Gate& gate : gate_table()) out.gates.emplace_back(gate.name, gates.*gate.value);
+    out.blunders = std::move(blunders);
     report_effects(selection, out);
     report_rest(selection, closed);
     report_limits(selection, out);
@@ -45,8 +50,14 @@ class Loop {
                                                extender_.summary(selection.effects)),
                               extender_.summary(selection.effects));
     if (!other_cause.empty()) out.advice.insert(out.advice.begin(), other_cause);
+    if (!out.blunders.empty()) out.advice.insert(out.advice.begin(), blunder_advice(out.blunders));
     out.verdict = verdict(out, !other_cause.empty());
-    if (other_cause.empty()) out.fragile = smallest_change(problem_, extender_, selection, gates);
+    if (other_cause.empty() && out.blunders.empty())
+      out.fragile = smallest_change(problem_, extender_, selection, gates);
+    out.cross_validation =
+        cross_validate(extender_.base().fit, extender_.extended(selection.effects).fit, gates);
+    if (!selection.effects.empty() && !out.cross_validation.empty())
+      out.gain = gain_of(out.cross_validation);
     out.searches = extender_.searches();
     if (!selection.effects.empty())
       closed.extended = extender_.take_in_declared_band(selection.effects);
@@ -116,7 +127,7 @@ class Loop {
                              ? "max_effects effects are in the model"
                              : "beside the others it does not help";
     out.lack_of_fit_p = selection.lack_of_fit.p_value;
-    if (!selection.lack_of_fit.significant(gates) && !selection.withheld) {
+    if (out.blunders.empty() && !selection.lack_of_fit.significant(gates) && !selection.withheld) {
       if (!selection.unsure.empty()) closed.widening = widening_instead(selection, fitted, last);
       return;
     }

@@ -41,6 +41,18 @@ struct Gates {
   double false_line = 1e-3;
   double most_lines = 12.0;
 
+  // When profiles agree.
+  double en_limit = 1.0;
+  double false_disagreement = 0.0455;
+  double held_out_p = 0.01;
+  double same_place = 0.25;
+  double values_per_repeated_cosine = 3.0;
+  double blunder_bic = 20.0;
+  double blunder_left = 0.1;
+  double sister_factor = 2.0;
+  double most_blocks = 40.0;
+  double least_blocks = 5.0;
+
   // What is left out of a face.
   double nose_radius_mm = 2.0;
   double most_lost = 0.1;

@@ -309,21 +309,32 @@ template <>
 inline constexpr auto kRecord<ProfileCheck> =
     record("ProfileCheck", "One quantity from each of several profiles that should agree.",
            field("profiles", &ProfileCheck::profiles), field("what", &ProfileCheck::what),
-           field("En", &ProfileCheck::En), field("verdict", &ProfileCheck::verdict));
+           field("En", &ProfileCheck::En), field("verdict", &ProfileCheck::verdict),
+           field("chi2", &ProfileCheck::chi2, "per degree of freedom, over all effects"),
+           field("p_value", &ProfileCheck::p_value));
 
 template <>
 inline constexpr auto kRecord<HeldOutCheck> =
     record("HeldOutCheck", "Whether a held-out profile lies where the model predicts it.",
-           field("profile", &HeldOutCheck::profile), field("chi2", &HeldOutCheck::chi2),
+           field("profile", &HeldOutCheck::profile),
+           field("chi2", &HeldOutCheck::chi2, "per degree of freedom"),
            field("p_value", &HeldOutCheck::p_value), field("largest_um", &HeldOutCheck::largest_um),
            field("largest_urad", &HeldOutCheck::largest_urad), field("at_mm", &HeldOutCheck::at_mm),
            field("verdict", &HeldOutCheck::verdict));
 
 template <>
+inline constexpr auto kRecord<PureErrorCheck> = record(
+    "PureErrorCheck", "What repeats have in common and the model lacks.",
+    field("profiles", &PureErrorCheck::profiles), field("F", &PureErrorCheck::F),
+    field("p_value", &PureErrorCheck::p_value),
+    field("common_um", &PureErrorCheck::common_um, "rms of the slow part in common"),
+    field("common_urad", &PureErrorCheck::common_urad), field("verdict", &PureErrorCheck::verdict));
+
+template <>
 inline constexpr auto kRecord<Crosscheck> =
     record("Crosscheck", "The final model against what it was not made of.",
            field("squareness", &Crosscheck::squareness), field("profiles", &Crosscheck::profiles),
-           field("held_out", &Crosscheck::held_out));
+           field("held_out", &Crosscheck::held_out), field("repeats", &Crosscheck::repeats));
 
 template <>
 inline constexpr auto kRecord<Conformity> = record(

@@ -37,6 +37,10 @@ Eigen::VectorXd model_values(const Model& model, const Observation& observation,
 /// profile whose noise is not known.
 Eigen::VectorXd fitted_nuisances(const Observation& observation, const Eigen::VectorXd& rest);
 
+/// Low-band columns of all amplitudes and derivatives by all shapes: #values by (A + S).
+Eigen::MatrixXd linear_columns(const Model& model, const Estimate& estimate,
+                               const Observation& observation);
+
 Linearisation linearise(const Model& model, const Estimate& estimate);
 
 /// The same at another estimate; columns are computed again only where a shape could move them.

@@ -43,6 +43,21 @@ inline constexpr auto kRecord<Unnamed> =
            field("odd_share", &Unnamed::odd_share));
 
 template <>
+inline constexpr auto kRecord<BlockPrediction> =
+    record("BlockPrediction", "A single profile predicted over gaps of one length.",
+           field("block_mm", &BlockPrediction::block_mm),
+           field("before_rms_um", &BlockPrediction::before_rms_um, "declared model"),
+           field("after_rms_um", &BlockPrediction::after_rms_um, "final model"),
+           field("before_rms_urad", &BlockPrediction::before_rms_urad),
+           field("after_rms_urad", &BlockPrediction::after_rms_urad));
+
+template <>
+inline constexpr auto kRecord<Blunder> =
+    record("Blunder", "A slip of the hand that would make one profile agree with the others.",
+           field("profile", &Blunder::profile), field("what", &Blunder::what),
+           field("delta_bic", &Blunder::delta_bic, "against the profile as it is"));
+
+template <>
 inline constexpr auto kRecord<NotTestable> = record("NotTestable",
                                                     "An effect the data cannot be asked for.",
                                                     field("effect", &NotTestable::effect),
@@ -84,6 +99,9 @@ inline constexpr auto kRecord<TraceResult> = record(
     field("gates", &TraceResult::gates, "the limits that were used"),
     field("fragile", &TraceResult::fragile, "none: no change of one gate within its range does"),
     field("rounds", &TraceResult::rounds), field("unnamed", &TraceResult::unnamed),
+    field("cross_validation", &TraceResult::cross_validation, "of a single profile"),
+    field("gain", &TraceResult::gain, "of the accepted effects, by cross_validation"),
+    field("blunders", &TraceResult::blunders, "rivals, most likely first; then no effect is named"),
     field("advice", &TraceResult::advice), field("not_testable", &TraceResult::not_testable),
     field("not_separable", &TraceResult::not_separable),
     field("refused", &TraceResult::refused, "of the last search, best first"),

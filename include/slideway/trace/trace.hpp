@@ -40,6 +40,34 @@ struct TraceRound {
   std::vector<TriedEffect> candidates;      // what else was tried in that round, best first
 };
 
+/// A single profile predicted over gaps of one length, without and with the accepted effects.
+struct BlockPrediction {
+  double block_mm = 0.0;
+  std::optional<double> before_rms_um, after_rms_um, before_rms_urad, after_rms_urad;
+};
+
+/// What the accepted effects bring: at every length of gap, or over short gaps only.
+enum class Gain { prediction, interpolation };
+template <>
+inline constexpr std::array<std::string_view, 2> kTexts<Gain>{"prediction", "interpolation"};
+
+/// A slip of the hand that would make one profile agree with the others.
+enum class BlunderKind { sign, inch, per_inch, metre, per_metre, cut_direction, clock };
+template <>
+inline constexpr std::array<std::string_view, 7> kTexts<BlunderKind>{"wrong sign",
+                                                                     "values 25.4 times too small",
+                                                                     "values 25.4 times too large",
+                                                                     "values 1000 times too small",
+                                                                     "values 1000 times too large",
+                                                                     "wrong cut_direction",
+                                                                     "wrong start_s"};
+
+struct Blunder {
+  std::string profile;
+  BlunderKind what = BlunderKind::sign;
+  double delta_bic = 0.0;  // against the profile as it is
+};
+
 /// What is left and has no name.
 struct Unnamed {
   /// Of the smooth part, in the profile where it stands out most.
@@ -108,6 +136,9 @@ struct TraceResult {
   std::optional<Fragile> fragile;                     // none: no such change does
   std::vector<TraceRound> rounds;
   std::optional<Unnamed> unnamed;
+  std::vector<BlockPrediction> cross_validation;  // of a single profile, shortest gaps first
+  std::optional<Gain> gain;                       // of the accepted effects, by those
+  std::vector<Blunder> blunders;  // rivals, most likely first; effects are then not looked for
   std::vector<std::string> advice;
   std::vector<NotTestable> not_testable;
   std::vector<NotSeparable> not_separable;
