@@ -27,7 +27,8 @@ bool is_one_cut(const Setup& s, const Setup& t, double length_mm) {
   constexpr double kAsWritten = 1e-6;  // of a number that was typed in twice
   return s.kind == t.kind && s.quantity == t.quantity && near(s.base_mm, t.base_mm, kAsWritten) &&
          near(s.spindle_position_mm, t.spindle_position_mm, length_mm) &&
-         near(s.z_mm, t.z_mm, length_mm) && near(s.overhang_mm, t.overhang_mm, length_mm) &&
+         near(s.azimuth_deg, t.azimuth_deg, kAsWritten) && near(s.z_mm, t.z_mm, length_mm) &&
+         near(s.overhang_mm, t.overhang_mm, length_mm) &&
          near(s.feed_mm_per_min, t.feed_mm_per_min, kAsWritten) &&
          near(s.spindle_rpm, t.spindle_rpm, kAsWritten) && s.cut_direction == t.cut_direction &&
          near(s.start_s, t.start_s, kAsWritten * std::max(1.0, std::abs(s.start_s)));
@@ -116,7 +117,9 @@ std::vector<Eigen::Index> matched_values(const Observation& a, const Observation
 bool are_repeats(const Observation& a, const Observation& b, const Gates& gates) {
   if (&a == &b) return true;
   const double station = gates.same_place * extent(a) / static_cast<double>(a.values.size());
-  if (!is_one_cut(a.profile->setup, b.profile->setup, station)) return false;
+  if (a.profile->surface != b.profile->surface ||
+      !is_one_cut(a.profile->setup, b.profile->setup, station))
+    return false;
   const auto match = matched_values(a, b, gates);
   const auto shared = std::ranges::count_if(match, [](Eigen::Index j) { return j >= 0; });
   return 2 * shared >= std::max(a.values.size(), b.values.size());

@@ -58,7 +58,7 @@ Standing standing(ModelExtender& extender, const Effects& effects, const Gates& 
     double gain = data.residual().squaredNorm() - named.residual().squaredNorm();
     for (const std::size_t i : absent) {
       const Candidate& candidate = *effects[i].candidate;
-      gain -= penalty(named, candidate.unknowns(candidate.amplitudes()));
+      gain -= penalty(named, candidate, candidate.amplitudes());
     }
     const auto hold_against = [&](double log_evidence, const std::string& rival) {
       const double margin = 0.5 * gain - log_evidence;

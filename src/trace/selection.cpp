@@ -135,7 +135,7 @@ class Selector {
     const Whitened with_it(with.fit.linear, noise), without_it(without.fit.linear, noise);
     const Candidate& candidate = *effects[which].candidate;
     return 0.5 * (without_it.residual().squaredNorm() - with_it.residual().squaredNorm() -
-                  penalty(with_it, candidate.unknowns(candidate.amplitudes()))) +
+                  penalty(with_it, candidate, candidate.amplitudes())) +
            find_structure(with.model, with_it, with.fit.linear).process.log_evidence -
            find_structure(without.model, without_it, without.fit.linear).process.log_evidence;
   }
@@ -149,7 +149,7 @@ class Selector {
     const Projection own =
         project(data, stacked_columns(without.model, effect.candidate->term, effect.shape,
                                       data.rows() - data.values()));
-    return own.gain - penalty(data, effect.candidate->unknowns(own.rank));
+    return own.gain - penalty(data, *effect.candidate, own.rank);
   }
 
   /// Earlier effects that the last one has made superfluous leave.

@@ -53,8 +53,8 @@ class Choice {
       const Eigen::MatrixXd own =
           orthonormal(columns.middleCols(first_[c], first_[c + 1] - first_[c]));
       const double bic =
-          static_cast<double>(refined.candidate->unknowns(refined.projection.rank)) * log_count -
-          (own.transpose() * rest).squaredNorm();
+          static_cast<double>(refined.candidate->unknowns(refined.projection.rank)) * log_count +
+          refined.candidate->choice - (own.transpose() * rest).squaredNorm();
       if (bic < least) least = bic, best = round_.tested[c].name();
     }
     return best;
