@@ -8,7 +8,6 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -50,25 +49,24 @@ def effect_of(label: str) -> str:
 
 
 def said(report: Record) -> list[Record]:
-    """Every name the loop gives: with its rivals, and the profiles it is in where that is said."""
+    """Every name the loop gives, blunders too: with rivals, and the profiles it is in where told."""
     rounds = report["trace"]["rounds"]
-    return [{"name": effect_of(one["accepted"]),
-             "rivals": [effect_of(rival) for rival in one["ambiguous_with"]],
-             "profiles": one.get("profiles") or []}
-            for one in rounds if effect_of(one["accepted"]) not in OF_EVERY_FACE]
+    names = [{"name": effect_of(one["accepted"]),
+              "rivals": [effect_of(rival) for rival in one["ambiguous_with"]],
+              "profiles": one.get("profiles") or []}
+             for one in rounds if effect_of(one["accepted"]) not in OF_EVERY_FACE]
+    blunders = report["trace"].get("blunders") or []
+    labels = [f"{one['what']} of {one['profile']}" for one in blunders]
+    if labels:
+        names.append({"name": labels[0], "rivals": labels[1:], "profiles": [blunders[0]["profile"]]})
+    return names
 
 
-def sayings(node: Any) -> Iterator[str]:
-    """Every text of a part of the report, and the scalars of every object as one text."""
-    if isinstance(node, str):
-        yield node
-    elif isinstance(node, list):
-        for item in node:
-            yield from sayings(item)
-    elif isinstance(node, dict):
-        yield ", ".join(f"{k} {v}" for k, v in node.items() if not isinstance(v, (dict, list)))
-        for item in node.values():
-            yield from sayings(item)
+def is_right(hidden: Hidden, name: str) -> bool:
+    """Is the name one of what is hidden, or its blunder in its profile?"""
+    if name in hidden.names:
+        return True
+    return bool(hidden.words and re.search(f"{hidden.words}.* of {hidden.cuts[0]}$", name))
 
 
 def parameter(report: Record, name: str) -> Record | None:
@@ -117,19 +115,16 @@ def size_of(report: Record, hidden: Hidden) -> Record | None:
 def judge(report: Record, case: Case) -> Record:
     """What the report says, and whether it is true."""
     names = said(report)
-    right = {name for hidden in case.hidden for name in hidden.names}
-    wrong = [one["name"] for one in names if not one["rivals"] and one["name"] not in right]
-    listed = {name for one in names for name in [one["name"], *one["rivals"]]}
-    remarks = list(sayings([report["trace"], report.get("crosscheck"), report.get("notes")]))
+    wrong = [one["name"] for one in names
+             if not one["rivals"] and not any(is_right(h, one["name"]) for h in case.hidden)]
+    listed = [name for one in names for name in [one["name"], *one["rivals"]]]
     hidden_ones = []
     for hidden in case.hidden:
-        own = [one for one in names if one["name"] in hidden.names]
+        own = [one for one in names if is_right(hidden, one["name"])]
         hidden_ones.append(asdict(hidden) | {
-            "in_set": bool(listed & set(hidden.names)),
-            "alone": any(set(one["rivals"]) <= set(hidden.names) for one in own),
+            "in_set": any(is_right(hidden, name) for name in listed),
+            "alone": any(all(is_right(hidden, rival) for rival in one["rivals"]) for one in own),
             "with_cut": any(sorted(one["profiles"]) == sorted(hidden.cuts) for one in own),
-            "said": bool(hidden.words) and any(
-                hidden.cuts[0] in text and re.search(hidden.words, text) for text in remarks),
             "limit": limit(report, hidden) if hidden.parameter else None,
             "found": size_of(report, hidden)})
     dbeta = within(parameter(report, "squareness.dbeta_xz"), case.shop.squareness)

@@ -170,7 +170,7 @@ class Hidden:
     size: float = 0.0
     shape: float = 0.0
     cuts: tuple[str, ...] = ()  # the profiles that have it; none: all
-    words: str = ""  # a blunder: what a report that found it must say, a regular expression
+    words: str = ""  # a blunder: the words of a report that found it, a regular expression
     of_noise: float = 0.0  # amplitude in standard deviations of the noise
 
 

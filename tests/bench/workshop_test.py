@@ -126,7 +126,7 @@ REPORT = {
         "rounds": [{"accepted": "feed_marks", "ambiguous_with": []},
                    {"accepted": "slide_periodic", "ambiguous_with": ["time_periodic"]},
                    {"accepted": "step", "ambiguous_with": [], "profiles": ["cut2"]}],
-        "advice": ["heights of cut2 have the wrong sign", "unit of cut1: mm"],
+        "blunders": [{"profile": "cut2", "what": "wrong sign"}],
         "detection_limits": [{"effect": "slide_periodic", "value": 0.01, "by_shape": [
             {"shape": 1.0, "value": 0.01}, {"shape": 100.0, "value": 0.04}]}]}}
 
@@ -136,8 +136,9 @@ class Score(unittest.TestCase):
         hidden = Hidden(("slide_periodic",), "amplitude_um", 0.52, 10.0)
         shop = replace(draw_shop(np.random.default_rng(1)), squareness=1e-5)
         found = score.judge(REPORT, Case(shop, [], [hidden]))
-        self.assertEqual(found["wrong"], ["step"])
-        self.assertEqual([one["name"] for one in found["names"]], ["slide_periodic", "step"])
+        self.assertEqual(found["wrong"], ["step", "wrong sign of cut2"])
+        self.assertEqual([one["name"] for one in found["names"]],
+                         ["slide_periodic", "step", "wrong sign of cut2"])
         self.assertAlmostEqual(found["dbeta"]["error"], 1e-6)
         one = found["hidden"][0]
         self.assertTrue(one["in_set"] and not one["alone"])
@@ -148,11 +149,11 @@ class Score(unittest.TestCase):
         case = Case(draw_shop(np.random.default_rng(1)), [], [Hidden(("step",), cuts=("cut2",))])
         self.assertTrue(score.judge(REPORT, case)["hidden"][0]["with_cut"])
 
-    def test_blunder_is_said_only_beside_the_name_of_its_profile(self):
+    def test_blunder_is_right_only_in_its_profile(self):
         shop = draw_shop(np.random.default_rng(1))
         for cut, said in (("cut2", True), ("cut1", False)):
             hidden = Hidden((), cuts=(cut,), words=r"\bsign\b")
-            self.assertEqual(score.judge(REPORT, Case(shop, [], [hidden]))["hidden"][0]["said"], said)
+            self.assertEqual(score.judge(REPORT, Case(shop, [], [hidden]))["hidden"][0]["alone"], said)
 
 
 def record(name, seed, error, **changes):
