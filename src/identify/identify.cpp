@@ -84,7 +84,7 @@ LowBandSummary summarise_low_band(const Observation& observation) {
 LowBandSummary planned_low_band(const Profile& profile, const LowBandOptions& options) {
   const bool enough = (profile.positions.size() >> options.level) > 0;
   return {profile.name, options.wavelet, options.level, options.boundary,
-          enough ? LowBand(options, profile.positions).values() : 0};
+          enough ? static_cast<std::size_t>(LowBand(options, profile.positions).values()) : 0};
 }
 
 Result summarise_inputs(const Problem& problem, const std::vector<Profile>& profiles) {
