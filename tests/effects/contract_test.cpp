@@ -22,7 +22,7 @@ class EffectContract : public ::testing::TestWithParam<std::string> {
     std::vector<double> ordinary;
     for (std::size_t s = 0; s < effect_->shapes().size(); ++s) {
       const auto [low, high] = effect_->search_range(static_cast<int>(s), stations);
-      ordinary.push_back(std::sqrt(low * high));
+      ordinary.push_back(low > 0.0 ? std::sqrt(low * high) : low + 0.3 * (high - low));
     }
     std::vector<std::vector<double>> result{ordinary};
     for (std::size_t s = 0; s < ordinary.size(); ++s) {

@@ -325,26 +325,24 @@ TEST(LocalForm, OfTheWayStaysAtItsPlaceOfTheSlide) {
   EXPECT_DOUBLE_EQ(height_um("local_form", at_axis, {1.0, 105.0, 1.0})[0], 1.0);
 }
 
-// A cone Θ r read off the centre by X0 is Θ |X - X0|: less Θ |X| that is -Θ X0 sgn X beyond X0,
-// and of a parabola z r² less it -2 z X0 X + z X0².
-TEST(Centring, IsTheFormOffTheCentre) {
-  const Case diameter{"", setup_of(Kind::face, Quantity::height, -10, 10), {-5.0, 0.0, 2.5}};
-  const double cone = 2e-4, parabola = 3e-6, off = 0.05;  // Θ, mm^-1, mm
-  const auto effect = make_effect("centring", {.degree = 2}, lathe(), kTravel);
-  const Eigen::VectorXd z =
-      signal(*effect, diameter, values({-off * cone * 1e3, -off * 2.0 * parabola * 10.0 * 1e3}));
-  const auto form = [&](double x) { return cone * std::abs(x) + parabola * x * x; };
-  for (const Eigen::Index i : {0, 2}) {
-    const double x = diameter.positions[static_cast<std::size_t>(i)];
-    EXPECT_NEAR(z[i], form(x - off) - form(x) - parabola * off * off, 1e-17);
+// A cone Θ r read off the centre by X0 is Θ |X - X0|, so that Θ (|X - X0| - |X|) is added.
+TEST(Centring, IsAConeOffTheCentre) {
+  const Case diameter{"", setup_of(Kind::face, Quantity::height, -10, 10), {-5.0, 0.0, 0.2, 2.5}};
+  const double cone = 0.2;  // µm/mm
+  for (const double off : {0.5, -0.5}) {
+    const Eigen::VectorXd z = height_um("centring", diameter, {-cone * off, off});
+    for (Eigen::Index i = 0; i < z.size(); ++i) {
+      const double x = diameter.positions[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(z[i], cone * (std::abs(x - off) - std::abs(x)), 1e-15);
+    }
   }
-  EXPECT_EQ(z[1], 0.0);
-  EXPECT_FALSE(effect->applies_to(face({0.0}).setup));
+  EXPECT_FALSE(make("centring")->applies_to(face({0.0}).setup));
 }
 
-TEST(Centring, OnAConeIsTheCentreStep) {
+TEST(Centring, WithoutAnOffsetIsTheCentreStep) {
   const Case diameter = all_cases()[2];
-  EXPECT_EQ(columns(*make("centring"), diameter), columns(*make("centre_step"), diameter));
+  const std::vector<double> none{0.0};
+  EXPECT_EQ(columns(*make("centring"), diameter, none), columns(*make("centre_step"), diameter));
 }
 
 // 3, 4, 5: a cone of 200 µm/m at r = 4 mm read beside the diameter by 3 mm is that at 5 mm.

@@ -16,6 +16,13 @@ constexpr double kNarrowestMm = 1e-3;  // of the problem file
 constexpr double kWidestMm = 1e5;
 constexpr double kFarthestMm = 1e9;
 
+constexpr double kReach = 10.0;  // widths: exp(-50) is below the rounding of what lies beside it
+
+// exp(-u²/2), exactly 0 far away.
+Eigen::ArrayXd gaussian(const Eigen::ArrayXd& u) {
+  return (u.abs() < kReach).select((-0.5 * u.square()).exp(), 0.0);
+}
+
 Description describe() {
   return {.name = "local_form",
           .standard_name = "E_ZX, local straightness error of X (ISO 230-1)",
@@ -64,7 +71,7 @@ class LocalForm : public LinearEffect {
     const double place = shape[0], width = shape[1];
     const auto bump = [=](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value, Eigen::ArrayXXd& slope) {
       const Eigen::ArrayXd u = (x - place) / width;
-      value.col(0) = (-0.5 * u.square()).exp();
+      value.col(0) = gaussian(u);
       slope.col(0) = -u / width * value.col(0);
     };
     fill_from_locus(stations, height_only(), bump, out);
@@ -75,7 +82,7 @@ class LocalForm : public LinearEffect {
     const double place = shape[0], width = shape[1];
     const auto change = [=](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value,
                             Eigen::ArrayXXd& slope) {
-      const Eigen::ArrayXd u = (x - place) / width, bump = (-0.5 * u.square()).exp();
+      const Eigen::ArrayXd u = (x - place) / width, bump = gaussian(u);
       if (which == 0) {
         value.col(0) = bump * u / width;
         slope.col(0) = bump * (1.0 - u.square()) / (width * width);

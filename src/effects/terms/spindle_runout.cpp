@@ -64,7 +64,8 @@ Description describe() {
       .confounded_with =
           "slide_periodic at one feed; on a face one groove per turn samples it at "
           "a fixed angle, so that its lines become constants and slow drifts; a drift of the "
-          "speed looks like further lines beside those of the turn",
+          "speed looks like further lines beside those of the turn, time_periodic or "
+          "revolution_periodic",
       .confounded_effects = {"slide_periodic", "time_periodic", "revolution_periodic"},
       .separated_by =
           "a second feed or spindle speed: the lines stay at whole orders per turn; the angle of "
