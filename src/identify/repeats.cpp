@@ -33,6 +33,16 @@ bool is_one_cut(const Setup& s, const Setup& t, double length_mm) {
          near(s.start_s, t.start_s, kAsWritten * std::max(1.0, std::abs(s.start_s)));
 }
 
+/// Whether two traces run along one line of the surface; where either does not say, they may.
+bool is_one_line(const std::optional<Line>& a, const std::optional<Line>& b, double length_mm) {
+  if (!a || !b) return true;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!near(a->from_mm[i], b->from_mm[i], length_mm) ||
+        !near(a->to_mm[i], b->to_mm[i], length_mm))
+      return false;
+  return true;
+}
+
 /// Stations of the low band, of a face from the spindle axis.
 std::vector<double> stations(const Observation& observation) {
   const Setup& setup = observation.profile->setup;
@@ -116,7 +126,9 @@ std::vector<Eigen::Index> matched_values(const Observation& a, const Observation
 bool are_repeats(const Observation& a, const Observation& b, const Gates& gates) {
   if (&a == &b) return true;
   const double station = gates.same_place * extent(a) / static_cast<double>(a.values.size());
-  if (!is_one_cut(a.profile->setup, b.profile->setup, station)) return false;
+  if (!is_one_cut(a.profile->setup, b.profile->setup, station) ||
+      !is_one_line(a.profile->line, b.profile->line, station))
+    return false;
   const auto match = matched_values(a, b, gates);
   const auto shared = std::ranges::count_if(match, [](Eigen::Index j) { return j >= 0; });
   return 2 * shared >= std::max(a.values.size(), b.values.size());

@@ -139,6 +139,8 @@ void say_crosscheck(const Result& result, Summary& out) {
 void say_missing(const Analysis& analysis, Summary& out) {
   out.missing = "nothing that these data show";
   if (!analysis.trace) out.missing = "not looked for";
+  if (analysis.trace && !analysis.trace->blunders.empty())
+    out.missing = "not looked for while a profile has a blunder";
   if (!was_extended(analysis)) return;
   out.has_missing = true;
   out.missing = found(*analysis.trace);
