@@ -102,9 +102,10 @@ void set_largest(const Observation& observation, const Predicted& predicted,
   Eigen::MatrixXd white(predicted.error.size(), predicted.free.cols() + 1);
   white << predicted.free, predicted.error;
   predicted.noise.whiten(white);
-  const Eigen::VectorXd levelling =
-      least_squares(white.leftCols(predicted.free.cols()), white.rightCols(1)).values;
-  const Eigen::VectorXd error = predicted.error - predicted.free * levelling;
+  const Eigen::Index m = predicted.free.cols();
+  Eigen::VectorXd error = predicted.error;
+  if (m > 0)
+    error -= predicted.free * least_squares(white.leftCols(m), white.rightCols(1)).values.col(0);
   const Eigen::VectorXd variance =
       ((predicted.columns * covariance).cwiseProduct(predicted.columns)).rowwise().sum().array() +
       std::pow(predicted.noise.standard_deviation(), 2);

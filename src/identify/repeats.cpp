@@ -34,6 +34,16 @@ bool is_one_cut(const Setup& s, const Setup& t, double length_mm) {
          near(s.start_s, t.start_s, kAsWritten * std::max(1.0, std::abs(s.start_s)));
 }
 
+/// Whether two traces run along one line of the surface; where either does not say, they may.
+bool is_one_line(const std::optional<Line>& a, const std::optional<Line>& b, double length_mm) {
+  if (!a || !b) return true;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!near(a->from_mm[i], b->from_mm[i], length_mm) ||
+        !near(a->to_mm[i], b->to_mm[i], length_mm))
+      return false;
+  return true;
+}
+
 /// Stations of the low band, of a face from the spindle axis.
 std::vector<double> stations(const Observation& observation) {
   const Setup& setup = observation.profile->setup;
@@ -118,7 +128,8 @@ bool are_repeats(const Observation& a, const Observation& b, const Gates& gates)
   if (&a == &b) return true;
   const double station = gates.same_place * extent(a) / static_cast<double>(a.values.size());
   if (a.profile->surface != b.profile->surface ||
-      !is_one_cut(a.profile->setup, b.profile->setup, station))
+      !is_one_cut(a.profile->setup, b.profile->setup, station) ||
+      !is_one_line(a.profile->line, b.profile->line, station))
     return false;
   const auto match = matched_values(a, b, gates);
   const auto shared = std::ranges::count_if(match, [](Eigen::Index j) { return j >= 0; });

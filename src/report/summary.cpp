@@ -164,6 +164,8 @@ void say_crosscheck(const Result& result, Summary& out) {
 
 void say_missing(const Analysis& analysis, Summary& out) {
   out.missing = analysis.trace ? "nothing that these data show" : "not looked for";
+  if (analysis.trace && !analysis.trace->blunders.empty())
+    out.missing = "not looked for while a profile has a blunder";
   out.missing_in_brief = out.missing;
   if (!was_extended(analysis)) return;
   out.has_missing = true;

@@ -76,6 +76,7 @@ class Prediction {
   /// @param amplitudes  (amplitudes, shapes): a model linear in them makes the predicted values
   Prediction(const ProfileTriangle& triangle, const Others& others,
              const Eigen::VectorXd& amplitudes, double values) {
+    if (others.basis.cols() == 0) return;  // they predict nothing
     const auto rows = triangle.free();
     const Eigen::Index k = rows.cols() - 1;
     Eigen::MatrixXd known(rows.rows(), others.basis.cols() + 2);
@@ -91,7 +92,6 @@ class Prediction {
     count_ = values - static_cast<double>(triangle.levelling() + open.cols());
   }
 
-  [[nodiscard]] double count() const { return count_; }
   [[nodiscard]] Eigen::Index directions() const { return spread_.size(); }
 
   /// Square of the disagreement in the directions that are predicted.
