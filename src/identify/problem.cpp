@@ -93,9 +93,15 @@ void read_profile_entries(const Section& root, const ProfileDefaults& defaults,
   if (problem.profiles.empty()) root.fail("profile", "missing; accepted: at least one [[profile]]");
 }
 
+constexpr const char* kEffectOptions = "name body degree span_mm form resolution_mm";
+
 EffectOptions read_effect_options(const Section& section) {
-  return {section.text("body"), section.integer("degree", 0, kHighestDegree),
-          section.magnitude("span_mm")};
+  EffectOptions options{section.text("body"), section.integer("degree", 0, kHighestDegree),
+                        section.magnitude("span_mm")};
+  if (const auto form = section.one_of("form", "polynomial curve"))
+    options.form = *form == "curve" ? Form::curve : Form::polynomial;
+  options.resolution_mm = section.magnitude("resolution_mm");
+  return options;
 }
 
 std::unique_ptr<Effect> made(const Section& section, const std::string& name,
@@ -141,7 +147,7 @@ bool is_same_effect(const DeclaredEffect& a, const DeclaredEffect& b) {
 
 void read_effects(const Section& root, Problem& problem) {
   for (const Section& section : root.tables("effect")) {
-    section.accept("name body degree span_mm priors");
+    section.accept(kEffectOptions + std::string(" priors"));
     DeclaredEffect effect;
     effect.name = read_effect_name(section);
     effect.options = read_effect_options(section);
@@ -233,7 +239,7 @@ Truth::HiddenEffect read_hidden_effect(const Section& section, const Problem& pr
   hidden.options = read_effect_options(section);
   const auto effect = made(section, hidden.name, hidden.options, problem);
   std::vector<std::string> accepted = names_of(effect->parameters());
-  for (const char* option : {"name", "body", "degree", "span_mm"}) accepted.emplace_back(option);
+  for (const std::string& option : words(kEffectOptions)) accepted.push_back(option);
   section.accept(accepted);
   for (const Parameter& parameter : effect->parameters())
     if (const auto value = read_true_value(section, parameter.name, parameter))
