@@ -111,6 +111,8 @@ const std::vector<Section>& sections() {
        {{"name", "of the catalogue"},
         {"body", "a carriage's name, where more than one moves along the axis"},
         {"degree", "of a polynomial"},
+        {"form", "of a straightness: \"polynomial\", or \"curve\": smooth, kinks allowed"},
+        {"resolution_mm", "of a curve: between its knots; at least 1/117 of the travel"},
         {"span_mm", "instead of that of [machine]"},
         {"profiles",
          "[\"feed2\"]: only in these profiles, and its parameters then carry their names: "

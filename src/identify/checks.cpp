@@ -57,6 +57,10 @@ double straightness_error(const Model& model, const ModelTerm& term, const Solut
 
 /// Whether a curvature of the straightness is told from zero.
 bool is_curved(const ModelTerm& term, const ModelResult& out, const Gates& gates) {
+  if (term.effect->knots() && out.straightness && !out.straightness->errors.empty()) {
+    const StraightnessError& error = out.straightness->errors.front();
+    return *error.value > gates.size * *error.standard_uncertainty;
+  }
   const std::vector<Parameter>& parameters = term.effect->parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const FittedParameter& p = out.parameters[static_cast<std::size_t>(term.first_parameter) + i];
@@ -104,6 +108,17 @@ void explain_scaling(const Solution& fit, ModelResult& out) {
   out.notes.push_back(std::move(text));
 }
 
+void explain_other_form(const Model& model, const Solution& fit, ModelResult& out) {
+  if (!fit.other_form) return;
+  const ModelTerm& form = *model.find_term(MotionError::straightness);
+  const std::string degree = form.effect->parameters().back().name.substr(1);
+  out.notes.push_back(
+      "the data refute degree " + degree + " of the " + form.name +
+      ": a curve beside it is likelier by a factor of e^" + significant(*fit.other_form, 2) +
+      "; every uncertainty is widened by what that curve could have put into the parameters, and "
+      "the coefficients describe no slide. Declare form = \"curve\", or a higher degree");
+}
+
 void explain_long_correlation(const Solution& fit, ModelResult& out) {
   for (std::size_t i = 0; i < fit.noise.size(); ++i) {
     const Profile& profile = *fit.linear.observations[i]->profile;
@@ -122,6 +137,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   if (const std::optional<double> gap = neglected_height(model, fit))
     out.neglected_um = *gap / kMicrometre;
   explain_scaling(fit, out);
+  explain_other_form(model, fit, out);
   explain_long_correlation(fit, out);
   check_plausibility(model, fit, out);
   for (const Observation& observation : model.observations) {

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "slideway/base/error.hpp"
 #include "slideway/identify/left_out.hpp"
@@ -16,6 +17,8 @@ constexpr int kMostRounds = 6;
 
 void require_enough_data(const Model& model) {
   Eigen::Index values = 0, unknowns = model.amplitudes() + model.shapes();
+  if (const ModelTerm* const curve = curve_term(model))
+    unknowns -= curve->effect->knots()->positions_mm.size();  // they have a prior
   for (const Observation* observation : fitted_observations(model)) {
     values += observation->values.size() - observation->left_out();
     unknowns += std::ssize(observation->nuisance_names);
@@ -126,6 +129,24 @@ void conclude(const Model& model, Solution& fit) {
   fix_gauge(model, compressed, fit);
   const double inflation = fit.uncertainty.inflation;
   fit.uncertainty = assess(fit.linear, compressed, fit.noise, fit.rank.basis, inflation);
+  if (fit.estimate.curve)
+    fit.uncertainty.add(covariance_of_curve_prior(model, fit.linear, fit.noise, fit.estimate),
+                        compressed);
+}
+
+/// The noise under the model, and under that noise the prior of its curve.
+/// @return whether both are what they were
+bool settle(const Model& model, Solution& fit, Estimate& estimate,
+            std::optional<CurveEstimate>& curve) {
+  FitNoise noise = curve ? noise_under(beside_curve(model, fit.linear, *curve), model.gates)
+                         : noise_under(fit.linear, model.gates);
+  const bool settled = has_settled(fit.noise, noise.profiles);
+  fit.noise = std::move(noise.profiles);
+  fit.uncertainty.inflation = noise.inflation;
+  if (!curve) return settled;
+  curve = estimate_curve(model, fit.linear, fit.noise, estimate);
+  const CurvePrior before = std::exchange(*estimate.curve, curve->prior);
+  return settled && curve->prior == before;
 }
 
 }  // namespace
@@ -137,13 +158,14 @@ Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   Estimate start = initial_estimate(model, shapes);
   if (!shapes) scan_shapes(model, out.noise, start);
   out.linear = linearise(model, start);
+  std::optional<CurveEstimate> curve;
+  if (start.curve) {
+    curve = estimate_curve(model, out.linear, out.noise, start);
+    start.curve = curve->prior;
+  }
   SolveSummary solved = solve(model, out.linear, out.noise, start);
   for (int round = 0; round < kMostRounds; ++round) {
-    FitNoise noise = noise_under(out.linear, model.gates);
-    const bool settled = has_settled(out.noise, noise.profiles);
-    out.noise = std::move(noise.profiles);
-    out.uncertainty.inflation = noise.inflation;
-    if (settled) break;
+    if (settle(model, out, solved.estimate, curve)) break;
     solved = solve(model, out.linear, out.noise, solved.estimate);
   }
   out.estimate = solved.estimate;
@@ -174,7 +196,9 @@ FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes)
 }
 
 FittedModel fit_declared(const Problem& problem, const std::vector<Profile>& profiles) {
-  return fit_model(build_model(problem, profiles));
+  FittedModel out = fit_model(build_model(problem, profiles));
+  allow_for_other_form(problem, out);
+  return out;
 }
 
 }  // namespace slideway

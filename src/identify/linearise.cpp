@@ -7,14 +7,24 @@
 namespace slideway {
 namespace {
 
-/// Rows (prior - parameter) / u of all priors, with their derivatives.
+/// Rows (prior - parameter) / u of all priors, with their derivatives; a curve's are the last.
 void set_priors(const Model& model, const Estimate& estimate, Linearisation& linear) {
   const Eigen::Index a = model.amplitudes(), s = model.shapes();
   const ParameterValues values = all_parameters(model, estimate);
   std::size_t count = 0;
   for (const ModelTerm& term : model.terms) count += term.priors.size();
-  linear.prior_rows = Eigen::MatrixXd::Zero(count, a + s);
-  linear.prior_residuals.resize(count);
+  const ModelTerm* const curve = curve_term(model);
+  const std::optional<Knots> knots = curve ? curve->effect->knots() : std::nullopt;
+  linear.curve_rows = knots ? knots->positions_mm.size() : 0;
+  linear.prior_rows = Eigen::MatrixXd::Zero(count + linear.curve_rows, a + s);
+  linear.prior_residuals.resize(count + linear.curve_rows);
+  if (knots) {
+    const Eigen::Index first = curve->first_amplitude + knots->first;
+    auto rows = linear.prior_rows.block(count, first, linear.curve_rows, linear.curve_rows);
+    rows = curve_prior_rows(*knots, *estimate.curve);
+    linear.prior_residuals.tail(linear.curve_rows) =
+        -rows * estimate.amplitudes.segment(first, linear.curve_rows);
+  }
   Eigen::Index row = 0;
   for (const ModelTerm& term : model.terms)
     for (const Prior& prior : term.priors) {

@@ -94,6 +94,8 @@ void read_profile_entries(const Section& root, const ProfileDefaults& defaults,
   if (problem.profiles.empty()) root.fail("profile", "missing; accepted: at least one [[profile]]");
 }
 
+constexpr const char* kEffectOptions = "name body degree span_mm form resolution_mm profiles scope";
+
 EffectOptions read_effect_options(const Section& section, const Problem& problem) {
   EffectOptions options{section.text("body"), section.integer("degree", 0, kHighestDegree),
                         section.magnitude("span_mm")};
@@ -102,6 +104,9 @@ EffectOptions read_effect_options(const Section& section, const Problem& problem
   options.profiles = section.some_of("profiles", names).value_or(options.profiles);
   if (section.has("profiles") && options.profiles.empty())
     section.fail("profiles", "is empty; accepted: " + joined(names, " "));
+  if (const auto form = section.one_of("form", "polynomial curve"))
+    options.form = *form == "curve" ? Form::curve : Form::polynomial;
+  options.resolution_mm = section.magnitude("resolution_mm");
   return options;
 }
 
@@ -166,7 +171,7 @@ bool is_same_effect(const DeclaredEffect& a, const DeclaredEffect& b) {
 
 void read_effects(const Section& root, Problem& problem) {
   for (const Section& section : root.tables("effect")) {
-    section.accept("name body degree span_mm profiles scope priors");
+    section.accept(kEffectOptions + std::string(" priors"));
     DeclaredEffect effect;
     effect.name = read_effect_name(section);
     effect.options = read_effect_options(section, problem);
@@ -261,8 +266,7 @@ void read_hidden_effect(const Section& section, const Problem& problem, Truth& t
   hidden.options = read_effect_options(section, problem);
   const auto effect = made(section, hidden.name, hidden.options, problem);
   std::vector<std::string> accepted = names_of(effect->parameters());
-  for (const char* option : {"name", "body", "degree", "span_mm", "profiles", "scope"})
-    accepted.emplace_back(option);
+  for (const std::string& option : words(kEffectOptions)) accepted.push_back(option);
   section.accept(accepted);
   for (const Parameter& parameter : effect->parameters())
     if (const auto value = read_true_value(section, parameter.name, parameter))

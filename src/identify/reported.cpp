@@ -13,7 +13,8 @@ double effective_values(const Noise& noise, Eigen::Index values) {
 Reported::Reported(const Solution& solution, const MoreVariance& more)
     : solution_(solution), more_(more) {
   const auto is_declared = [](const Noise& noise) { return noise.declared; };
-  if (solution.linear.prior_rows.rows() > 0 || std::ranges::any_of(solution.noise, is_declared))
+  if (solution.linear.prior_rows.rows() > solution.linear.curve_rows ||
+      std::ranges::any_of(solution.noise, is_declared))
     return;
   most_freedom_ = 0.0;
   for (std::size_t i = 0; i < solution.noise.size(); ++i)

@@ -132,8 +132,10 @@ void add_noise(const Solution& fit, ModelResult& out) {
     out.degrees_of_freedom += n - static_cast<double>(observation.nuisances.cols());
     out.noise.push_back(std::move(summary));
   }
+  const Eigen::Index curve = fit.linear.curve_rows;
   out.degrees_of_freedom +=
-      static_cast<double>(fit.linear.prior_rows.rows() - fit.rank.basis.cols());
+      static_cast<double>(fit.linear.prior_rows.rows() - curve - fit.rank.basis.cols()) +
+      (fit.linear.prior_rows.bottomRows(curve) * fit.rank.basis).squaredNorm();
 }
 
 void add_residuals(const Model& model, const Solution& fit, ModelResult& out) {

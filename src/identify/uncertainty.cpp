@@ -77,6 +77,12 @@ Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
   return spread;
 }
 
+void Uncertainty::add(const Eigen::MatrixXd& more, const Compressed& compressed) {
+  const Eigen::MatrixXd to_basis =
+      basis.transpose() * compressed.triangle.transpose() * compressed.triangle;
+  covariance += to_basis * more * to_basis.transpose() / inflation;
+}
+
 Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
                    const std::vector<Noise>& noise, const Eigen::MatrixXd& basis,
                    double inflation) {

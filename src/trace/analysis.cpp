@@ -25,7 +25,10 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
   ClosedLoop loop;
   if (options.closes_loop) {
     loop = close_loop(problem, profiles, declared, progress);
-    if (loop.extended) last = &*loop.extended;
+    if (loop.extended) {
+      allow_for_other_form(problem, *loop.extended);
+      last = &*loop.extended;
+    }
     MoreVariance unnamed;
     if (loop.widening)
       unnamed = [&](const Eigen::RowVectorXd& row) { return loop.widening->variance(row); };

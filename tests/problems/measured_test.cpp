@@ -106,6 +106,37 @@ TEST_F(Real, LatheBedRun5DoesNotFitRuns2To4AndSaysWhere) {
     EXPECT_EQ(pair.verdict, Consistency::consistent) << pair.profiles[0] << pair.profiles[1];
 }
 
+/// End-point straightness of the lathe bed as a curve, from these runs alone.
+StraightnessError bed_as_curve(const std::vector<std::string>& runs) {
+  Problem problem = shipped_problem("real/lathe-bed-curve.toml");
+  std::erase_if(problem.profiles, [&](const ProfileEntry& entry) {
+    return std::ranges::count(runs, entry.profile.name) == 0;
+  });
+  const Result result = identify(problem, read_profiles(problem), Scope::fit);
+  return result.final->straightness->errors.front();
+}
+
+// A Gaussian process apart from this program, runs 2 to 5 together: 32.9 ± 3.0 µm.
+TEST_F(Real, LatheBedAsACurveHasTheStraightnessOfAllItsRuns) {
+  const StraightnessError error = bed_as_curve({"run2", "run3", "run4", "run5"});
+  EXPECT_NEAR(*error.value, 32.9, 3.0);
+  EXPECT_NEAR(*error.expanded_uncertainty, 3.0, 1.5);  // another noise, another grid of priors
+}
+
+// The same, run by run: 33 to 39 µm, U of 3 to 6 µm.
+TEST_F(Real, RunsOfTheLatheBedAgreeWithinTheirUAndTheirUIsAlike) {
+  std::vector<StraightnessError> runs;
+  for (const char* run : {"run2", "run3", "run4", "run5"}) runs.push_back(bed_as_curve({run}));
+  for (const StraightnessError& a : runs) {
+    EXPECT_NEAR(*a.value, 36.0, 6.0);  // 3 µm either side of what is known
+    for (const StraightnessError& b : runs) {
+      const double U = *a.expanded_uncertainty, V = *b.expanded_uncertainty;
+      EXPECT_LE(std::abs(*a.value - *b.value), std::hypot(U, V));
+      EXPECT_LE(U, 2.0 * V);
+    }
+  }
+}
+
 TEST_F(Real, GratingSubstrateHasTheDatabasesSlopeError) {
   EXPECT_NEAR(slope_error("real/mirror.toml"), 0.072352, 0.002 * 0.072352);  // DABAM 25, to 0.2 %
 }

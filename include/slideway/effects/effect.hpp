@@ -92,6 +92,16 @@ struct TravelRange {
   double beam_span_mm = 0.0;                // between the supports of the cross-beam; 0: unknown
 };
 
+/// How the form of a slide is described.
+enum class Form { polynomial, curve };
+
+/// Amplitudes that are values of a Gaussian process at places along the slide. How long and how
+/// large it is comes from the data, together with the fit (curve_prior.hpp).
+struct Knots {
+  Eigen::Index first = 0;        // amplitude of the first knot
+  Eigen::VectorXd positions_mm;  // slide coordinates, evenly spaced, rising; one for each amplitude
+};
+
 /// What the problem file says of a declared effect, besides its name.
 struct EffectOptions {
   std::optional<std::string> body = std::nullopt;
@@ -101,6 +111,8 @@ struct EffectOptions {
   std::optional<int> above = std::nullopt;
   /// Names of the profiles it acts in; empty: all.
   std::vector<std::string> profiles = {};
+  std::optional<Form> form = std::nullopt;             // of a straightness: a polynomial
+  std::optional<double> resolution_mm = std::nullopt;  // of a curve: between its knots
 };
 
 /// Rates between which a line of an effect lies, in cycles over one profile: the resolution of the
@@ -162,6 +174,9 @@ class Effect {
   /// Fills `out` with d(columns)/d(shape[which]); zero for a stepwise shape.
   virtual void derivatives(const Stations& stations, std::span<const double> shape, int which,
                            Eigen::Ref<Eigen::MatrixXd> out) const;
+
+  /// The amplitudes that are a process along the slide; by default none.
+  [[nodiscard]] virtual std::optional<Knots> knots() const { return std::nullopt; }
 
   /// Parameters from amplitudes and shape, with the Jacobian.
   [[nodiscard]] virtual ParameterValues parameter_values(const Eigen::VectorXd& amplitudes,

@@ -125,6 +125,13 @@ struct StraightnessStation {
   std::optional<double> expanded_uncertainty_um;
 };
 
+/// The process a curve is described by: curve_prior.hpp.
+struct CurveForm {
+  double length_mm = 0.0;     // ℓ of its Matérn covariance
+  double amplitude_um = 0.0;  // a
+  double roughness = 0.0;     // ν
+};
+
 /// Straightness of the slide the fit has found, E_ZX, with its uncertainty.
 struct Straightness {
   std::optional<double> end_point_um, least_squares_um, minimum_zone_um;  // by reference line
@@ -132,6 +139,7 @@ struct Straightness {
   std::vector<StraightnessError> errors;                                  // one for each line
   std::vector<StraightnessStation> stations;                              // of slides, 50 at most
   StraightnessCurve curve;
+  std::optional<CurveForm> form;  // of form = "curve"
   std::string reason;  // why there is none; then all else is empty
 };
 

@@ -246,6 +246,13 @@ inline constexpr auto kRecord<StraightnessStation> =
            field("expanded_uncertainty_um", &StraightnessStation::expanded_uncertainty_um));
 
 template <>
+inline constexpr auto kRecord<CurveForm> =
+    record("CurveForm", "The process a curve is described by: a Matérn covariance.",
+           field("length_mm", &CurveForm::length_mm),
+           field("amplitude_um", &CurveForm::amplitude_um, "its standard deviation"),
+           field("roughness", &CurveForm::roughness, "its exponent: 1.5 or 2.5"));
+
+template <>
 inline constexpr auto kRecord<Straightness> = record(
     "Straightness", "Straightness error of the slide, E_ZX, ISO 230-1.",
     field("end_point_um", &Straightness::end_point_um),
@@ -255,6 +262,7 @@ inline constexpr auto kRecord<Straightness> = record(
     field("stations", &Straightness::stations, "of slides"),
     field("errors", &Straightness::errors, "one for each reference line"),
     field("curve", &Straightness::curve),
+    field("form", &Straightness::form, "of a curve"),
     field("reason", &Straightness::reason, "why there is none"));
 
 template <>

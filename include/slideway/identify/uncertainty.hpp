@@ -41,6 +41,10 @@ struct Uncertainty {
   std::vector<NoiseEffect> noise;
   std::vector<Eigen::MatrixXd> nuisance_covariances;  // levelling, per fitted observation
 
+  /// Adds a covariance of (amplitudes, shapes), whatever the inflation.
+  /// @param compressed  of the model that assess() had
+  void add(const Eigen::MatrixXd& more, const Compressed& compressed);
+
   /// Of row * (amplitudes, shapes). REQUIRES the row to be orthogonal to the null space.
   [[nodiscard]] Spread of(const Eigen::RowVectorXd& row) const;
 };

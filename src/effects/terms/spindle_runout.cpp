@@ -117,6 +117,14 @@ class SpindleRunout : public LinearEffect {
     return is_height(setup) && (shapes().size() == 1 || setup.kind == Kind::slide);
   }
 
+  [[nodiscard]] std::vector<std::string> lacking_together(
+      const std::vector<const Setup*>& setups) const override {
+    const bool along_slide = std::ranges::any_of(
+        setups, [](const Setup* setup) { return setup->kind == Kind::slide; });
+    if (along_slide) return {};
+    return {"a reading along the slide: on a face every groove meets it at one angle"};
+  }
+
   [[nodiscard]] std::vector<std::string> lacking(const Setup& setup) const override {
     std::vector<std::string> keys = LinearEffect::lacking(setup);
     if (setup.kind == Kind::face && !setup.cut_radius_mm) keys.emplace_back("cut_radius_mm");

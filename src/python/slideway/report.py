@@ -268,6 +268,17 @@ class StraightnessCurve:
 
 
 @dataclass(frozen=True)
+class CurveForm:
+    """The process a curve is described by: a Matérn covariance."""
+
+    length_mm: float
+    amplitude_um: float
+    """its standard deviation"""
+    roughness: float
+    """its exponent: 1.5 or 2.5"""
+
+
+@dataclass(frozen=True)
 class Straightness:
     """Straightness error of the slide, E_ZX, ISO 230-1."""
 
@@ -281,6 +292,8 @@ class Straightness:
     errors: list[StraightnessError]
     """one for each reference line"""
     curve: StraightnessCurve
+    form: CurveForm | None
+    """of a curve"""
     reason: str
     """why there is none"""
 
