@@ -53,6 +53,8 @@ Eigen::MatrixXd hessian_of(const Cost& f, const Eigen::VectorXd& x) {
   return 0.5 * (hessian + hessian.transpose());
 }
 
+constexpr double kImpossible = 1e30;  // -2 ln likelihood where it cannot be evaluated
+
 /// -2 ln likelihood as Ceres takes it.
 class Likelihood final : public ceres::FirstOrderFunction {
  public:
@@ -61,8 +63,14 @@ class Likelihood final : public ceres::FirstOrderFunction {
   bool Evaluate(const double* const parameters, double* cost, double* gradient) const override {
     const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(parameters, size_);
     *cost = cost_(x);
-    if (gradient) Eigen::Map<Eigen::VectorXd>(gradient, size_) = gradient_of(cost_, x);
-    return std::isfinite(*cost);
+    const bool possible = std::isfinite(*cost);
+    if (!possible) *cost = kImpossible;  // the line search aborts the process on a value not valid
+    if (!gradient) return true;
+    Eigen::Map<Eigen::VectorXd> slope(gradient, size_);
+    slope.setZero();
+    if (possible) slope = gradient_of(cost_, x);
+    if (!slope.allFinite()) slope.setZero();
+    return true;
   }
   [[nodiscard]] int NumParameters() const override { return static_cast<int>(size_); }
 
