@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "slideway/base/error.hpp"
@@ -186,6 +187,34 @@ std::vector<Candidate> in_one_profile(const Model& model, const Candidate& whole
   return out;
 }
 
+/// The same effect in the traces of one surface alone, where it takes several traces to show it and
+/// there are several surfaces: the form a disc was clamped to.
+std::vector<Candidate> on_one_surface(const Model& model, const Candidate& whole) {
+  const ModelTerm& term = whole.term;
+  std::map<std::string, std::vector<const Profile*>> surfaces;
+  for (const Observation* observation : fitted_observations(model))
+    if (const Profile& profile = *observation->profile; profile.surface && term.acts_on(profile))
+      surfaces[*profile.surface].push_back(&profile);
+  std::vector<Candidate> out;
+  if (term.effect->is_carriage() || !term.profiles.empty() || surfaces.size() < 2) return out;
+  for (const auto& [surface, profiles] : surfaces) {
+    std::vector<const Setup*> setups;
+    std::vector<std::string> names;
+    for (const Profile* profile : profiles) {
+      setups.push_back(&profile->setup);
+      names.push_back(profile->name);
+    }
+    if (term.effect->lacking_together({setups.front()}).empty() ||
+        !term.effect->lacking_together(setups).empty())
+      continue;
+    Candidate& alone = out.emplace_back(whole);
+    alone.term.profiles = alone.options.profiles = names;
+    alone.term.name = term_name(term.name, names);
+  }
+  for (Candidate& each : out) each.choice = 2.0 * std::log(static_cast<double>(surfaces.size()));
+  return out;
+}
+
 }  // namespace
 
 Eigen::MatrixXd Candidate::columns_around(Eigen::Index atom) const {
@@ -207,8 +236,13 @@ Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::In
   for (const std::string& name : problem.trace.candidates)
     add_hypotheses(model, problem, name, viewer, out);
   std::vector<Candidate> alone;
-  for (const Candidate& whole : out.candidates)
+  for (const Candidate& whole : out.candidates) {
     std::ranges::move(in_one_profile(model, whole), std::back_inserter(alone));
+    for (Candidate& each : on_one_surface(model, whole)) {
+      lay_out(model, viewer, each);
+      alone.push_back(std::move(each));
+    }
+  }
   std::ranges::move(alone, std::back_inserter(out.candidates));
   return out;
 }

@@ -9,6 +9,13 @@ bool has_more_values(const Observation& observation, std::size_t most) {
   return (observation.profile->positions.size() >> observation.low_band.options().level) > most;
 }
 
+/// One effect, and not in profiles apart.
+bool says_the_same(const Candidate& a, const Candidate& b) {
+  const std::vector<std::string>&p = a.term.profiles, &q = b.term.profiles;
+  return a.effect_name() == b.effect_name() &&
+         (p.empty() || q.empty() || std::ranges::find_first_of(p, q) != p.end());
+}
+
 Model with(Model model, const std::vector<AcceptedEffect>& effects) {
   for (const AcceptedEffect& effect : effects)
     if (effect.candidate->raises_degree)
@@ -95,7 +102,7 @@ Candidates ModelExtender::candidates_beside(const std::vector<AcceptedEffect>& e
   Candidates out;
   for (const Candidate& candidate : dictionary_.candidates)
     if (std::ranges::none_of(effects, [&](const AcceptedEffect& effect) {
-          return effect.candidate->effect_name() == candidate.effect_name();
+          return says_the_same(*effect.candidate, candidate);
         }))
       out.push_back(&candidate);
   return out;

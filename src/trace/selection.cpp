@@ -195,9 +195,16 @@ class Selector {
     for (std::size_t i = out_.effects.size(); i-- > 0;) {
       const std::string why = reason_to_leave(i);
       if (why.empty()) continue;
+      // The search, under the noise beside it, has found something.
+      out_.withheld |= stands_out(i);
       leave(i, why);
       i = out_.effects.size();  // the others once more
     }
+  }
+
+  /// Whether an effect passes the gates of the search beside the others.
+  bool stands_out(std::size_t i) {
+    return find_tested(extender_.search(all_but(out_.effects, i)), out_.effects[i], gates_);
   }
 
   std::string reason_to_leave(std::size_t i) {
