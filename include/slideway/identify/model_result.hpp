@@ -140,7 +140,7 @@ struct Straightness {
   std::vector<StraightnessStation> stations;                              // of slides, 50 at most
   StraightnessCurve curve;
   std::optional<CurveForm> form;  // of form = "curve"
-  std::string reason;  // why there is none; then all else is empty
+  std::string reason;             // why there is none; then all else is empty
 };
 
 enum class EvaluationType { type_a, type_b };  // GUM 3.3.4: by statistics, or otherwise

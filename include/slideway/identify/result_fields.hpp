@@ -261,8 +261,7 @@ inline constexpr auto kRecord<Straightness> = record(
     field("expanded_uncertainty_um", &Straightness::expanded_uncertainty_um, "of end_point_um"),
     field("stations", &Straightness::stations, "of slides"),
     field("errors", &Straightness::errors, "one for each reference line"),
-    field("curve", &Straightness::curve),
-    field("form", &Straightness::form, "of a curve"),
+    field("curve", &Straightness::curve), field("form", &Straightness::form, "of a curve"),
     field("reason", &Straightness::reason, "why there is none"));
 
 template <>
