@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -10,14 +11,15 @@ namespace {
 
 constexpr double kFarthest = 0.1;  // of the radius of the cut
 
-double sign_of(double x) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
-
+// (|x| - |x - off|)/off is sgn x outside a ramp between 0 and the offset.
 double value(double x, double off) {
-  return off == 0.0 ? sign_of(x) : (std::abs(x) - std::abs(x - off)) / off;
+  if (off == 0.0) return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0;
+  return std::clamp((2.0 * x - off) / std::abs(off), -1.0, 1.0);
 }
 
 double derivative(double x, double off) {
-  return off == 0.0 ? 0.0 : (sign_of(x - off) - value(x, off)) / off;
+  const bool on_ramp = off != 0.0 && std::abs(2.0 * x - off) < std::abs(off);
+  return on_ramp ? -2.0 * x / (off * std::abs(off)) : 0.0;
 }
 
 std::pair<double, double> search(const Stations& stations) {

@@ -13,7 +13,7 @@ constexpr double kNarrowest = 2.0;     // stations: the half-width of what still
 constexpr double kWidest = 0.25;       // of the travel; a wider one is the straightness itself
 constexpr double kWidthRatio = 2.0;    // from one width of the search to the next
 constexpr double kNarrowestMm = 1e-3;  // of the problem file
-constexpr double kWidestMm = 1e5;
+constexpr double kWidestMm = 1e4;
 constexpr double kFarthestMm = 1e9;
 
 constexpr double kReach = 10.0;  // widths: exp(-50) is below the rounding of what lies beside it
