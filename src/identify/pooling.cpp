@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kRegion = 0.954499736103642;  // of two standard deviations
-constexpr double kCoverage = 2.0;              // of kRegion, the uncertainties known
+constexpr double kRegionCoverage = 2.0;        // of kRegion, the uncertainties known
 constexpr double kFalseAlarm = 0.05;           // of any item of a machine whose items all fit
 constexpr std::size_t kKnowsScatter = 5;       // items that tell a scatter from an outlier
 constexpr std::size_t kKnowsDrift = 6;         // items, all with a time, that tell a drift from one
@@ -216,8 +216,8 @@ std::vector<FittedParameter> estimates(const CarriageParameters& parameters, con
     if (parameter.identifiable) {
       parameter.value = solution.values[p];
       parameter.standard_uncertainty = scatter * std::sqrt(solution.covariance(p, p));
-      parameter.coverage_factor = kCoverage;
-      parameter.expanded_uncertainty = kCoverage * *parameter.standard_uncertainty;
+      parameter.coverage_factor = kRegionCoverage;
+      parameter.expanded_uncertainty = kRegionCoverage * *parameter.standard_uncertainty;
     }
     out.push_back(std::move(parameter));
   }
