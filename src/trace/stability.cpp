@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMostProfiles = 8;     // that are left out in turn
 constexpr Eigen::Index kBlocks[] = {16, 8};  // of a profile
 constexpr int kDraws = 8;                    // of the noise
-constexpr std::uint64_t kSeed = 19790615;
+constexpr std::uint64_t kStabilitySeed = 19790615;
 constexpr double kShown = 0.5;  // of the effect's square in one profile: the others show too little
 
 using Rows = std::vector<Eigen::Index>;
@@ -107,7 +107,7 @@ Stability stability(const SearchRound& round, const TestedCandidate& effect) {
       chosen[k] = choice.in(data.residual(), parts[k]);
       return;
     }
-    RandomStream random(kSeed + k - parts.size(), "stability");
+    RandomStream random(kStabilitySeed + k - parts.size(), "stability");
     Eigen::VectorXd drawn = effect.fitted;
     for (double& value : drawn) value += random.normal();
     chosen[k] = choice.in(drawn, all);
