@@ -16,7 +16,7 @@ constexpr double kLengthStep = 1.6;      // between lengths of the grid: no esti
 constexpr double kAmplitudeStep = 1.12;  // and between amplitudes
 constexpr double kLeastInformation = 1e-2, kMostInformation = 1e14;  // of the data over the prior's
 constexpr double kLikely = 1e-4;    // of the best hypothesis: less is not looked at
-constexpr double kRounding = 1e-9;  // of a column: what levelling leaves of an offset
+constexpr double kLevelled = 1e-9;  // of a column: what levelling leaves of an offset
 constexpr double kJitter = 1e-10;   // of the variance, for a covariance of rounded numbers
 
 double matern(double roughness, double u) {
@@ -79,7 +79,7 @@ CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
   std::vector<Eigen::Index> which;
   for (Eigen::Index j = 0; j < compressed.triangle.cols(); ++j)
     if ((j < first || j >= first + own) &&
-        compressed.triangle.col(j).norm() > kRounding * compressed.scale[j])
+        compressed.triangle.col(j).norm() > kLevelled * compressed.scale[j])
       which.push_back(j);
   const Eigen::MatrixXd others = compressed.triangle(Eigen::all, which);
   Eigen::MatrixXd curve = compressed.triangle.middleCols(first, own);
