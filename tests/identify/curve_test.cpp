@@ -55,7 +55,7 @@ Slope wandering(RandomStream& random) {
 }
 
 constexpr int kSteps = 4000;
-constexpr double kNoise = 40e-6;  // mm
+constexpr double kCurveNoise = 40e-6;  // mm
 
 /// Three diameters of a face of 60 to 240 mm radius, turned on such a way of about 1 µm.
 struct WayCase {
@@ -83,7 +83,7 @@ struct WayCase {
         const auto i = static_cast<std::size_t>(std::lround(r / R * kSteps));
         texture = 0.7 * texture + std::sqrt(0.51) * random.normal();
         z.push_back(height[i] - r * slope[i] - squareness * r +
-                    kNoise * std::sqrt(0.5) * (texture + random.normal()));
+                    kCurveNoise * std::sqrt(0.5) * (texture + random.normal()));
       }
       Profile& face =
           faces.emplace_back(cases::face("feed" + std::to_string(faces.size()), feed, X, z));
