@@ -19,7 +19,7 @@ struct Candidate {
   /// Stacked rows by (#amplitudes * #atoms), not whitened; shared with the same effect in one
   /// profile alone.
   std::shared_ptr<const Eigen::MatrixXd> columns;
-  std::optional<std::size_t> only;       // the one fitted observation it acts on; none: all
+  std::optional<std::size_t> only;  // the one fitted observation it acts on; none: all
   double choice = 0.0;  // price of choosing that one among those that show it, as BIC counts
   Eigen::Index first_row = 0, rows = 0;  // of the columns, those it acts on
 

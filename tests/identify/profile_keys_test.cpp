@@ -133,7 +133,7 @@ TEST_F(ProblemFile, RefusesProfilesThatAreNone) {
   };
   EXPECT_THAT(refused("profiles = [\"feed3\"]\n"), HasSubstr("did you mean 'feed2'?"));
   EXPECT_THAT(refused("profiles = []\n"), HasSubstr("profiles: is empty; accepted: feed2"));
-  EXPECT_THAT(refused("scope = \"cut\"\n"), HasSubstr("accepted: all, profile"));
+  EXPECT_THAT(refused("scope = \"cut\"\n"), HasSubstr("accepted: all profile"));
   EXPECT_THAT(refused("profiles = [\"feed2\"]\n[[effect]]\nname = \"cup\"\n"),
               HasSubstr("declared twice for the same body and profile"));
 }

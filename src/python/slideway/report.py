@@ -56,6 +56,12 @@ class Input:
     quantity: Literal["height", "slope"]
     role: Literal["fit", "holdout"]
     """holdout: never fitted, only predicted"""
+    azimuth_deg: float | None
+    """of a face"""
+    surface: str | None
+    """as the problem names it"""
+    instrument: str | None
+    """as the problem names it"""
     samples: int
     missing: int
     """points of the file that have no value"""
@@ -508,6 +514,8 @@ class Tried:
     """A candidate of the loop."""
 
     effect: str
+    profiles: list[str]
+    """those it acts in; empty: all"""
     delta_bic: float
     p_value: float
     rms_um: float | None
@@ -521,6 +529,8 @@ class Round:
     """One effect that entered the model."""
 
     accepted: str
+    profiles: list[str]
+    """those it acts in; empty: all"""
     ambiguous_with: list[str]
     before_rms_um: float | None
     after_rms_um: float | None
