@@ -9,12 +9,12 @@
 namespace slideway {
 namespace {
 
-constexpr double kNoise = 3e-5;  // mm
+constexpr double kTraceNoise = 3e-5;  // mm
 
 /// A cone of 10 µm over 60 mm with white noise.
 Profile cut(const std::string& name, unsigned seed, double factor = 1.0) {
   std::mt19937_64 engine(seed);
-  std::normal_distribution<double> noise(0.0, kNoise);
+  std::normal_distribution<double> noise(0.0, kTraceNoise);
   const std::vector<double> x = cases::spaced(2.0, 60.0, 300);
   std::vector<double> z;
   for (const double r : x)
@@ -38,7 +38,7 @@ TEST(Blunder, NoneIsSeenInCutsThatAgree) {
 TEST(Blunder, ANoisyCutHasNoBlunder) {
   Profile noisy = cut("b", 2);
   std::mt19937_64 engine(9);
-  std::normal_distribution<double> noise(0.0, 10.0 * kNoise);
+  std::normal_distribution<double> noise(0.0, 10.0 * kTraceNoise);
   for (double& each : noisy.values) each += noise(engine);
   EXPECT_TRUE(found({cut("a", 1), noisy, cut("c", 3)}).empty());
 }
