@@ -15,7 +15,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-constexpr double kFaceRadius = 10.0;
+constexpr double kPlacedRadius = 10.0;
 
 /// Three traces over the diameter with a form added that depends on X and the azimuth.
 template <typename Form>
@@ -35,7 +35,7 @@ std::vector<Profile> at_azimuths(Form&& form, std::uint64_t seed) {
 TEST(Placing, LobesBetweenAzimuthsAreNamed) {
   constexpr double kSize = 0.5e-3, kTurned = 20.0 * kPi / 180.0;
   const auto lobes = [](double x, double azimuth) {
-    return kSize * (x / kFaceRadius) * (x / kFaceRadius) * std::cos(2.0 * (azimuth - kTurned));
+    return kSize * (x / kPlacedRadius) * (x / kPlacedRadius) * std::cos(2.0 * (azimuth - kTurned));
   };
   const Closed result = closed(problem_of(), at_azimuths(lobes, 5));
   SCOPED_TRACE(story(result));
