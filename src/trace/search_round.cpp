@@ -145,7 +145,8 @@ const TestedCandidate* SearchRound::choice(const Gates& gates,
   for (auto each = tested.begin(); each != tested.end(); ++each) {
     if (!each->refused(gates).empty() || std::ranges::count(excluded, each->name()) > 0) continue;
     const auto stands_before = [&](const TestedCandidate& better) {
-      return better.refined.delta_bic < each->refined.delta_bic - gates.tie_bic &&
+      return std::ranges::count(excluded, better.name()) == 0 &&
+             better.refined.delta_bic < each->refined.delta_bic - gates.tie_bic &&
              alike(better, *each, gates);
     };
     if (std::none_of(tested.begin(), each, stands_before)) return &*each;

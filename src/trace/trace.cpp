@@ -158,9 +158,10 @@ class Loop {
         inseparable(fitted.model, fitted.fit, data, extender_.candidates_beside(selection.effects));
     if (!extender_.calibration()) return;
     const FittedModel& base = extender_.base();
-    out.detection_limits =
-        detection_limits(base, {base.fit.linear, data.noise()}, fitted.fit.noise,
-                         extender_.candidates_beside({}), *extender_.calibration());
+    Candidates everywhere = extender_.candidates_beside({});
+    std::erase_if(everywhere, [](const Candidate* each) { return !each->term.profiles.empty(); });
+    out.detection_limits = detection_limits(base, {base.fit.linear, data.noise()}, fitted.fit.noise,
+                                            everywhere, *extender_.calibration());
   }
 
   const Problem& problem_;
