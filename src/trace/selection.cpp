@@ -54,6 +54,7 @@ class Selector {
     hold_against_the_unnamed();
     name_rivals();
     out_.lack_of_fit = left_over();
+    out_.withheld = out_.withheld || something_is_left();
     return std::move(out_);
   }
 
@@ -79,22 +80,39 @@ class Selector {
   }
 
   void grow() {
-    std::vector<std::string> ruled_out;
     while (std::ssize(out_.effects) < problem_.trace.max_effects) {
       const SearchRound& round = extender_.search(out_.effects);
-      const TestedCandidate* choice = round.choice(gates_, ruled_out);
+      const TestedCandidate* choice = round.choice(gates_, ruled_out_);
       if (!choice) return;
       Effects more = out_.effects;
       more.push_back(accepted(round, *choice));
-      const std::string why = reason_against(more, more.size() - 1);
+      std::string why = reason_against(more, more.size() - 1);
+      if (why.empty()) why = comes_and_goes(stability(round, *choice));
       if (!why.empty()) {
-        ruled_out.push_back(choice->name());
+        ruled_out_.push_back(choice->name());
         out_.notes.push_back(choice->name() + " was refused: " + why);
         continue;
       }
       out_.effects = std::move(more);
-      drop_superfluous(ruled_out);
+      drop_superfluous();
     }
+  }
+
+  /// Why an effect that resamples often find nothing instead of does not enter; "": it does.
+  [[nodiscard]] std::string comes_and_goes(const Stability& found) const {
+    if (found.share >= gates_.stable_share || found.other != kNothing) return "";
+    return "only " + significant(100.0 * found.share, 2) +
+           " % of the resamples choose it, the others most often nothing";
+  }
+
+  /// Whether the last search finds more than noise gives, in whatever shape.
+  [[nodiscard]] bool something_is_left() {
+    const std::vector<TestedCandidate>& tested = extender_.search(out_.effects).tested;
+    return std::ranges::any_of(tested, [&](const TestedCandidate& each) {
+      return each.refined.projection.rank > 0 && each.modulates.empty() &&
+             each.p_value <= gates_.significance && each.refined.delta_bic <= -gates_.delta_bic &&
+             std::ranges::count(ruled_out_, each.name()) == 0;
+    });
   }
 
   /// Why an effect of a set does not help beside the others; "": it does. A carriage's polynomial
@@ -153,13 +171,13 @@ class Selector {
   }
 
   /// Earlier effects that the last one has made superfluous leave.
-  void drop_superfluous(std::vector<std::string>& ruled_out) {
+  void drop_superfluous() {
     for (std::size_t i = 0; i + 1 < out_.effects.size();) {
       if (gain_beside(out_.effects, i) >= gates_.delta_bic) {
         ++i;
         continue;
       }
-      ruled_out.push_back(out_.effects[i].name());
+      ruled_out_.push_back(out_.effects[i].name());
       leave(i, out_.effects.back().name() + " has made it superfluous");
     }
   }
@@ -235,7 +253,7 @@ class Selector {
       const Stability found = stability(round, own);
       effect.round.stability = found.share;
       if (found.share >= gates_.stable_share || !effect.round.ambiguous_with.empty()) continue;
-      effect.round.ambiguous_with.push_back(found.other == "nothing" ? kUnnamedRival : found.other);
+      effect.round.ambiguous_with.push_back(found.other == kNothing ? kUnnamedRival : found.other);
       out_.notes.push_back(effect.name() + ": only " + significant(100.0 * found.share, 2) +
                            " % of the resamples choose it; the others most often " + found.other);
     }
@@ -278,6 +296,7 @@ class Selector {
   ModelExtender& extender_;
   const Gates& gates_;
   const Progress& progress_;
+  std::vector<std::string> ruled_out_;  // names that do not help beside the others
   Selection out_;
 };
 

@@ -37,7 +37,7 @@ class Choice {
     data.whiten(columns_);
   }
 
-  /// Name of the candidate of least BIC in these rows of the data; "nothing": none pays.
+  /// Name of the candidate of least BIC in these rows of the data; kNothing: none pays.
   [[nodiscard]] std::string in(const Eigen::VectorXd& residual, const Rows& rows) const {
     const Eigen::MatrixXd basis = orthonormal(round_.data.basis()(rows, Eigen::all));
     Eigen::MatrixXd columns = columns_(rows, Eigen::all);
@@ -45,7 +45,7 @@ class Choice {
     Eigen::VectorXd rest = residual(rows);
     rest -= basis * (basis.transpose() * rest).eval();
     const double log_count = std::log(static_cast<double>(rows.size()));
-    std::string best = "nothing";
+    std::string best(kNothing);
     double least = 0.0;
     for (std::size_t c = 0; c < round_.tested.size(); ++c) {
       const Refined& refined = round_.tested[c].refined;
