@@ -9,11 +9,13 @@ bool has_more_values(const Observation& observation, std::size_t most) {
   return (observation.profile->positions.size() >> observation.low_band.options().level) > most;
 }
 
-/// One effect, and not in profiles apart.
-bool says_the_same(const Candidate& a, const Candidate& b) {
-  const std::vector<std::string>&p = a.term.profiles, &q = b.term.profiles;
-  return a.effect_name() == b.effect_name() &&
-         (p.empty() || q.empty() || std::ranges::find_first_of(p, q) != p.end());
+/// Whether an effect of the model leaves a candidate nothing to say: it is the same effect and acts
+/// in all profiles, or in one of the candidate's. In all profiles, the candidate may still be the
+/// better name for what others hold.
+bool says_the_same(const Candidate& in_model, const Candidate& candidate) {
+  const std::vector<std::string>&p = in_model.term.profiles, &q = candidate.term.profiles;
+  return in_model.effect_name() == candidate.effect_name() &&
+         (p.empty() || std::ranges::find_first_of(p, q) != p.end());
 }
 
 Model with(Model model, const std::vector<AcceptedEffect>& effects) {

@@ -51,7 +51,6 @@ Standing standing(ModelExtender& extender, const Effects& effects, const Gates& 
   const Whitened& named = extender.search(effects).data;
   Standing out;
   for (const std::vector<std::size_t>& absent : absences(effects.size())) {
-    if (only_carriage(effects, absent)) continue;
     const FittedModel& fitted = extender.extended(without(effects, absent));
     const Linearisation& linear = fitted.fit.linear;
     const Whitened data(linear, named.noise(), named.undescribed());
@@ -64,9 +63,11 @@ Standing standing(ModelExtender& extender, const Effects& effects, const Gates& 
       const double margin = 0.5 * gain - log_evidence;
       if (margin < out.margin) out = {margin, rival, absent};
     };
-    for (const ProcessVariable& variable : process_variables(fitted.model, linear))
+    for (const ProcessVariable& variable : process_variables(fitted.model, linear)) {
+      if (variable.symbol == kSlideSymbol && only_carriage(effects, absent)) continue;
       hold_against(best_process(data, linear, variable).log_evidence + gates.process_margin,
                    "a process in " + variable.symbol);
+    }
     if (absent.size() == 1 || absent.size() == effects.size())
       hold_against(local_forms(fitted.model, data, linear) + gates.local_form_margin,
                    "a local form");

@@ -24,7 +24,8 @@ struct Variable {
 
 const std::vector<Variable>& variables() {
   static const std::vector<Variable> kAll{
-      {"r", "mm", [](const Stations& s, Eigen::Index i) { return s.slide(i); }, std::nullopt},
+      {kSlideSymbol, "mm", [](const Stations& s, Eigen::Index i) { return s.slide(i); },
+       std::nullopt},
       {"t", "s", [](const Stations& s, Eigen::Index i) { return s.time(i); },
        IndependentVariable::time},
       {"s", "mm", [](const Stations& s, Eigen::Index i) { return s.distance(i); },

@@ -9,6 +9,8 @@
 
 namespace slideway {
 
+inline constexpr const char* kSlideSymbol = "r";  // of the slide coordinate, as the paper has it
+
 /// What something without a name may depend on, with cosines of it as a basis.
 struct ProcessVariable {
   std::string symbol;  // "r" "t" "s" "X", "per profile", or "NAME alone" for one profile

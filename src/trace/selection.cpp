@@ -105,12 +105,13 @@ class Selector {
            " % of the resamples choose it, the others most often nothing";
   }
 
-  /// Whether the last search finds more than noise gives, in whatever shape.
+  /// Whether the last search finds more than noise gives in all profiles, in whatever shape.
   [[nodiscard]] bool something_is_left() {
     const std::vector<TestedCandidate>& tested = extender_.search(out_.effects).tested;
     return std::ranges::any_of(tested, [&](const TestedCandidate& each) {
       return each.refined.projection.rank > 0 && each.modulates.empty() &&
-             each.p_value <= gates_.significance && each.refined.delta_bic <= -gates_.delta_bic &&
+             each.refined.candidate->term.profiles.empty() && each.p_value <= gates_.significance &&
+             each.refined.delta_bic <= -gates_.delta_bic &&
              std::ranges::count(ruled_out_, each.name()) == 0;
     });
   }
@@ -220,9 +221,10 @@ class Selector {
     }
   }
 
-  /// Whether an effect passes the gates of the search beside the others.
+  /// Whether an effect of all profiles passes the gates of the search beside the others.
   bool stands_out(std::size_t i) {
-    return find_tested(extender_.search(all_but(out_.effects, i)), out_.effects[i], gates_);
+    return out_.effects[i].candidate->term.profiles.empty() &&
+           find_tested(extender_.search(all_but(out_.effects, i)), out_.effects[i], gates_);
   }
 
   std::string reason_to_leave(std::size_t i) {
