@@ -45,6 +45,13 @@ bool only_carriage(const Effects& effects, const std::vector<std::size_t>& which
       which, [&](std::size_t i) { return effects[i].candidate->term.effect->is_carriage(); });
 }
 
+/// Whether nothing but the slide shows: a form of it is the way, whatever its shape.
+bool shows_slide_only(const Linearisation& linear) {
+  return std::ranges::all_of(linear.observations, [](const Observation* observation) {
+    return observation->profile->setup.kind == Kind::slide;
+  });
+}
+
 }  // namespace
 
 Standing standing(ModelExtender& extender, const Effects& effects, const Gates& gates) {
@@ -63,11 +70,13 @@ Standing standing(ModelExtender& extender, const Effects& effects, const Gates& 
       const double margin = 0.5 * gain - log_evidence;
       if (margin < out.margin) out = {margin, rival, absent};
     };
+    const bool is_way = only_carriage(effects, absent);
     for (const ProcessVariable& variable : process_variables(fitted.model, linear)) {
-      if (variable.symbol == kSlideSymbol && only_carriage(effects, absent)) continue;
+      if (is_way && variable.symbol == kSlideSymbol) continue;
       hold_against(best_process(data, linear, variable).log_evidence + gates.process_margin,
                    "a process in " + variable.symbol);
     }
+    if (is_way && shows_slide_only(linear)) continue;
     if (absent.size() == 1 || absent.size() == effects.size())
       hold_against(local_forms(fitted.model, data, linear) + gates.local_form_margin,
                    "a local form");
