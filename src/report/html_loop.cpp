@@ -32,6 +32,7 @@ Html accepted(const TraceResult& trace) {
                    {"on profiles left out of the fit", Column::number},
                    {"ΔBIC", Column::number},
                    {"p", Column::number},
+                   {"chosen by", Column::number},
                    {"not told apart from", Column::text}});
   for (const TraceRound& round : trace.rounds)
     table.add({effect_title(names_of(round).front()), values(round.parameters),
@@ -39,6 +40,7 @@ Html accepted(const TraceResult& trace) {
                       round.after_rms_urad),
                change(round.before_holdout_rms_um, round.after_holdout_rms_um),
                html_number(round.delta_bic, 3), html_probability(round.p_value),
+               html_number(100.0 * round.stability, 2) + " %",
                or_dash(effect_titles(round.ambiguous_with, ", "))});
   return table.html();
 }
@@ -106,7 +108,7 @@ Html unnamed(const TraceResult& trace) {
              " (lack of fit " + html_p_value(left.p_value) + "), largest from " +
              html_number(left.from_mm) + " to " + html_number(left.to_mm) + " mm";
   if (!left.clock.empty())
-    out += "; most alike over " + Html(left.clock) + ", correlation length " +
+    out += "; best described as " + Html(likeness(left)) + ", correlation length " +
            html_number(left.correlation_length, 2) + " " + html_unit(left.correlation_unit);
   if (left.dominant_period_mm)
     out += "; dominant period " + html_number(left.dominant_period_mm) + " mm";

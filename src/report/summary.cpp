@@ -15,7 +15,7 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kFewLetters = 36;            // names that leave room for a sentence
+constexpr std::size_t kFewLetters = 38;            // names that leave room for a sentence
 constexpr std::size_t kBoxText = kLineWidth - 11;  // beside the label
 
 /// Of the declared numbers, in U: what is no alarm.
@@ -42,23 +42,37 @@ std::string found(const TraceResult& trace) {
   return joined(out, " and ");
 }
 
-/// The same in so many letters, if it can be: rivals are counted, and the last effects.
+/// The same in so many letters, if it can be: rivals are counted, then the last effects, and the
+/// rivals are left out.
 std::string found_in_brief(const TraceResult& trace, std::size_t letters) {
+  const std::size_t count = trace.rounds.size();
+  const auto first = [&](std::size_t named, bool with_rivals) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < named; ++i) {
+      const TraceRound& round = trace.rounds[i];
+      const std::size_t rivals = with_rivals ? round.ambiguous_with.size() : 0;
+      names.push_back(effect_title(round.accepted) +
+                      (rivals > 0 ? " (" + counted(rivals, "rival") + ")" : std::string()));
+    }
+    if (named < count) names.push_back(std::to_string(count - named) + " more");
+    return joined(names, " and ");
+  };
   std::string out = found(trace);
-  std::vector<std::string> names;
-  for (const TraceRound& round : trace.rounds)
-    names.push_back(effect_title(round.accepted) +
-                    (round.ambiguous_with.empty()
-                         ? ""
-                         : " (" + counted(round.ambiguous_with.size(), "rival") + ")"));
-  std::size_t left_out = 0;
-  while (code_points(out) > letters && left_out < trace.rounds.size()) {
-    out = joined(names, " and ") +
-          (left_out > 0 ? " and " + std::to_string(left_out) + " more" : std::string());
-    names.pop_back();
-    ++left_out;
-  }
-  return out;
+  for (std::size_t named = count; named > 0 && code_points(out) > letters; --named)
+    out = first(named, true);
+  return code_points(out) > letters ? first(1, false) : out;
+}
+
+/// Root mean square of what the missing effects make in the profiles, "" where it is not known.
+std::string size_of_missing(const Result& result) {
+  const auto size = [](const std::optional<double>& before, const std::optional<double>& after) {
+    return before && after && *before > *after
+               ? std::optional(std::sqrt(*before * *before - *after * *after))
+               : std::nullopt;
+  };
+  const auto um = size(result.declared->rms_um, result.final->rms_um),
+             urad = size(result.declared->rms_urad, result.final->rms_urad);
+  return um || urad ? ", " + size_text(um, urad, 2) + " rms" : "";
 }
 
 std::string left_over(const TraceResult& trace) {
@@ -164,18 +178,23 @@ void say_crosscheck(const Result& result, Summary& out) {
 
 void say_missing(const Analysis& analysis, Summary& out) {
   out.missing = analysis.trace ? "nothing that these data show" : "not looked for";
+  if (analysis.trace && analysis.trace->verdict == TraceVerdict::unnamed)
+    out.missing = "nothing that has a name";
   if (analysis.trace && !analysis.trace->blunders.empty())
     out.missing = "not looked for while a profile has a blunder";
   out.missing_in_brief = out.missing;
   if (!was_extended(analysis)) return;
   out.has_missing = true;
-  std::string moved;
-  if (const auto shift = largest_shift(analysis.result))
+  std::string moved, size;
+  const auto shift = largest_shift(analysis.result);
+  if (shift && std::abs(shift->in_expanded_uncertainties) > harmless_shift(*analysis.trace))
     moved = "moved " + shift->what + " by " +
             in_expanded_uncertainties(shift->in_expanded_uncertainties) + ": ";
-  const std::size_t left = kBoxText - std::min(kBoxText, code_points(moved));
-  out.missing = moved + found(*analysis.trace);
-  out.missing_in_brief = moved + found_in_brief(*analysis.trace, left);
+  else
+    size = size_of_missing(analysis.result);
+  const std::size_t left = kBoxText - std::min(kBoxText, code_points(moved + size));
+  out.missing = moved + found(*analysis.trace) + size;
+  out.missing_in_brief = moved + found_in_brief(*analysis.trace, left) + size;
 }
 
 std::string next_step(const Analysis& analysis) {
@@ -206,6 +225,7 @@ std::vector<std::string> names_of(const TraceRound& round) {
 }
 
 std::string effect_title(const std::string& name) {
+  if (name == "unnamed") return "something without a name";
   std::string title = name;
   std::replace(title.begin(), std::ranges::find(title, '['), '_', ' ');
   return title;
@@ -245,6 +265,17 @@ bool is_squareness(const FittedParameter& parameter) {
 
 bool is_vertical(const std::string& effect) {
   return motion_error_of(effect) == MotionError::vertical_straightness;
+}
+
+std::string likeness(const Unnamed& left) {
+  constexpr const char* kVariables[][2] = {{"r", "the slide coordinate"},
+                                           {"t", "the cutting time"},
+                                           {"s", "the cutting distance"},
+                                           {"X", "the trace position"}};
+  for (const auto& [symbol, variable] : kVariables)
+    if (left.clock == symbol) return std::string("a curve over ") + variable;
+  return left.clock == "per profile" ? "a curve of its own in every profile"
+                                     : "a curve in " + left.clock;
 }
 
 std::string in_sentence(std::string text) {

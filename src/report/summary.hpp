@@ -27,7 +27,8 @@ struct Summary {
 
 Summary summary_of(const Analysis& analysis);
 
-/// An effect's name for people: "thermal_drift" as "thermal drift".
+/// An effect's name for people: "thermal_drift" as "thermal drift", "unnamed" as "something without
+/// a name".
 std::string effect_title(const std::string& name);
 // An accepted effect, with the profiles it is confined to, and its rivals.
 std::vector<std::string> names_of(const TraceRound& round);
@@ -41,6 +42,9 @@ std::string with_titles(std::string text);
 bool is_squareness(const FittedParameter& parameter);
 /// Whether an effect is the pitch that the form of the vertical guideway makes.
 bool is_vertical(const std::string& effect);
+
+/// What has no name, as a curve over a variable or in a profile: "a curve in cut3 alone".
+std::string likeness(const Unnamed& left);
 
 /// With a capital and a full stop.
 std::string in_sentence(std::string text);

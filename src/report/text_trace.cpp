@@ -37,12 +37,13 @@ std::string verdict(const TraceResult& trace) {
 }
 
 std::string round(const TraceRound& round, std::size_t index) {
-  std::string text = item(std::to_string(index + 1) + ". " +
-                          effect_titles(names_of(round), " or ") + ": residual " +
-                          residual_change(round.before_rms_um, round.after_rms_um,
-                                          round.before_rms_urad, round.after_rms_urad) +
-                          ", difference in BIC " + number(round.delta_bic, 3) + ", p " +
-                          (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value));
+  std::string text = item(
+      std::to_string(index + 1) + ". " + effect_titles(names_of(round), " or ") + ": residual " +
+      residual_change(round.before_rms_um, round.after_rms_um, round.before_rms_urad,
+                      round.after_rms_urad) +
+      ", difference in BIC " + number(round.delta_bic, 3) + ", p " +
+      (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value) + ", chosen by " +
+      number(100.0 * round.stability, 2) + " % of the resamples");
   if (const std::string change =
           residual_change(round.before_holdout_rms_um, round.after_holdout_rms_um, {}, {});
       !change.empty())
@@ -59,7 +60,7 @@ std::string left_over(const Unnamed& left) {
                      probability(left.p_value) + "), largest from " + number(left.from_mm, 4) +
                      " to " + number(left.to_mm, 4) + " mm";
   if (!left.clock.empty())
-    text += "; most alike over " + left.clock + ", correlation length " +
+    text += "; best described as " + likeness(left) + ", correlation length " +
             number(left.correlation_length, 2) + " " + unit_text(left.correlation_unit);
   if (left.dominant_period_mm)
     text += "; dominant period " + number(*left.dominant_period_mm, 3) + " mm";
