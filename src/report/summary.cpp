@@ -16,6 +16,7 @@ namespace slideway {
 namespace {
 
 constexpr std::size_t kFewLetters = 38;            // names that leave room for a sentence
+constexpr std::size_t kShortNames = 30;            // and for its end
 constexpr std::size_t kBoxText = kLineWidth - 11;  // beside the label
 
 /// Of the declared numbers, in U: what is no alarm.
@@ -113,7 +114,8 @@ void say_verdict(const Analysis& analysis, Summary& out) {
         return say(Alarm::plain, "Ambiguous, without harm",
                    "what is missing moves nothing by " + number(harmless_shift(trace), 2) + " U");
       return say(Alarm::warn, "Ambiguous",
-                 few ? names + " is missing: the data cannot tell which"
+                 few ? names + " is missing" +
+                           (names.size() < kShortNames ? ": the data cannot tell which" : "")
                      : "the data cannot tell which effect is missing");
     case TraceVerdict::not_identifiable:
       return say(Alarm::bad, "Not identifiable", "the data cannot tell what made this form");
