@@ -99,6 +99,10 @@ std::span<const Gate> gate_table() {
       Gate{"blunder_bic", &Gates::blunder_bic, "", 5.0, 100.0,
            "A profile has a blunder if the values so corrected lower the BIC by this much.",
            "Kass and Raftery (1995): 10 is very strong; doubled, for a prior of one in 150"},
+      Gate{
+          "blunder_rival", &Gates::blunder_rival, "", 0.0, 1.0,
+          "An effect that leaves less than this times what a blunder leaves is looked for instead.",
+          "half: chance alone makes no such difference where both leave more than noise"},
       Gate{"blunder_left", &Gates::blunder_left, "of the disagreement", 0.01, 0.5,
            "A blunder leaves no more than this of the square of a profile's disagreement.",
            "an effect that one cut has, and the others not, comes to more as a rule"},

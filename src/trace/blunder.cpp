@@ -203,9 +203,10 @@ class Finder {
       const Prediction& meant = each.setup ? prediction(i, others, noise, &*each.setup) : as_it_is;
       const auto [after, size] = meant.best(each.factor, factor);
       if (after > before - gates.blunder_bic) continue;
-      if (meant.disagreement(each.factor) > gates.blunder_left * square) continue;
+      const double left = meant.disagreement(each.factor) / square;
+      if (left > gates.blunder_left) continue;
       if (std::abs(std::log(size)) > 2.0 * std::log(factor)) continue;
-      out.push_back({observation.profile->name, each.kind, after - before});
+      out.push_back({observation.profile->name, each.kind, after - before, left});
     }
   }
 

@@ -33,6 +33,7 @@ class Loop {
   ClosedLoop run() {
     const Gates& gates = problem_.trace.gates;
     std::vector<Blunder> blunders = find_blunders(extender_.base());
+    if (!blunders.empty() && explained_by_an_effect(blunders)) blunders.clear();
     Selection selection = blunders.empty() ? select_effects(problem_, extender_, gates, progress_)
                                            : nothing_selected(extender_, gates);
     tell_rounds(selection.effects);
@@ -65,6 +66,23 @@ class Loop {
   }
 
  private:
+  /// Whether an effect of all profiles leaves less of the residual than the blunder that leaves
+  /// least: the sign of a drift, too, turns with the direction of the cut.
+  bool explained_by_an_effect(const std::vector<Blunder>& blunders) {
+    const SearchRound& round = extender_.search({});
+    const double square = round.data.residual().squaredNorm();
+    const auto noise = static_cast<double>(round.data.values());
+    const double least = std::ranges::min(blunders, {}, &Blunder::left).left;
+    return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
+      const Candidate& candidate = *each.refined.candidate;
+      if (!candidate.term.profiles.empty() || candidate.term.effect->is_carriage() ||
+          !each.refused(problem_.trace.gates).empty())
+        return false;
+      const double rest = std::max(square - each.refined.projection.gain - noise, 0.0);
+      return rest < problem_.trace.gates.blunder_rival * least * (square - noise);
+    });
+  }
+
   /// The residuals of the rounds as if the effects had been added one after the other: some have
   /// been exchanged, and some have left.
   void tell_rounds(std::vector<AcceptedEffect>& effects) {

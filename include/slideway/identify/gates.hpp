@@ -48,6 +48,7 @@ struct Gates {
   double same_place = 0.25;
   double values_per_repeated_cosine = 3.0;
   double blunder_bic = 20.0;
+  double blunder_rival = 0.5;
   double blunder_left = 0.1;
   double sister_factor = 2.0;
   double most_blocks = 40.0;

@@ -66,6 +66,7 @@ struct Blunder {
   std::string profile;
   BlunderKind what = BlunderKind::sign;
   double delta_bic = 0.0;  // against the profile as it is
+  double left = 0.0;       // share of the square of the disagreement that it leaves
 };
 
 /// What is left and has no name.
