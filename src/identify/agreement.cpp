@@ -8,6 +8,7 @@
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/noise_model.hpp"
 
 namespace slideway {
 namespace {
@@ -26,7 +27,8 @@ struct Alone {
   double freedom = 0.0;       // of the noise
   double log_variance = 0.0;  // of the noise's size
 
-  Alone(const Solution& fit, const Compressed& all, const Profiles& which, double tolerance) {
+  Alone(const Linearisation& linear, const std::vector<Noise>& noise, const Compressed& all,
+        const Profiles& which, double tolerance) {
     const Eigen::Index k = all.triangle.cols();
     rows.resize(0, k + 1);
     Eigen::VectorXd squares = Eigen::VectorXd::Zero(k);
@@ -34,15 +36,15 @@ struct Alone {
     for (const std::size_t i : which) {
       append(all.profiles[i].free());
       squares += all.profiles[i].squares();
-      const double spread = fit.noise[i].log_long_run_variance();
+      const double spread = noise[i].log_long_run_variance();
       log_variance += spread / static_cast<double>(which.size());
       freedom += spread > 0.0 ? 2.0 / spread : HUGE_VAL;
-      known += effective_values(fit.noise[i], fit.linear.observations[i]->values.size());
+      known += effective_values(noise[i], linear.observations[i]->values.size());
     }
-    append((Eigen::MatrixXd(fit.linear.prior_rows.rows(), k + 1) << fit.linear.prior_rows,
-            fit.linear.prior_residuals)
+    append((Eigen::MatrixXd(linear.prior_rows.rows(), k + 1) << linear.prior_rows,
+            linear.prior_residuals)
                .finished());
-    squares += fit.linear.prior_rows.colwise().squaredNorm().transpose();
+    squares += linear.prior_rows.colwise().squaredNorm().transpose();
     const Rank rank = analyse_rank(rows.leftCols(k), squares.cwiseSqrt(), tolerance);
     basis = rank.basis;
     null_space = rank.null_space;
@@ -175,11 +177,11 @@ struct Pair {
   std::vector<Curve> curves;  // that both determine
 };
 
-double largest_En(const Pair& pair, const Curve& curve, double inflation, double outside) {
+double largest_En(const Pair& pair, const Curve& curve, double outside) {
   constexpr double kNothing = 1e-12;  // of the largest variance: the ends of a levelled curve
   const Eigen::MatrixXd of_a = curve.rows * pair.a.basis, of_b = curve.rows * pair.b.basis;
-  const Eigen::VectorXd variance_a = inflation * of_a.rowwise().squaredNorm(),
-                        variance_b = inflation * of_b.rowwise().squaredNorm(),
+  const Eigen::VectorXd variance_a = of_a.rowwise().squaredNorm(),
+                        variance_b = of_b.rowwise().squaredNorm(),
                         variance = variance_a + variance_b;
   const double least = kNothing * variance.maxCoeff();
   const Eigen::VectorXd difference = curve.rows * (pair.a.change - pair.b.change);
@@ -190,12 +192,12 @@ double largest_En(const Pair& pair, const Curve& curve, double inflation, double
       std::sqrt(difference.cwiseAbs2().cwiseQuotient(variance.cwiseMax(least)).maxCoeff(&at));
   const double freedom = std::pow(variance[at], 2) / (std::pow(variance_a[at], 2) / pair.a.freedom +
                                                       std::pow(variance_b[at], 2) / pair.b.freedom);
-  const double length = path_length(std::sqrt(inflation) * both, variance, least);
+  const double length = path_length(both, variance, least);
   return largest / simultaneous_factor(length, freedom, outside);
 }
 
 /// χ² of two sides being one, and its tail probability.
-void set_chi_square(const Pair& pair, double inflation, ProfileCheck& out) {
+void set_chi_square(const Pair& pair, ProfileCheck& out) {
   const Eigen::Index k = pair.a.rows.cols() - 1;
   Eigen::MatrixXd rows(pair.a.rows.rows() + pair.b.rows.rows(), k + 1);
   rows << pair.a.rows, pair.b.rows;
@@ -207,8 +209,7 @@ void set_chi_square(const Pair& pair, double inflation, ProfileCheck& out) {
   };
   const double count = rank(pair.a.rows) + rank(pair.b.rows) - rank(rows);
   if (count < 1.0) return;
-  const double found =
-      std::max(0.0, left(rows) - left(pair.a.rows) - left(pair.b.rows)) / inflation;
+  const double found = std::max(0.0, left(rows) - left(pair.a.rows) - left(pair.b.rows));
   const double spread = 0.5 * std::min(pair.a.log_variance + pair.b.log_variance, 2.0);
   const double mean = count * std::exp(0.5 * spread);
   const double variance = 2.0 * mean * mean / count + mean * mean * std::expm1(spread);
@@ -216,15 +217,17 @@ void set_chi_square(const Pair& pair, double inflation, ProfileCheck& out) {
   out.p_value = gamma_tail(mean * mean / variance, found * mean / variance);
 }
 
-/// The pairs to be compared, with the curves that both sides determine.
+/// The pairs to be compared, with the curves that both sides determine. The noise is that beside
+/// the slow band: what profiles disagree by is not in it.
 class ProfileComparison {
  public:
   ProfileComparison(const Model& model, const Solution& fit) : model_(model), fit_(fit) {
-    const Compressed compressed = compress(fit.linear, fit.noise);
+    const std::vector<Noise> noise = noise_beside(fit.linear, model.gates);
+    const Compressed compressed = compress(fit.linear, noise);
     const std::size_t count = fit.linear.observations.size();
     const bool pairwise = count <= kMostPairwise;
     const auto side = [&](const Profiles& which) {
-      return Alone(fit, compressed, which, model.gates.rank_tolerance);
+      return Alone(fit.linear, noise, compressed, which, model.gates.rank_tolerance);
     };
     for (std::size_t i = 0; i < count; ++i) alone_.push_back(side({i}));
     if (!pairwise) others_.reserve(count);
@@ -246,15 +249,14 @@ class ProfileComparison {
     const Gates& gates = model_.gates;
     const double outside =
         -std::expm1(std::log1p(-gates.false_disagreement) / static_cast<double>(comparisons));
-    const double inflation = fit_.uncertainty.inflation;
     std::vector<ProfileCheck> out;
     for (const Pair& pair : pairs_)
       for (const Curve& curve : pair.curves) {
         ProfileCheck check{pair.names, curve.what};
-        check.En = largest_En(pair, curve, inflation, outside);
+        check.En = largest_En(pair, curve, outside);
         check.verdict =
             *check.En <= gates.en_limit ? Consistency::consistent : Consistency::inconsistent;
-        set_chi_square(pair, inflation, check);
+        set_chi_square(pair, check);
         out.push_back(std::move(check));
       }
     return out;

@@ -135,21 +135,40 @@ class Prediction {
   double count_ = 0.0;
 };
 
+/// The noise of every profile fitted alone: a blunder of one is not in the noise of the others.
+std::vector<Noise> noise_alone(const Linearisation& all, const Gates& gates) {
+  std::vector<Noise> out;
+  for (std::size_t i = 0; i < all.observations.size(); ++i) {
+    const Eigen::MatrixXd& nuisances = all.observations[i]->nuisances;
+    Eigen::MatrixXd free(nuisances.rows(), nuisances.cols() + all.columns[i].cols());
+    free << nuisances, all.columns[i];
+    Linearisation own;
+    own.observations = {all.observations[i]};
+    own.columns = {all.columns[i]};
+    own.residuals = {all.residuals[i] - free * least_squares(free, all.residuals[i]).values};
+    own.prior_rows = all.prior_rows;
+    own.prior_residuals = Eigen::VectorXd::Zero(all.prior_residuals.size());
+    out.push_back(noise_beside(own, gates).front());
+  }
+  return out;
+}
+
 class Finder {
  public:
   explicit Finder(const FittedModel& fitted)
       : model_(fitted.model),
         fit_(fitted.fit),
-        noise_(noise_beside(fitted.fit.linear, fitted.model.gates)),
-        compressed_(compress(fitted.fit.linear, noise_)) {}
+        noise_(noise_alone(fitted.fit.linear, fitted.model.gates)),
+        compressed_(compress(fitted.fit.linear, alike())) {}
 
   [[nodiscard]] std::vector<Blunder> find() const {
     std::vector<Blunder> out;
     for (std::size_t i = 0; i < noise_.size(); ++i) try_profile(i, out);
     std::ranges::stable_sort(out, {}, &Blunder::delta_bic);
-    std::erase_if(out, [&](const Blunder& each) {
-      return each.delta_bic > out.front().delta_bic + model_.gates.tie_bic;
-    });
+    if (noise_.size() > 2)  // two that disagree do not say which of them is wrong
+      std::erase_if(out, [&](const Blunder& each) {
+        return each.delta_bic > out.front().delta_bic + model_.gates.tie_bic;
+      });
     return out;
   }
 
@@ -166,6 +185,17 @@ class Finder {
     if (sisters.empty()) return nullptr;
     std::ranges::sort(sisters, {}, &Noise::long_run_deviation);
     return sisters[(sisters.size() - 1) / 2];
+  }
+
+  /// Sisters weigh alike: one recorded in too large a unit would else outweigh all the others.
+  [[nodiscard]] std::vector<Noise> alike() const {
+    std::vector<Noise> out;
+    for (std::size_t i = 0; i < noise_.size(); ++i) {
+      const Noise* const other = sister(i);
+      const bool smaller = other && noise_[i].long_run_deviation() < other->long_run_deviation();
+      out.push_back(smaller ? *other : noise_[i]);
+    }
+    return out;
   }
 
   [[nodiscard]] Prediction prediction(std::size_t i, const Others& others, const Noise& noise,
