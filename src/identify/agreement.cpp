@@ -177,7 +177,7 @@ struct Pair {
   std::vector<Curve> curves;  // that both determine
 };
 
-double largest_En(const Pair& pair, const Curve& curve, double outside) {
+double largest_en(const Pair& pair, const Curve& curve, double outside) {
   constexpr double kNothing = 1e-12;  // of the largest variance: the ends of a levelled curve
   const Eigen::MatrixXd of_a = curve.rows * pair.a.basis, of_b = curve.rows * pair.b.basis;
   const Eigen::VectorXd variance_a = of_a.rowwise().squaredNorm(),
@@ -253,7 +253,7 @@ class ProfileComparison {
     for (const Pair& pair : pairs_)
       for (const Curve& curve : pair.curves) {
         ProfileCheck check{pair.names, curve.what};
-        check.En = largest_En(pair, curve, outside);
+        check.En = largest_en(pair, curve, outside);
         check.verdict =
             *check.En <= gates.en_limit ? Consistency::consistent : Consistency::inconsistent;
         set_chi_square(pair, check);
