@@ -119,8 +119,8 @@ class SpindleRunout : public LinearEffect {
 
   [[nodiscard]] std::vector<std::string> lacking_together(
       const std::vector<const Setup*>& setups) const override {
-    const bool along_slide = std::ranges::any_of(
-        setups, [](const Setup* setup) { return setup->kind == Kind::slide; });
+    const bool along_slide =
+        std::ranges::any_of(setups, [](const Setup* setup) { return setup->kind == Kind::slide; });
     if (along_slide) return {};
     return {"a reading along the slide: on a face every groove meets it at one angle"};
   }
