@@ -105,10 +105,11 @@ class Selector {
            " % of the resamples choose it, the others most often nothing";
   }
 
-  /// Whether the last search finds more than noise gives in all profiles, in whatever shape.
+  /// Whether the last search finds more than noise gives in several profiles, in whatever shape.
   [[nodiscard]] bool something_is_left() {
-    const std::vector<TestedCandidate>& tested = extender_.search(out_.effects).tested;
-    return std::ranges::any_of(tested, [&](const TestedCandidate& each) {
+    const SearchRound& round = extender_.search(out_.effects);
+    if (round.data.observations() < 2) return false;
+    return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
       return each.refined.projection.rank > 0 && each.modulates.empty() &&
              each.refined.candidate->term.profiles.empty() && each.p_value <= gates_.significance &&
              each.refined.delta_bic <= -gates_.delta_bic &&
