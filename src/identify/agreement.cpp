@@ -217,12 +217,12 @@ void set_chi_square(const Pair& pair, ProfileCheck& out) {
   out.p_value = gamma_tail(mean * mean / variance, found * mean / variance);
 }
 
-/// The pairs to be compared, with the curves that both sides determine. The noise is that beside
-/// the slow band: what profiles disagree by is not in it.
+/// The pairs to be compared, with the curves that both sides determine. The noise is that of
+/// each by itself: what profiles disagree by is not in it.
 class ProfileComparison {
  public:
   ProfileComparison(const Model& model, const Solution& fit) : model_(model), fit_(fit) {
-    const std::vector<Noise> noise = noise_beside(fit.linear, model.gates);
+    const std::vector<Noise> noise = noise_of_each(fit.linear, model.gates);
     const Compressed compressed = compress(fit.linear, noise);
     const std::size_t count = fit.linear.observations.size();
     const bool pairwise = count <= kMostPairwise;

@@ -53,11 +53,12 @@ struct Predicted {
 
  private:
   void set_noise(const Model& model, const Solution& fit, const Observation& observation) {
+    const std::vector<Noise> fitted = noise_of_each(fit.linear, model.gates);
     const Noise* largest = nullptr;
-    for (std::size_t i = 0; i < fit.noise.size(); ++i)
+    for (std::size_t i = 0; i < fitted.size(); ++i)
       if (are_sisters(observation, *fit.linear.observations[i], model.gates.same_place) &&
-          (!largest || fit.noise[i].long_run_deviation() > largest->long_run_deviation()))
-        largest = &fit.noise[i];
+          (!largest || fitted[i].long_run_deviation() > largest->long_run_deviation()))
+        largest = &fitted[i];
     if (largest) {
       noise = *largest;
       return;

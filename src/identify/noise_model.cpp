@@ -285,6 +285,23 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
   return out;
 }
 
+std::vector<Noise> noise_of_each(const Linearisation& all, const Gates& gates) {
+  std::vector<Noise> out;
+  for (std::size_t i = 0; i < all.observations.size(); ++i) {
+    const Eigen::MatrixXd& nuisances = all.observations[i]->nuisances;
+    Eigen::MatrixXd free(nuisances.rows(), nuisances.cols() + all.columns[i].cols());
+    free << nuisances, all.columns[i];
+    Linearisation own;
+    own.observations = {all.observations[i]};
+    own.columns = {all.columns[i]};
+    own.residuals = {all.residuals[i] - free * least_squares(free, all.residuals[i]).values};
+    own.prior_rows = all.prior_rows;
+    own.prior_residuals = Eigen::VectorXd::Zero(all.prior_residuals.size());
+    out.push_back(noise_beside(own, gates).front());
+  }
+  return out;
+}
+
 FitNoise noise_under(const Linearisation& linear, const Gates& gates) {
   FitNoise out{noise_beside(linear, gates)};
   const LackOfFit left = lack_of_fit(linear, out.profiles, gates);

@@ -135,30 +135,12 @@ class Prediction {
   double count_ = 0.0;
 };
 
-/// The noise of every profile fitted alone: a blunder of one is not in the noise of the others.
-std::vector<Noise> noise_alone(const Linearisation& all, const Gates& gates) {
-  std::vector<Noise> out;
-  for (std::size_t i = 0; i < all.observations.size(); ++i) {
-    const Eigen::MatrixXd& nuisances = all.observations[i]->nuisances;
-    Eigen::MatrixXd free(nuisances.rows(), nuisances.cols() + all.columns[i].cols());
-    free << nuisances, all.columns[i];
-    Linearisation own;
-    own.observations = {all.observations[i]};
-    own.columns = {all.columns[i]};
-    own.residuals = {all.residuals[i] - free * least_squares(free, all.residuals[i]).values};
-    own.prior_rows = all.prior_rows;
-    own.prior_residuals = Eigen::VectorXd::Zero(all.prior_residuals.size());
-    out.push_back(noise_beside(own, gates).front());
-  }
-  return out;
-}
-
 class Finder {
  public:
   explicit Finder(const FittedModel& fitted)
       : model_(fitted.model),
         fit_(fitted.fit),
-        noise_(noise_alone(fitted.fit.linear, fitted.model.gates)),
+        noise_(noise_of_each(fitted.fit.linear, fitted.model.gates)),
         compressed_(compress(fitted.fit.linear, alike())) {}
 
   [[nodiscard]] std::vector<Blunder> find() const {

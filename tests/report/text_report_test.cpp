@@ -84,7 +84,7 @@ TEST(TextReport, CutsNoSentenceOfTheBoxWhileAnEntrySaysNothing) {
   Result result = sample_result();
   result.final->identifiability.unidentifiable.clear();  // its advice would come first
   const std::string text = short_text(result, trace);
-  EXPECT_THAT(on_one_line(text), HasSubstr("(like feed2) would tell them │ apart best"));
+  EXPECT_THAT(on_one_line(text), HasSubstr("(like feed2) would tell │ them apart best"));
   EXPECT_THAT(text, Not(HasSubstr("…")));
   EXPECT_THAT(text, Not(HasSubstr("│ Page")));
 }
