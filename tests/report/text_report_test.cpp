@@ -98,7 +98,7 @@ TEST(TextReport, CountsInTheBoxWhatItHasNoRoomToName) {
     round.ambiguous_with = {"time_periodic", "traverse_periodic"};
   }
   EXPECT_THAT(line_with(short_text(sample_result(), trace), "│ Missing"),
-              HasSubstr("thermal drift (2 rivals) and 3 more"));
+              HasSubstr("thermal drift (2 rivals) and spindle runout (2 rivals) and 2 more"));
 }
 
 TEST(TextReport, IsAtMost40LinesHoweverMuchThereIsToSay) {
