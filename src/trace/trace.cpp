@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "advice.hpp"
 #include "blunder.hpp"
@@ -159,8 +160,8 @@ class Loop {
   Widening widening_instead(const Selection& selection, const FittedModel& fitted,
                             const SearchRound& last) {
     std::vector<AcceptedEffect> sure = selection.effects;
-    for (auto i = selection.unsure.rbegin(); i != selection.unsure.rend(); ++i)
-      sure = all_but(std::move(sure), *i);
+    for (const std::size_t i : std::views::reverse(selection.unsure))
+      sure = all_but(std::move(sure), i);
     const FittedModel& without = extender_.extended(sure);
     const Whitened data(without.fit.linear, last.data.noise(), last.data.undescribed());
     return widening(fitted.model, fitted.fit,
