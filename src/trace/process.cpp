@@ -76,7 +76,7 @@ ProcessVariable own_processes(const Linearisation& linear, const std::vector<std
   ProcessVariable out{std::move(symbol), "mm", 0.0, {}, std::ssize(which)};
   const Eigen::Index each = cosine_count(linear, std::min(kMostCosines, kMostColumns / out.copies));
   for (const Observation* observation : linear.observations)
-    out.cosines.push_back(Eigen::MatrixXd::Zero(observation->values.size(), out.copies * each));
+    out.cosines.emplace_back(Eigen::MatrixXd::Zero(observation->values.size(), out.copies * each));
   for (std::size_t k = 0; k < which.size(); ++k) {
     const Observation& observation = *linear.observations[which[k]];
     const auto own = observation.low_band.positions(observation.profile->positions);

@@ -68,7 +68,7 @@ Structure find_structure(const Model& model, const Whitened& data, const Lineari
   }
   if (found.columns.empty()) {  // no variable makes anything beside the model
     for (const Observation* observation : linear.observations)
-      found.columns.push_back(Eigen::MatrixXd::Zero(observation->values.size(), 1));
+      found.columns.emplace_back(Eigen::MatrixXd::Zero(observation->values.size(), 1));
     found.process.sizes = found.process.coefficients = Eigen::VectorXd::Zero(1);
   }
   for (auto& [symbol, evidence] : out.log_evidence) evidence -= found.process.log_evidence;
