@@ -75,7 +75,8 @@ TEST(ProfileCheck, NothingIsComparedThatOneProfileCannotTell) {
 TEST(ProfileCheck, DisagreementIsNegative) {
   Result result;
   EXPECT_FALSE(is_negative(result));
-  result.crosscheck.profiles = {{{"a", "b"}, "straightness", 1.2, Consistency::inconsistent}};
+  result.crosscheck.profiles = {
+      {{"a", "b"}, "straightness", 1.2, Consistency::inconsistent, {}, {}}};
   EXPECT_TRUE(is_negative(result));
 }
 
