@@ -14,6 +14,7 @@
 #include "slideway/base/file.hpp"
 #include "slideway/identify/fit.hpp"
 #include "slideway/identify/identify.hpp"
+#include "slideway/identify/noise_model.hpp"
 #include "slideway/identify/simulate.hpp"
 #include "slideway/report/report.hpp"
 
@@ -109,7 +110,7 @@ void BM_Compress(benchmark::State& state) {
   const Loaded loaded(state.range(0));
   const Estimate start = initial_estimate(loaded.model);
   for (auto _ : state)
-    benchmark::DoNotOptimize(compress(linearise(loaded.model, start), {kMicrometre}));
+    benchmark::DoNotOptimize(compress(linearise(loaded.model, start), first_noise(loaded.model)));
   set_items(state);
 }
 

@@ -133,8 +133,8 @@ def main():
                          share(len(right), len(own)), share(len(among), len(own))])
         if rows:
             print("Shapes in no catalogue, from 5 times the noise up:\n")
-            print(table(["shape", "cases", "unnamed", "named on the right clock",
-                         "right clock among rivals"], rows) + "\n")
+            print(table(["shape", "cases", "unnamed", "named over the right variable",
+                         "right variable among rivals"], rows) + "\n")
         print(coverage([c for n in CATALOGUE + ["clean"] for c in groups[cuts, n]]))
         print("First name given (alone + with rivals), by what was hidden:\n")
         print(confusion(groups, cuts) + "\n")

@@ -73,6 +73,7 @@ const std::vector<Section>& sections() {
         {"line", R"(areal file: "row:12", "column:3", "diameter:30")"},
         {"base_mm", "slope: foot spacing of the mirror or level; none: the local slope"},
         {"window", "[from, to] in position_unit: keep only this part"},
+        {"mask", "[[from, to], ...] in position_unit: parts that are left out"},
         {"leave_out", "\"spikes\", or data rows, the first one 1: [120, 121]"},
         {"from_mm",
          "where the line lies on the surface: [x, y] of its smallest position; slope with base_mm: "
@@ -90,6 +91,12 @@ const std::vector<Section>& sections() {
         {"start_s", "time at which this cut began; default 0, one state for every cut"},
         {"traverse_mm_per_s", "speed of the stylus"},
         {"nose_radius_mm", "face: of the tool that cut it"},
+        {"azimuth_deg",
+         "face: direction of the trace on the workpiece, from any mark; default 0. On a diameter "
+         "the half with positions below center_mm lies half a turn further"},
+        {"surface", "which surface was traced: traces of one share its form; default its own"},
+        {"instrument",
+         "what measured: traces of one share its errors; default one for each kind and quantity"},
         {"level", "this profile's low band: levels; default that of [low_band]"},
         {"wavelet", "this profile's low band; default that of [low_band]"},
         {"boundary", "this profile's low band; default that of [low_band]"},
@@ -104,7 +111,15 @@ const std::vector<Section>& sections() {
        {{"name", "of the catalogue"},
         {"body", "a carriage's name, where more than one moves along the axis"},
         {"degree", "of a polynomial"},
+        {"form", "of a straightness: \"polynomial\", or \"curve\": smooth, kinks allowed"},
+        {"resolution_mm", "of a curve: between its knots; at least 1/117 of the travel"},
         {"span_mm", "instead of that of [machine]"},
+        {"profiles",
+         "[\"feed2\"]: only in these profiles, and its parameters then carry their names: "
+         "step[feed2].height_um"},
+        {"scope",
+         "\"profile\": once for each profile that sees it, with all parameters of its own, "
+         "step[feed2].height_um, step[feed8].height_um; default \"all\""},
         {"priors", "what is known of its parameters, below"}}},
       {"priors = [{ ... }]",
        "A normal prior on one parameter of an [[effect]].",

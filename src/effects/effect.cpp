@@ -20,6 +20,11 @@ std::vector<std::string> Effect::lacking(const Setup& setup) const {
   return missing_for(description().variable, setup);
 }
 
+std::vector<std::string> Effect::lacking_together(
+    const std::vector<const Setup*>& /*setups*/) const {
+  return {};
+}
+
 void Effect::columns_of_shapes(const Stations& stations,
                                std::span<const std::vector<double>> shapes,
                                Eigen::Ref<Eigen::MatrixXd> out) const {
@@ -31,6 +36,11 @@ void Effect::columns_of_shapes(const Stations& stations,
 void Effect::derivatives(const Stations& /*stations*/, std::span<const double> /*shape*/,
                          int /*which*/, Eigen::Ref<Eigen::MatrixXd> out) const {
   out.setZero();
+}
+
+std::vector<LineBand> Effect::lines(const Stations& /*stations*/,
+                                    std::span<const double> /*shape*/) const {
+  return {};
 }
 
 void Effect::add_body_errors(const Pose& /*pose*/, double /*slide_mm*/,

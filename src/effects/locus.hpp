@@ -32,6 +32,10 @@ struct CarriageReading {
   double pitch_ratio = 1.0;
 };
 
+// The height itself, without a pitch: what is shorter than the carriage lifts it but the pads even
+// out most of the slope.
+inline CarriageReading height_only() { return {.height = {1.0, 0.0}, .pitch = {0.0, 0.0}}; }
+
 CarriageReading carriage_reading(const Stations& stations, int body, double pitch_ratio);
 
 // False for the slope of a face: no instrument of the project reads it.

@@ -74,6 +74,12 @@ void PeriodicEffect::derivatives(const Stations& stations, std::span<const doubl
   }
 }
 
+std::vector<LineBand> PeriodicEffect::lines(const Stations& stations,
+                                            std::span<const double> shape) const {
+  const double count = cycles(shape) * range_of(stations, spec_.reading).extent();
+  return {{count, count}};
+}
+
 ParameterValues PeriodicEffect::parameter_values(const Eigen::VectorXd& amplitudes,
                                                  std::span<const double> shape) const {
   const double c = amplitudes[0];

@@ -42,6 +42,8 @@ class PeriodicEffect : public Effect {
                          Eigen::Ref<Eigen::MatrixXd> out) const override;
   void derivatives(const Stations& stations, std::span<const double> shape, int which,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
+  [[nodiscard]] std::vector<LineBand> lines(const Stations& stations,
+                                            std::span<const double> shape) const override;
   [[nodiscard]] ParameterValues parameter_values(const Eigen::VectorXd& amplitudes,
                                                  std::span<const double> shape) const override;
   [[nodiscard]] Eigen::VectorXd from_parameters(const Eigen::VectorXd& values) const override;

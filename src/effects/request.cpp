@@ -20,9 +20,12 @@ std::string names_of(const Machine& machine, const std::vector<int>& bodies) {
 }  // namespace
 
 void Request::accept_only(const std::vector<std::string>& accepted) const {
-  const std::pair<const char*, bool> given[] = {{"body", options.body.has_value()},
-                                                {"degree", options.degree.has_value()},
-                                                {"span_mm", options.span_mm.has_value()}};
+  const std::pair<const char*, bool> given[] = {
+      {"body", options.body.has_value()},
+      {"degree", options.degree.has_value()},
+      {"span_mm", options.span_mm.has_value()},
+      {"form", options.form.has_value()},
+      {"resolution_mm", options.resolution_mm.has_value()}};
   for (const auto& [key, is_set] : given)
     if (is_set && std::find(accepted.begin(), accepted.end(), key) == accepted.end())
       throw UsageError("effect " + name + ": '" + key + "' is not an option of it; accepted: " +

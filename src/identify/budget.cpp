@@ -24,10 +24,18 @@ std::vector<Source> sources_of(const Solution& fit) {
                    declared ? EvaluationType::type_b : EvaluationType::type_a,
                    fit.uncertainty.information[i]});
   }
-  if (const Eigen::MatrixXd rows = fit.linear.prior_rows * fit.rank.basis; rows.rows() > 0)
-    out.push_back({"priors of the problem file", EvaluationType::type_b, rows.transpose() * rows});
-  if (std::ranges::any_of(fit.noise, &Noise::is_estimated))
-    out.push_back({"noise that comes from the same data", EvaluationType::type_a,
+  const Eigen::MatrixXd rows = fit.linear.prior_rows * fit.rank.basis;
+  const Eigen::Index curve = fit.linear.curve_rows, declared = rows.rows() - curve;
+  if (declared > 0)
+    out.push_back({"priors of the problem file", EvaluationType::type_b,
+                   rows.topRows(declared).transpose() * rows.topRows(declared)});
+  if (curve > 0)
+    out.push_back({"what the curve does between the readings", EvaluationType::type_a,
+                   rows.bottomRows(curve).transpose() * rows.bottomRows(curve)});
+  if (curve > 0 || std::ranges::any_of(fit.noise, &Noise::is_estimated))
+    out.push_back({curve > 0 ? "noise and prior of the curve, that come from the same data"
+                             : "noise that comes from the same data",
+                   EvaluationType::type_a,
                    fit.uncertainty.covariance - Eigen::MatrixXd::Identity(r, r)});
   if (const double inflation = fit.uncertainty.inflation; inflation > 1.0)
     out.push_back({"structure the model lacks", EvaluationType::type_a,

@@ -10,11 +10,7 @@
 namespace slideway {
 namespace {
 
-/// A good slide: 1 µm of straightness over 200 mm (air-bearing makers' figures).
-constexpr double kGoodStraightness = 1.0 * kMicrometre;
-constexpr double kGoodTravel = 200.0;
-constexpr double kTold = 5.0;          // standard uncertainties
-constexpr double kImplausible = 10.0;  // times the good slide's
+constexpr double kTravel = 200.0;  // mm: to which Gates::most_straightness belongs
 
 /// Errors of all bodies at a pose, from the fitted effects.
 std::vector<BodyErrors> body_errors(const Model& model, const Solution& fit, const Pose& pose,
@@ -60,12 +56,16 @@ double straightness_error(const Model& model, const ModelTerm& term, const Solut
 }
 
 /// Whether a curvature of the straightness is told from zero.
-bool is_curved(const ModelTerm& term, const ModelResult& out) {
+bool is_curved(const ModelTerm& term, const ModelResult& out, const Gates& gates) {
+  if (term.effect->knots() && out.straightness && !out.straightness->errors.empty()) {
+    const StraightnessError& error = out.straightness->errors.front();
+    return *error.value > gates.size * *error.standard_uncertainty;
+  }
   const std::vector<Parameter>& parameters = term.effect->parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const FittedParameter& p = out.parameters[static_cast<std::size_t>(term.first_parameter) + i];
     if (!parameters[i].by_convention && p.value && p.standard_uncertainty &&
-        std::abs(*p.value) > kTold * *p.standard_uncertainty)
+        std::abs(*p.value) > gates.size * *p.standard_uncertainty)
       return true;
   }
   return false;
@@ -79,13 +79,15 @@ void check_plausibility(const Model& model, const Solution& fit, ModelResult& ou
   for (const Observation* observation : fit.linear.observations)
     face = face || observation->profile->setup.kind == Kind::face;
   const double found = straightness_error(model, *term, fit);
-  const double part = travel / kGoodTravel;
-  const double good = kGoodStraightness * (part < 1.0 ? part * part : part);
-  if (!face || found < kImplausible * good || !is_curved(*term, out)) return;
+  const double part = travel / kTravel;
+  const double most =
+      model.gates.most_straightness * kMicrometre * (part < 1.0 ? part * part : part);
+  if (!face || found < most || !is_curved(*term, out, model.gates)) return;
   out.implausible = "the fitted straightness is " + significant(found / kMicrometre, 2) +
                     " µm over " + significant(travel, 4) +
-                    " mm; a slide of 1 µm per 200 mm makes " + significant(good / kMicrometre, 2) +
-                    " µm there";
+                    " mm; the most a slide is taken to have there is " +
+                    significant(most / kMicrometre, 2) + " µm (" +
+                    significant(model.gates.most_straightness, 2) + " µm over 200 mm)";
   out.notes.push_back(out.implausible + ": look for another cause before blaming the slide");
 }
 
@@ -105,6 +107,17 @@ void explain_scaling(const Solution& fit, ModelResult& out) {
     text += "; multiplied by " + significant(std::sqrt(inflation), 2) +
             ", because the slow part of the residual is larger than noise";
   out.notes.push_back(std::move(text));
+}
+
+void explain_other_form(const Model& model, const Solution& fit, ModelResult& out) {
+  if (!fit.other_form) return;
+  const ModelTerm& form = *model.find_term(MotionError::straightness);
+  const std::string degree = form.effect->parameters().back().name.substr(1);
+  out.notes.push_back(
+      "the data refute degree " + degree + " of the " + form.name +
+      ": a curve beside it is likelier by a factor of e^" + significant(*fit.other_form, 2) +
+      "; every uncertainty is widened by what that curve could have put into the parameters, and "
+      "the coefficients describe no slide. Declare form = \"curve\", or a higher degree");
 }
 
 void explain_noise(const Solution& fit, ModelResult& out) {
@@ -129,6 +142,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   if (const std::optional<double> gap = neglected_height(model, fit))
     out.neglected_um = *gap / kMicrometre;
   explain_scaling(fit, out);
+  explain_other_form(model, fit, out);
   explain_noise(fit, out);
   check_plausibility(model, fit, out);
   for (const Observation& observation : model.observations) {

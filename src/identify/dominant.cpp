@@ -10,10 +10,6 @@
 namespace slideway {
 namespace {
 
-constexpr double kSignificant = 0.05;
-// A smaller lead of a correlation comes and goes with the next profile.
-constexpr double kClearRest = 0.8;  // of the variance the next effect leaves unexplained
-
 /// The shares of all effects and how each moves with amplitudes and shapes.
 struct Shares {
   Eigen::VectorXd share;     // #terms
@@ -21,9 +17,8 @@ struct Shares {
 };
 
 bool sees_two(const Model& model, const Profile& profile) {
-  return std::ranges::count_if(model.terms, [&](const ModelTerm& term) {
-           return term.effect->applies_to(profile.setup);
-         }) > 1;
+  return std::ranges::count_if(model.terms,
+                               [&](const ModelTerm& term) { return term.acts_on(profile); }) > 1;
 }
 
 /// Of one profile; nothing where the model puts nothing into it, or one effect only.
@@ -60,16 +55,17 @@ struct LeadByCorrelation {
   double score = 0.0, next = 0.0;
 };
 
-std::optional<LeadByCorrelation> lead_by_correlation(const RankingResult& ranking) {
-  std::map<std::string, int> seen;
-  for (const Ranking& entry : ranking.entries) ++seen[entry.profile];
+std::optional<LeadByCorrelation> lead_by_correlation(const RankingResult& ranking,
+                                                     const Gates& gates) {
+  std::map<std::string, int> effects_in;
+  for (const Ranking& entry : ranking.entries) ++effects_in[entry.profile];
   std::map<std::string, double> sums;
   std::set<std::string> profiles, significant_effects;
   for (const Ranking& entry : ranking.entries) {
-    if (seen[entry.profile] < 2) continue;
+    if (effects_in[entry.profile] < 2) continue;
     sums[entry.effect] += std::abs(entry.low_band);
     profiles.insert(entry.profile);
-    if (entry.p_value < kSignificant) significant_effects.insert(entry.effect);
+    if (entry.p_value < gates.ranking_p) significant_effects.insert(entry.effect);
   }
   if (sums.size() < 2) return std::nullopt;
   LeadByCorrelation out;
@@ -81,7 +77,7 @@ std::optional<LeadByCorrelation> lead_by_correlation(const RankingResult& rankin
       out.next = std::max(out.next, score);
   }
   const auto rest = [](double coefficient) { return 1.0 - coefficient * coefficient; };
-  const bool is_clear = rest(out.score) <= kClearRest * rest(out.next);
+  const bool is_clear = rest(out.score) <= gates.ranking_lead * rest(out.next);
   if (!is_clear || !significant_effects.contains(out.first)) return std::nullopt;
   return out;
 }
@@ -138,9 +134,9 @@ std::optional<LeadByFit> lead_by_fit(const Model& model, const Solution& fit) {
 }
 
 Dominant dominant_effects(const RankingResult& ranking, const std::optional<LeadByFit>& fit,
-                          const Identifiability& identifiability) {
+                          const Identifiability& identifiability, const Gates& gates) {
   Dominant out;
-  if (const auto lead = lead_by_correlation(ranking)) out.by_correlation = lead->first;
+  if (const auto lead = lead_by_correlation(ranking, gates)) out.by_correlation = lead->first;
   if (!fit) return out;
   out.doubt = doubt(*fit, identifiability);
   if (out.doubt.empty()) out.by_fit = fit->first;

@@ -46,7 +46,7 @@ Evidence evidence(const Model& model, const Solution& fit) {
   for (const ModelTerm& term : model.terms)
     for (const Parameter& parameter : term.effect->parameters())
       out.units.push_back(parameter.unit);
-  if (image.rows() == 0 || root.info() != Eigen::Success) return out;
+  if (image.rows() == 0 || root.info() != Eigen::Success || fit.estimate.curve) return out;
   Eigen::MatrixXd system(image.rows(), model.parameters() + 1);
   auto rows = system.leftCols(model.parameters());
   rows = root.matrixL().solve(image * compressed.triangle * to_amplitudes);

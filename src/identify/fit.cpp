@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "slideway/base/error.hpp"
 #include "slideway/identify/left_out.hpp"
@@ -16,6 +17,8 @@ constexpr int kMostRounds = 6;
 
 void require_enough_data(const Model& model) {
   Eigen::Index values = 0, unknowns = model.amplitudes() + model.shapes();
+  if (const ModelTerm* const curve = curve_term(model))
+    unknowns -= curve->effect->knots()->positions_mm.size();  // they have a prior
   for (const Observation* observation : fitted_observations(model)) {
     values += observation->values.size() - observation->left_out();
     unknowns += std::ssize(observation->nuisance_names);
@@ -46,32 +49,56 @@ Eigen::VectorXd parameter_scale(const Eigen::MatrixXd& jacobian, const Eigen::Ve
   return inverse.colwise().norm().transpose().unaryExpr(or_one);
 }
 
-bool is_linear_least_squares(const Model& model) {
-  return model.shapes() == 0 &&
+/// Whether the sum of squares is smooth about the estimate, which is inside all bounds.
+bool can_be_refined(const Model& model, const Solution& fit) {
+  const auto at_bound = [](bool met) { return met; };
+  const auto stepwise = [](const ModelTerm& term) {
+    return std::ranges::any_of(term.effect->shapes(), &Shape::stepwise);
+  };
+  return (fit.converged || model.shapes() == 0) &&
+         std::ranges::none_of(fit.shape_at_bound, at_bound) &&
+         std::ranges::none_of(model.terms, stepwise) &&
          std::ranges::all_of(model.observations, [](const Observation& observation) {
            return observation.profile->loss == Loss::none;
          });
 }
 
-/// Iterative refinement: what rounding has left of the normal equations is solved for once more.
+void move(const Compressed& compressed, const Eigen::VectorXd& change, Estimate& estimate) {
+  estimate.amplitudes += change.head(estimate.amplitudes.size());
+  estimate.shapes += change.tail(estimate.shapes.size());
+  for (std::size_t i = 0; i < compressed.profiles.size(); ++i)
+    estimate.nuisances[i].head(compressed.profiles[i].levelling()) +=
+        compressed.profiles[i].levelled(change);
+}
+
+/// Gauss-Newton steps as long as they become shorter. They do not look at the sum of squares: it is
+/// flat at the minimum, so that its rounding hides the second half of the digits. Of a linear
+/// problem: iterative refinement.
 Compressed refined(const Model& model, Solution& fit) {
-  constexpr double kLastDigits = 1e-15;
-  constexpr int kMostSteps = 3;
+  const bool is_linear = model.shapes() == 0;
+  constexpr double kNear = 0.01;         // standard deviations of the noise: where solvers end
+  constexpr double kEnough = 1e-10;      // of the noise: 10 digits where u is as large as the value
+  constexpr double kLastDigits = 1e-15;  // of what the model makes
+  constexpr double kShorter = 0.9;
+  const int most = is_linear ? 3 : 50;
   Compressed compressed = compress(fit.linear, fit.noise);
   fit.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
-  const Eigen::MatrixXd& basis = fit.rank.basis;
-  for (int step = 0; step < kMostSteps && is_linear_least_squares(model); ++step) {
+  double before = is_linear ? INFINITY : kNear;
+  for (int step = 0; step < most && can_be_refined(model, fit); ++step) {
     const Eigen::VectorXd change =
-        basis * (basis.transpose() * (compressed.triangle.transpose() * compressed.target));
-    const double size = compressed.scale.cwiseProduct(change).norm();
-    fit.estimate.amplitudes += change;
-    for (std::size_t i = 0; i < compressed.profiles.size(); ++i)
-      fit.estimate.nuisances[i].head(compressed.profiles[i].levelling()) +=
-          compressed.profiles[i].levelled(change);
+        fit.rank.basis *
+        (fit.rank.basis.transpose() * (compressed.triangle.transpose() * compressed.target));
+    const double size = (compressed.triangle * change).norm();
+    if (!(size < kShorter * before)) break;
+    before = size;
+    move(compressed, change, fit.estimate);
     settle_residuals(model, fit.estimate, fit.linear);
-    if (!(size > kLastDigits * compressed.scale.cwiseProduct(fit.estimate.amplitudes).norm()))
-      break;
+    Eigen::VectorXd all(change.size());
+    all << fit.estimate.amplitudes, fit.estimate.shapes;
+    const double enough = is_linear ? kLastDigits * (compressed.triangle * all).norm() : kEnough;
+    if (!(size > enough)) break;
     compressed = compress(fit.linear, fit.noise);
+    fit.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
   }
   return compressed;
 }
@@ -101,6 +128,24 @@ void conclude(const Model& model, Solution& fit) {
   fix_gauge(model, compressed, fit);
   const double inflation = fit.uncertainty.inflation;
   fit.uncertainty = assess(fit.linear, compressed, fit.noise, fit.rank.basis, inflation);
+  if (fit.estimate.curve)
+    fit.uncertainty.add(covariance_of_curve_prior(model, fit.linear, fit.noise, fit.estimate),
+                        compressed);
+}
+
+/// The noise under the model, and under that noise the prior of its curve.
+/// @return whether both are what they were
+bool settle(const Model& model, Solution& fit, Estimate& estimate,
+            std::optional<CurveEstimate>& curve) {
+  FitNoise noise = curve ? noise_under(beside_curve(model, fit.linear, *curve), model.gates)
+                         : noise_under(fit.linear, model.gates);
+  const bool settled = has_settled(fit.noise, noise.profiles);
+  fit.noise = std::move(noise.profiles);
+  fit.uncertainty.inflation = noise.inflation;
+  if (!curve) return settled;
+  curve = estimate_curve(model, fit.linear, fit.noise, estimate);
+  const CurvePrior before = std::exchange(*estimate.curve, curve->prior);
+  return settled && curve->prior == before;
 }
 
 }  // namespace
@@ -112,13 +157,14 @@ Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   Estimate start = initial_estimate(model, shapes);
   if (!shapes) scan_shapes(model, out.noise, start);
   out.linear = linearise(model, start);
+  std::optional<CurveEstimate> curve;
+  if (start.curve) {
+    curve = estimate_curve(model, out.linear, out.noise, start);
+    start.curve = curve->prior;
+  }
   SolveSummary solved = solve(model, out.linear, out.noise, start);
   for (int round = 0; round < kMostRounds; ++round) {
-    FitNoise noise = noise_under(out.linear, model.gates);
-    const bool settled = has_settled(out.noise, noise.profiles);
-    out.noise = std::move(noise.profiles);
-    out.uncertainty.inflation = noise.inflation;
-    if (settled) break;
+    if (settle(model, out, solved.estimate, curve)) break;
     solved = solve(model, out.linear, out.noise, solved.estimate);
   }
   out.estimate = solved.estimate;
@@ -149,7 +195,9 @@ FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes)
 }
 
 FittedModel fit_declared(const Problem& problem, const std::vector<Profile>& profiles) {
-  return fit_model(build_model(problem, profiles));
+  FittedModel out = fit_model(build_model(problem, profiles));
+  allow_for_other_form(problem, out);
+  return out;
 }
 
 }  // namespace slideway

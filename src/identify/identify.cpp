@@ -6,9 +6,12 @@
 #include <limits>
 
 #include "closure_summary.hpp"
+#include "repeats.hpp"
 #include "slideway/base/statistics.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/agreement.hpp"
 #include "slideway/identify/crosscheck.hpp"
+#include "slideway/identify/held_out.hpp"
 #include "slideway/identify/ranking.hpp"
 
 namespace slideway {
@@ -33,6 +36,9 @@ std::vector<OutlierSummary> largest_outliers(const Profile& profile) {
 InputSummary summarise_input(const Profile& profile) {
   InputSummary out{profile.name,       profile.file,           profile.format, profile.sha256,
                    profile.setup.kind, profile.setup.quantity, profile.role};
+  if (profile.setup.kind == Kind::face) out.azimuth_deg = profile.setup.azimuth_deg;
+  out.surface = profile.surface;
+  out.instrument = profile.instrument;
   out.samples = profile.values.size();
   out.missing = profile.missing;
   out.left_out = profile.left_out;
@@ -74,9 +80,14 @@ LowBandSummary summarise_low_band(const Observation& observation) {
           static_cast<std::size_t>(observation.values.size())};
 }
 
-}  // namespace
+/// What the low band of a profile will be; without values where the samples are too few.
+LowBandSummary planned_low_band(const Profile& profile, const LowBandOptions& options) {
+  const bool enough = (profile.positions.size() >> options.level) > 0;
+  return {profile.name, options.wavelet, options.level, options.boundary,
+          enough ? static_cast<std::size_t>(LowBand(options, profile.positions).values()) : 0};
+}
 
-Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles) {
+Result summarise_inputs(const Problem& problem, const std::vector<Profile>& profiles) {
   Result result;
   result.title = problem.title;
   result.version = SLIDEWAY_VERSION;
@@ -86,13 +97,22 @@ Result summarise_data(const Problem& problem, const std::vector<Profile>& profil
   return result;
 }
 
+}  // namespace
+
+Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles) {
+  Result result = summarise_inputs(problem, profiles);
+  for (const Profile& profile : profiles)
+    result.low_band.push_back(planned_low_band(profile, problem.low_band_of(profile)));
+  return result;
+}
+
 Result identify(const Problem& problem, const std::vector<Profile>& profiles, Scope scope) {
   return identify(problem, profiles, fit_declared(problem, profiles), scope);
 }
 
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
                 const FittedModel& declared, Scope scope, bool with_budget) {
-  Result result = summarise_data(problem, profiles);
+  Result result = summarise_inputs(problem, profiles);
   const auto& [model, fit] = declared;
   for (const Observation& observation : model.observations)
     result.low_band.push_back(summarise_low_band(observation));
@@ -100,19 +120,22 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
   result.travel = summarise_travel(problem.lever, model);
   if (scope != Scope::fit) {
     result.ranking = rank_effects(model, fit);
-    result.dominant =
-        dominant_effects(result.ranking, lead_by_fit(model, fit), summary.identifiability);
+    result.dominant = dominant_effects(result.ranking, lead_by_fit(model, fit),
+                                       summary.identifiability, model.gates);
   }
   if (scope == Scope::rank) return result;
   result.declared = summary;
-  set_final(problem, model, std::move(summary), scope, result);
+  set_final(problem, declared, std::move(summary), scope, result);
   return result;
 }
 
-void set_final(const Problem& problem, const Model& model, ModelResult summary, Scope scope,
+void set_final(const Problem& problem, const FittedModel& fitted, ModelResult summary, Scope scope,
                Result& result) {
   if (scope == Scope::identify) {
-    result.crosscheck.squareness = check_squareness(model, problem.runout, summary);
+    const auto& [model, fit] = fitted;
+    result.crosscheck = {check_squareness(model, problem.runout, summary),
+                         check_profiles(model, fit), check_held_out(model, fit),
+                         check_repeats(fit.linear, model.gates)};
   } else {
     result.crosscheck.squareness.emplace();
     result.crosscheck.squareness->reason = "this command makes no cross-check";
@@ -120,10 +143,23 @@ void set_final(const Problem& problem, const Model& model, ModelResult summary, 
   result.final = std::move(summary);
 }
 
+namespace {
+
+bool is_inconsistent(const Crosscheck& checks) {
+  return (checks.squareness && checks.squareness->verdict == Consistency::inconsistent) ||
+         std::ranges::any_of(checks.profiles,
+                             [](const ProfileCheck& check) {
+                               return check.verdict == Consistency::inconsistent;
+                             }) ||
+         std::ranges::any_of(checks.held_out, [](const HeldOutCheck& check) {
+           return check.verdict == HeldOutVerdict::does_not_fit;
+         });
+}
+
+}  // namespace
+
 bool is_negative(const Result& result) {
-  if (result.crosscheck.squareness &&
-      result.crosscheck.squareness->verdict == Consistency::inconsistent)
-    return true;
+  if (is_inconsistent(result.crosscheck)) return true;
   if (!result.final) return false;
   const auto matters = [](const UndeterminedDirection& direction) {
     return std::any_of(direction.combination.begin(), direction.combination.end(),

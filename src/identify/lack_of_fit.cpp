@@ -12,8 +12,6 @@
 namespace slideway {
 namespace {
 
-// Largest variance of ln(long-run variance) that a flat likelihood is taken for.
-constexpr double kMostSpread = 1.0;
 constexpr double kSpanned = 1e-6;  // of a unit cosine outside the model: it is the model's own
 
 /// White slow cosines of unit length, and their inner products with one another, the model's
@@ -84,7 +82,7 @@ LackOfFit lack_of_fit(const Linearisation& linear, const std::vector<Noise>& noi
                            .sum();
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const double share = static_cast<double>(rank * counts[i]) / static_cast<double>(total);
-    const double spread = std::min(noise[i].log_long_run_variance(), kMostSpread);
+    const double spread = std::min(noise[i].log_long_run_variance(), gates.noise_spread);
     const double size_spread = std::min(noise[i].log_size_variance(), spread);
     const double own = share * std::exp(0.5 * spread);
     const double below = noise[i].is_estimated() ? std::pow(gates.noise_extrapolation, 2) : 0.0;

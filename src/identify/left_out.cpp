@@ -69,13 +69,13 @@ ValueIndices undescribed_values(const Model& model, const Observation& observati
 
 ValueIndices values_beside_steps(const Model& model, const Estimate& estimate,
                                  const Observation& observation) {
-  const Setup& setup = observation.profile->setup;
-  if (setup.kind != Kind::face) return {};
+  const Profile& profile = *observation.profile;
+  if (profile.setup.kind != Kind::face) return {};
   const Radii radii(observation, model.machine);
   ValueIndices out;
   for (const ModelTerm& term : model.terms)
     for (std::size_t s = 0; s < term.effect->shapes().size(); ++s) {
-      if (!term.effect->shapes()[s].stepwise || !term.effect->applies_to(setup)) continue;
+      if (!term.effect->shapes()[s].stepwise || !term.acts_on(profile)) continue;
       const double place = estimate.shapes[term.first_shape + static_cast<Eigen::Index>(s)];
       const ValueIndices beside = radii.within(place, radii.width);
       out.insert(out.end(), beside.begin(), beside.end());

@@ -25,6 +25,8 @@ Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns) {
 }
 
 LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& targets) {
+  if (columns.cols() == 0)
+    return {Eigen::MatrixXd(0, targets.cols()), targets.colwise().squaredNorm()};
   const Eigen::VectorXd unit = to_unit(columns);
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
   solver.setThreshold(kRankTolerance);

@@ -7,14 +7,24 @@
 namespace slideway {
 namespace {
 
-/// Rows (prior - parameter) / u of all priors, with their derivatives.
+/// Rows (prior - parameter) / u of all priors, with their derivatives; a curve's are the last.
 void set_priors(const Model& model, const Estimate& estimate, Linearisation& linear) {
   const Eigen::Index a = model.amplitudes(), s = model.shapes();
   const ParameterValues values = all_parameters(model, estimate);
   std::size_t count = 0;
   for (const ModelTerm& term : model.terms) count += term.priors.size();
-  linear.prior_rows = Eigen::MatrixXd::Zero(count, a + s);
-  linear.prior_residuals.resize(count);
+  const ModelTerm* const curve = curve_term(model);
+  const std::optional<Knots> knots = curve ? curve->effect->knots() : std::nullopt;
+  linear.curve_rows = knots ? knots->positions_mm.size() : 0;
+  linear.prior_rows = Eigen::MatrixXd::Zero(count + linear.curve_rows, a + s);
+  linear.prior_residuals.resize(count + linear.curve_rows);
+  if (knots) {
+    const Eigen::Index first = curve->first_amplitude + knots->first;
+    auto rows = linear.prior_rows.block(count, first, linear.curve_rows, linear.curve_rows);
+    rows = curve_prior_rows(*knots, *estimate.curve);
+    linear.prior_residuals.tail(linear.curve_rows) =
+        -rows * estimate.amplitudes.segment(first, linear.curve_rows);
+  }
   Eigen::Index row = 0;
   for (const ModelTerm& term : model.terms)
     for (const Prior& prior : term.priors) {
@@ -68,24 +78,28 @@ Eigen::VectorXd fitted_nuisances(const Observation& observation, const Eigen::Ve
   return observation.nuisances.householderQr().solve(rest);
 }
 
+Eigen::MatrixXd linear_columns(const Model& model, const Estimate& estimate,
+                               const Observation& observation) {
+  const Eigen::Index a = model.amplitudes();
+  Eigen::MatrixXd columns(observation.values.size(), a + model.shapes());
+  for (const ModelTerm& term : model.terms) {
+    const auto shape = shapes_of(term, estimate.shapes);
+    const Eigen::Index count = term.effect->amplitudes();
+    columns.middleCols(term.first_amplitude, count) =
+        low_band_columns(model, term, observation, shape);
+    for (int j = 0; j < static_cast<int>(shape.size()); ++j)
+      columns.col(a + term.first_shape + j) =
+          low_band_derivatives(model, term, observation, shape, j) *
+          estimate.amplitudes.segment(term.first_amplitude, count);
+  }
+  return columns;
+}
+
 Linearisation linearise(const Model& model, const Estimate& estimate) {
   Linearisation linear;
-  const Eigen::Index a = model.amplitudes(), s = model.shapes();
   linear.observations = fitted_observations(model);
-  for (const Observation* observation : linear.observations) {
-    Eigen::MatrixXd columns(observation->values.size(), a + s);
-    for (const ModelTerm& term : model.terms) {
-      const auto shape = shapes_of(term, estimate.shapes);
-      const Eigen::Index count = term.effect->amplitudes();
-      columns.middleCols(term.first_amplitude, count) =
-          low_band_columns(model, term, *observation, shape);
-      for (int j = 0; j < static_cast<int>(shape.size()); ++j)
-        columns.col(a + term.first_shape + j) =
-            low_band_derivatives(model, term, *observation, shape, j) *
-            estimate.amplitudes.segment(term.first_amplitude, count);
-    }
-    linear.columns.push_back(std::move(columns));
-  }
+  for (const Observation* observation : linear.observations)
+    linear.columns.push_back(linear_columns(model, estimate, *observation));
   set_residuals(model, estimate, linear);
   return linear;
 }

@@ -25,6 +25,15 @@ std::array<Eigen::Index, 4> extreme_samples(const Profile& profile) {
 
 }  // namespace
 
+bool ModelTerm::acts_on(const Profile& profile) const {
+  return (profiles.empty() || std::ranges::count(profiles, profile.name) > 0) &&
+         effect->applies_to(profile.setup);
+}
+
+std::string term_name(const std::string& effect, const std::vector<std::string>& profiles) {
+  return profiles.empty() ? effect : effect + "[" + joined(profiles, ",") + "]";
+}
+
 SlideRange slide_range(const Profile& profile, const Machine& machine) {
   const Stations stations = profile.stations(machine);
   SlideRange range{INFINITY, -INFINITY};
@@ -151,7 +160,7 @@ Stations part_of(const Profile& profile, const Machine& machine, Eigen::Index fi
 }
 
 void require_metadata(const ModelTerm& term, const Profile& profile) {
-  if (!term.effect->applies_to(profile.setup)) return;
+  if (!term.acts_on(profile)) return;
   const std::vector<std::string> lacking = term.effect->lacking(profile.setup);
   if (!lacking.empty())
     throw UsageError("effect '" + term.name + "' needs " + joined(lacking) + " of profile '" +
@@ -191,10 +200,13 @@ const ModelTerm* Model::find_term(MotionError error) const {
 }
 
 void append_term(Model& model, const DeclaredEffect& declared, const TravelRange& range) {
-  ModelTerm term{
-      declared.name,   make_effect(declared.name, declared.options, model.machine, range),
-      declared.priors, model.amplitudes(),
-      model.shapes(),  model.parameters()};
+  ModelTerm term{term_name(declared.name, declared.options.profiles),
+                 make_effect(declared.name, declared.options, model.machine, range),
+                 declared.priors,
+                 model.amplitudes(),
+                 model.shapes(),
+                 model.parameters(),
+                 declared.options.profiles};
   const bool taken = std::any_of(model.terms.begin(), model.terms.end(),
                                  [&](const ModelTerm& other) { return other.name == term.name; });
   if (taken) term.name.append("[").append(declared.options.body.value_or("")).append("]");
@@ -206,9 +218,11 @@ void append_term(Model& model, const DeclaredEffect& declared, const TravelRange
 void remake_term(Model& model, const std::string& name, const EffectOptions& options) {
   const auto term = std::find_if(model.terms.begin(), model.terms.end(),
                                  [&](const ModelTerm& each) { return each.name == name; });
-  term->effect = make_effect(name, options, model.machine, model.range);
+  const std::string& effect = term->effect->description().name;
+  term->effect = make_effect(effect, options, model.machine, model.range);
   for (auto next = std::next(term); next != model.terms.end(); ++next) {
     const ModelTerm& before = *std::prev(next);
+    next->first_shape = before.first_shape + std::ssize(before.effect->shapes());
     next->first_amplitude = before.first_amplitude + before.effect->amplitudes();
     next->first_parameter = before.first_parameter + std::ssize(before.effect->parameters());
   }
@@ -234,8 +248,7 @@ Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
                                  const Observation& observation, std::span<const double> shape) {
   const Profile& profile = *observation.profile;
   const Eigen::Index amplitudes = term.effect->amplitudes();
-  if (!term.effect->applies_to(profile.setup))
-    return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
+  if (!term.acts_on(profile)) return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
   const auto fill = [&](Eigen::Index first, const Eigen::Ref<Eigen::MatrixXd>& rows) {
     term.effect->columns(part_of(profile, model.machine, first, rows.rows()), shape, rows);
   };
@@ -247,8 +260,7 @@ Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
                                      int which) {
   const Profile& profile = *observation.profile;
   const Eigen::Index amplitudes = term.effect->amplitudes();
-  if (!term.effect->applies_to(profile.setup))
-    return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
+  if (!term.acts_on(profile)) return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
   if (term.effect->shapes()[which].stepwise) {
     std::vector<double> below(shape.begin(), shape.end()), above = below;
     const double reach = 0.5 * (profile.setup.last_mm - profile.setup.first_mm) /
@@ -270,7 +282,7 @@ void effect_signal(const Model& model, const ModelTerm& term, const Profile& pro
                    const Eigen::VectorXd& amplitudes, std::span<const double> shape,
                    Eigen::Index first, Eigen::Ref<Eigen::VectorXd> signal) {
   constexpr Eigen::Index kBlock = 1024;  // samples: columns that stay in the cache
-  if (!term.effect->applies_to(profile.setup)) return void(signal.setZero());
+  if (!term.acts_on(profile)) return void(signal.setZero());
   Eigen::MatrixXd columns;
   for (Eigen::Index done = 0; done < signal.size(); done += kBlock) {
     const Eigen::Index count = std::min(kBlock, signal.size() - done);

@@ -134,6 +134,16 @@ Noise Noise::white(double standard_deviation, Eigen::Index n) {
   return {white_covariance(standard_deviation), n};
 }
 
+Noise Noise::scaled(double factor) const {
+  Noise out = *this;
+  out.covariance_ = slideway::scaled(covariance_, factor);
+  out.factor_ =
+      out.is_white() ? nullptr : std::make_shared<const MixtureFactor>(out.covariance_, values_);
+  for (Alternative& each : out.alternatives)
+    each.covariance = slideway::scaled(each.covariance, factor);
+  return out;
+}
+
 double Noise::standard_deviation() const {
   if (is_white() || values_ < 2) return std::sqrt(covariance_.variance());
   const auto n = static_cast<double>(values_);

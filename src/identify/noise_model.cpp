@@ -7,6 +7,7 @@
 #include <complex>
 #include <numeric>
 
+#include "repeats.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/identifiability.hpp"
@@ -184,37 +185,7 @@ std::optional<LinearProfile> fine_band(const Linearisation& linear, std::size_t 
                        observation.profile->standard_uncertainty};
 }
 
-/// Whether two profiles read one cut at the same places.
-bool is_repeat(const Observation& a, const Observation& b) {
-  const Setup &s = a.profile->setup, &t = b.profile->setup;
-  return a.values.size() == b.values.size() && a.profile->positions == b.profile->positions &&
-         s.kind == t.kind && s.quantity == t.quantity && s.base_mm == t.base_mm &&
-         s.center_mm == t.center_mm && s.spindle_position_mm == t.spindle_position_mm &&
-         s.z_mm == t.z_mm && s.overhang_mm == t.overhang_mm &&
-         s.feed_mm_per_min == t.feed_mm_per_min && s.spindle_rpm == t.spindle_rpm &&
-         s.cut_direction == t.cut_direction && s.cut_radius_mm == t.cut_radius_mm &&
-         s.start_s == t.start_s && s.traverse_mm_per_s == t.traverse_mm_per_s;
-}
-
-/// Deviations of a profile from the mean of its repeats, of the size its noise has; or nothing.
-std::optional<LinearProfile> from_repeats(const Linearisation& linear, std::size_t i) {
-  const Observation& observation = *linear.observations[i];
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(observation.values.size());
-  double count = 0.0;
-  for (std::size_t j = 0; j < linear.observations.size(); ++j)
-    if (is_repeat(observation, *linear.observations[j])) mean += linear.residuals[j], ++count;
-  if (count < 2.0) return std::nullopt;
-  Eigen::VectorXd deviation =
-      (linear.residuals[i] - mean / count) * std::sqrt(count / (count - 1.0));
-  constexpr double kCopy = 1e-9;  // of the values: one file given twice is no repeat
-  if (deviation.norm() <= kCopy * observation.values.norm()) return std::nullopt;
-  Eigen::MatrixXd basis = orthonormal(observation.nuisances);
-  deviation -= basis * (basis.transpose() * deviation).eval();
-  return LinearProfile{std::move(basis), Eigen::MatrixXd(deviation.size(), 0), std::move(deviation),
-                       observation.profile->standard_uncertainty};
-}
-
-/// What distinguishes instruments, as far as profiles tell: kind, quantity and low band.
+/// What distinguishes instruments and tools, as far as profiles tell: kind, quantity and low band.
 bool share_memory(const Observation& a, const Observation& b) {
   const auto step = [](const Observation& each) {
     return (each.profile->setup.last_mm - each.profile->setup.first_mm) /
@@ -222,7 +193,8 @@ bool share_memory(const Observation& a, const Observation& b) {
   };
   const LowBandOptions &s = a.low_band.options(), &t = b.low_band.options();
   return a.profile->setup.kind == b.profile->setup.kind &&
-         a.profile->setup.quantity == b.profile->setup.quantity && s.wavelet == t.wavelet &&
+         a.profile->setup.quantity == b.profile->setup.quantity &&
+         a.profile->instrument == b.profile->instrument && s.wavelet == t.wavelet &&
          s.level == t.level && std::abs(step(a) - step(b)) <= kSameStep * step(a);
 }
 
@@ -341,7 +313,7 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
   std::vector<std::optional<LinearProfile>> fine(count), repeats(count);
   parallel_for(count, [&](std::size_t i) {
     fine[i] = fine_band(linear, i, gates, suspect);
-    repeats[i] = from_repeats(linear, i);
+    repeats[i] = deviation_from_repeats(linear, i, gates);
   });
   // Noises from different parts of the residuals have no memory in common.
   const std::vector<std::size_t> pools = pools_of(linear);
@@ -366,6 +338,23 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
     Noise& noise = out[instrument.which[k]];
     if (!fine[instrument.which[k]] || found[k].long_run_deviation() > noise.long_run_deviation())
       noise = std::move(found[k]);
+  }
+  return out;
+}
+
+std::vector<Noise> noise_of_each(const Linearisation& all, const Gates& gates) {
+  std::vector<Noise> out;
+  for (std::size_t i = 0; i < all.observations.size(); ++i) {
+    const Eigen::MatrixXd& nuisances = all.observations[i]->nuisances;
+    Eigen::MatrixXd free(nuisances.rows(), nuisances.cols() + all.columns[i].cols());
+    free << nuisances, all.columns[i];
+    Linearisation own;
+    own.observations = {all.observations[i]};
+    own.columns = {all.columns[i]};
+    own.residuals = {all.residuals[i] - free * least_squares(free, all.residuals[i]).values};
+    own.prior_rows = all.prior_rows;
+    own.prior_residuals = Eigen::VectorXd::Zero(all.prior_residuals.size());
+    out.push_back(noise_beside(own, gates).front());
   }
   return out;
 }

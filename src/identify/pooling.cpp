@@ -18,11 +18,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRegion = 0.954499736103642;  // of two standard deviations
-constexpr double kCoverage = 2.0;              // of kRegion, the uncertainties known
-constexpr double kFalseAlarm = 0.05;           // of any item of a machine whose items all fit
-constexpr std::size_t kKnowsScatter = 5;       // items that tell a scatter from an outlier
-constexpr std::size_t kKnowsDrift = 6;         // items, all with a time, that tell a drift from one
+constexpr double kPoolRegion = 0.954499736103642;  // of two standard deviations
+constexpr double kPoolCoverage = 2.0;              // of kPoolRegion, the uncertainties known
+constexpr double kFalseAlarm = 0.05;               // of any item of a machine whose items all fit
+constexpr std::size_t kKnowsScatter = 5;           // items that tell a scatter from an outlier
+constexpr std::size_t kKnowsDrift = 6;  // items, all with a time, that tell a drift from one
 
 /// Rows [A | y] of an item for the carriages' parameters alone: what else it has is left free.
 MatrixXd carriage_rows(const PoolItem& item) {
@@ -216,8 +216,8 @@ std::vector<FittedParameter> estimates(const CarriageParameters& parameters, con
     if (parameter.identifiable) {
       parameter.value = solution.values[p];
       parameter.standard_uncertainty = scatter * std::sqrt(solution.covariance(p, p));
-      parameter.coverage_factor = kCoverage;
-      parameter.expanded_uncertainty = kCoverage * *parameter.standard_uncertainty;
+      parameter.coverage_factor = kPoolCoverage;
+      parameter.expanded_uncertainty = kPoolCoverage * *parameter.standard_uncertainty;
     }
     out.push_back(std::move(parameter));
   }
@@ -277,7 +277,7 @@ PooledMachine pool(const std::string& machine, const std::vector<PoolItem>& item
     const Misfit& misfit = comparison.of(i);
     if (misfit.degrees_of_freedom == 0) continue;
     out.items[i].p_value = misfit.p_value(out.scatter);
-    out.items[i].En = std::sqrt(misfit.chi_square / misfit.quantile(kRegion)) / out.scatter;
+    out.items[i].En = std::sqrt(misfit.chi_square / misfit.quantile(kPoolRegion)) / out.scatter;
   }
   const MatrixXd rows = stacked(parts, comparison.fits(), parts.size());
   out.parameters = estimates(parameters, rows, out.scatter);

@@ -12,6 +12,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/model.hpp"
 #include "slideway/identify/problem_tree.hpp"
 
 namespace slideway {
@@ -93,9 +94,20 @@ void read_profile_entries(const Section& root, const ProfileDefaults& defaults,
   if (problem.profiles.empty()) root.fail("profile", "missing; accepted: at least one [[profile]]");
 }
 
-EffectOptions read_effect_options(const Section& section) {
-  return {section.text("body"), section.integer("degree", 0, kHighestDegree),
-          section.magnitude("span_mm")};
+constexpr const char* kEffectOptions = "name body degree span_mm form resolution_mm profiles scope";
+
+EffectOptions read_effect_options(const Section& section, const Problem& problem) {
+  EffectOptions options{section.text("body"), section.integer("degree", 0, kHighestDegree),
+                        section.magnitude("span_mm")};
+  std::vector<std::string> names;
+  for (const ProfileEntry& entry : problem.profiles) names.push_back(entry.profile.name);
+  options.profiles = section.some_of("profiles", names).value_or(options.profiles);
+  if (section.has("profiles") && options.profiles.empty())
+    section.fail("profiles", "is empty; accepted: " + joined(names, " "));
+  if (const auto form = section.one_of("form", "polynomial curve"))
+    options.form = *form == "curve" ? Form::curve : Form::polynomial;
+  options.resolution_mm = section.magnitude("resolution_mm");
+  return options;
 }
 
 std::unique_ptr<Effect> made(const Section& section, const std::string& name,
@@ -106,6 +118,22 @@ std::unique_ptr<Effect> made(const Section& section, const std::string& name,
   } catch (const UsageError& error) {
     section.fail("", error.what());
   }
+}
+
+/// The options of an effect with one size in all its profiles, or one for each of them
+/// (scope = "profile") that can see it.
+std::vector<EffectOptions> by_scope(const Section& section, const Effect& effect,
+                                    const EffectOptions& options, const Problem& problem) {
+  if (section.one_of("scope", "all profile").value_or("all") == "all") return {options};
+  std::vector<EffectOptions> out;
+  for (const ProfileEntry& entry : problem.profiles) {
+    const std::string& name = entry.profile.name;
+    const bool named = options.profiles.empty() || std::ranges::count(options.profiles, name) > 0;
+    if (!named || !effect.applies_to(entry.profile.setup)) continue;
+    out.push_back(options);
+    out.back().profiles = {name};
+  }
+  return out;
 }
 
 std::string read_effect_name(const Section& section) {
@@ -135,22 +163,26 @@ std::vector<Prior> read_priors(const Section& effect, const std::vector<std::str
 }
 
 bool is_same_effect(const DeclaredEffect& a, const DeclaredEffect& b) {
-  return a.name == b.name &&
+  const std::vector<std::string>&p = a.options.profiles, &q = b.options.profiles;
+  const bool meet = p.empty() || q.empty() || std::ranges::find_first_of(p, q) != p.end();
+  return a.name == b.name && meet &&
          (!a.options.body || !b.options.body || a.options.body == b.options.body);
 }
 
 void read_effects(const Section& root, Problem& problem) {
   for (const Section& section : root.tables("effect")) {
-    section.accept("name body degree span_mm priors");
+    section.accept(kEffectOptions + std::string(" priors"));
     DeclaredEffect effect;
     effect.name = read_effect_name(section);
-    effect.options = read_effect_options(section);
-    effect.priors = read_priors(
-        section, names_of(made(section, effect.name, effect.options, problem)->parameters()));
+    effect.options = read_effect_options(section, problem);
+    const auto as_made = made(section, effect.name, effect.options, problem);
+    effect.priors = read_priors(section, names_of(as_made->parameters()));
     for (const DeclaredEffect& other : problem.effects)
       if (is_same_effect(effect, other))
-        section.fail("name", "'" + effect.name + "' is declared twice for the same body");
-    problem.effects.push_back(effect);
+        section.fail("name",
+                     "'" + effect.name + "' is declared twice for the same body and profile");
+    for (const EffectOptions& each : by_scope(section, *as_made, effect.options, problem))
+      problem.effects.push_back({effect.name, each, effect.priors});
   }
 }
 
@@ -215,7 +247,8 @@ std::map<std::string, double> read_true_parameters(const Section& truth, const P
   for (const DeclaredEffect& declared : problem.effects) {
     const auto effect = make_effect(declared.name, declared.options, problem.machine(), {});
     for (const Parameter& parameter : effect->parameters()) {
-      accepted.push_back(declared.name + "." + parameter.name);
+      accepted.push_back(term_name(declared.name, declared.options.profiles) + "." +
+                         parameter.name);
       known.emplace(accepted.back(), parameter);
     }
   }
@@ -227,18 +260,19 @@ std::map<std::string, double> read_true_parameters(const Section& truth, const P
 }
 
 /// A [[truth.effect]]: every key that is no option is a parameter of the effect.
-Truth::HiddenEffect read_hidden_effect(const Section& section, const Problem& problem) {
+void read_hidden_effect(const Section& section, const Problem& problem, Truth& truth) {
   Truth::HiddenEffect hidden;
   hidden.name = read_effect_name(section);
-  hidden.options = read_effect_options(section);
+  hidden.options = read_effect_options(section, problem);
   const auto effect = made(section, hidden.name, hidden.options, problem);
   std::vector<std::string> accepted = names_of(effect->parameters());
-  for (const char* option : {"name", "body", "degree", "span_mm"}) accepted.emplace_back(option);
+  for (const std::string& option : words(kEffectOptions)) accepted.push_back(option);
   section.accept(accepted);
   for (const Parameter& parameter : effect->parameters())
     if (const auto value = read_true_value(section, parameter.name, parameter))
       hidden.parameters[parameter.name] = *value;
-  return hidden;
+  for (const EffectOptions& each : by_scope(section, *effect, hidden.options, problem))
+    truth.effects.push_back({hidden.name, each, hidden.parameters});
 }
 
 std::optional<Truth> read_truth(const Section& root, const Problem& problem) {
@@ -253,7 +287,7 @@ std::optional<Truth> read_truth(const Section& root, const Problem& problem) {
     truth.samples = static_cast<std::size_t>(*samples);
   truth.parameters = read_true_parameters(*section, problem);
   for (const Section& effect : section->tables("effect"))
-    truth.effects.push_back(read_hidden_effect(effect, problem));
+    read_hidden_effect(effect, problem, truth);
   return truth;
 }
 

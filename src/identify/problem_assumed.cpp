@@ -67,6 +67,10 @@ std::vector<Assumption> of_profile(const Section& section, const Problem& proble
   const auto timed = std::ranges::count_if(
       problem.profiles, [](const ProfileEntry& each) { return has_time(each.profile.setup); });
   if (has_time(setup) && timed > 1) out.add("start_s", "0");
+  const bool turned = std::ranges::any_of(problem.profiles, [](const ProfileEntry& each) {
+    return each.lines.contains("azimuth_deg");
+  });
+  if (setup.kind == Kind::face && turned) out.add("azimuth_deg", "0");
   return out.list;
 }
 

@@ -12,9 +12,12 @@ namespace {
 
 constexpr std::string_view kKeys =
     "name file kind quantity position_column value_column position_unit value_unit delimiter "
-    "decimal encoding header_lines line base_mm window leave_out from_mm to_mm "
+    "decimal encoding header_lines line base_mm window mask leave_out from_mm to_mm "
     "center_mm z_mm overhang_mm feed_mm_per_min spindle_rpm cut_direction cut_radius_mm start_s "
-    "traverse_mm_per_s nose_radius_mm level wavelet boundary free loss standard_uncertainty role";
+    "traverse_mm_per_s nose_radius_mm azimuth_deg surface instrument level wavelet boundary free "
+    "loss standard_uncertainty role";
+
+constexpr double kFullTurn = 360.0;
 
 std::filesystem::path data_directory(const Section& section, const ProblemRules& rules) {
   if (!rules.data_dir)
@@ -57,7 +60,8 @@ void read_units(const Section& section, ProfileEntry& entry) {
   const auto value =
       section.unit("value_unit", value_units, slope ? " for a slope" : " for a height");
   const bool stated = !(position && value) && file_states_units(source.path);
-  if (!position && (!stated || source.window)) section.missing("position_unit", kPositionUnits);
+  if (!position && (!stated || source.window || !source.mask.empty()))
+    section.missing("position_unit", kPositionUnits);
   if (!value && (!stated || section.has("standard_uncertainty")))
     section.missing("value_unit", value_units);
   source.position_unit = position.value_or("");
@@ -84,6 +88,7 @@ void read_source(const Section& section, const ProblemRules& rules, ProfileEntry
   }
   source.request = read_request(section);
   source.window = section.range("window");
+  source.mask = section.ranges("mask");
   if (section.is_text("leave_out"))
     source.leave_out_spikes = section.one_of("leave_out", "spikes").has_value();
   else
@@ -123,6 +128,9 @@ void read_cut(const Section& section, bool position_is_time, Setup& setup) {
   setup.nose_radius_mm = section.magnitude("nose_radius_mm");
   if (setup.nose_radius_mm && setup.kind != Kind::face)
     section.fail("nose_radius_mm", "belongs to kind = \"face\" only");
+  setup.azimuth_deg = section.coordinate("azimuth_deg", kFullTurn).value_or(0.0);
+  if (section.has("azimuth_deg") && setup.kind != Kind::face)
+    section.fail("azimuth_deg", "belongs to kind = \"face\" only");
 }
 
 std::optional<Line> read_line(const Section& section) {
@@ -180,6 +188,8 @@ ProfileEntry read_profile_entry(const Section& section, const ProfileDefaults& d
   read_source(section, rules, entry);
   read_cut(section, entry.source.position_unit == "s", entry.profile.setup);
   entry.profile.line = read_line(section);
+  entry.profile.surface = section.text("surface");
+  entry.profile.instrument = section.text("instrument");
   if (std::ranges::any_of(words(kLowBandKeys), [&](const auto& key) { return section.has(key); }))
     entry.profile.low_band = read_low_band(section, defaults.low_band);
   read_treatment(section, entry);

@@ -128,25 +128,45 @@ std::optional<std::string> Section::column(std::string_view key) const {
   return text(key);
 }
 
-std::optional<std::array<double, 2>> Section::pair_of_numbers(std::string_view key) const {
-  const auto* array = std::get_if<TomlValue::Array>(&find(key)->value.data);
+namespace {
+
+std::optional<std::array<double, 2>> pair_of_numbers(const TomlValue& value) {
+  const auto* array = std::get_if<TomlValue::Array>(&value.data);
   if (array == nullptr || array->size() != 2) return std::nullopt;
   const std::optional<double> first = as_number((*array)[0]), second = as_number((*array)[1]);
   if (!first || !second || !std::isfinite(*first) || !std::isfinite(*second)) return std::nullopt;
   return std::array{*first, *second};
 }
 
+std::optional<std::pair<double, double>> range_in(const TomlValue& value) {
+  const auto pair = pair_of_numbers(value);
+  if (!pair || !((*pair)[0] < (*pair)[1])) return std::nullopt;
+  return std::pair((*pair)[0], (*pair)[1]);
+}
+
+}  // namespace
+
 std::optional<std::pair<double, double>> Section::range(std::string_view key) const {
   if (!has(key)) return std::nullopt;
-  const auto pair = pair_of_numbers(key);
-  if (!pair || !((*pair)[0] < (*pair)[1]))
-    fail(key, "must be two finite numbers, the smaller one first: [0.0, 10.0]");
-  return std::pair((*pair)[0], (*pair)[1]);
+  const auto range = range_in(find(key)->value);
+  if (!range) fail(key, "must be two finite numbers, the smaller one first: [0.0, 10.0]");
+  return range;
+}
+
+std::vector<std::pair<double, double>> Section::ranges(std::string_view key) const {
+  if (!has(key)) return {};
+  std::vector<std::pair<double, double>> out;
+  const auto* array = std::get_if<TomlValue::Array>(&find(key)->value.data);
+  for (const TomlValue& element : array ? *array : TomlValue::Array{})
+    if (const auto range = range_in(element)) out.push_back(*range);
+  if (!array || out.size() != array->size())
+    fail(key, "must be a list of ranges, each with the smaller number first: [[120.0, 140.0]]");
+  return out;
 }
 
 std::optional<std::array<double, 2>> Section::point(std::string_view key) const {
   if (!has(key)) return std::nullopt;
-  const auto pair = pair_of_numbers(key);
+  const auto pair = pair_of_numbers(find(key)->value);
   if (!pair || std::abs((*pair)[0]) > kLargest || std::abs((*pair)[1]) > kLargest)
     fail(key, "must be a place [x, y]: two numbers, 1e9 mm at most");
   return pair;

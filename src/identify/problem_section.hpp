@@ -44,6 +44,8 @@ class Section {
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const;  // one line, not empty
   [[nodiscard]] std::optional<std::string> column(std::string_view key) const;  // name or number
   [[nodiscard]] std::optional<std::pair<double, double>> range(std::string_view key) const;
+  /// A list of ranges.
+  [[nodiscard]] std::vector<std::pair<double, double>> ranges(std::string_view key) const;
   [[nodiscard]] std::optional<std::array<double, 2>> point(std::string_view key) const;
   /// A list of whole numbers from 1 on; all else is refused with `what`.
   [[nodiscard]] std::optional<std::vector<std::size_t>> indices(std::string_view key,
@@ -77,7 +79,6 @@ class Section {
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
  private:
-  [[nodiscard]] std::optional<std::array<double, 2>> pair_of_numbers(std::string_view key) const;
   [[nodiscard]] const TomlEntry* find(std::string_view key) const;
   [[nodiscard]] std::string called(std::string_view key) const;
   void check_word(std::string_view key, const std::string& word,

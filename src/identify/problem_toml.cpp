@@ -63,7 +63,7 @@ void point_to_simulation(toml::table& table, const ProfileEntry& entry, const st
   table.insert_or_assign("value_column", slope ? "slope_urad" : "z_um");
   table.insert_or_assign("value_unit", value_unit);
   for (const char* key :
-       {"window", "leave_out", "delimiter", "decimal", "encoding", "header_lines", "line"})
+       {"window", "mask", "leave_out", "delimiter", "decimal", "encoding", "header_lines", "line"})
     table.erase(key);
   if (entry.profile.standard_uncertainty && entry.source.value_unit != value_unit)
     table.insert_or_assign("standard_uncertainty",

@@ -18,8 +18,7 @@ namespace {
 
 constexpr std::size_t kRunningPoints = 200;
 constexpr std::size_t kMostLags = 200;  // of the low band, on either side
-constexpr double kAlike = 0.95;
-constexpr double kNoSignal = 1e-9;  // a signal this small beside the profile is rounding
+constexpr double kNoSignal = 1e-9;      // a signal this small beside the profile is rounding
 
 int most_lags(std::size_t n) { return static_cast<int>(std::min(kMostLags, n / 4)); }
 
@@ -125,7 +124,7 @@ RankingResult rank_effects(const Model& model, const Solution& fit) {
   for (const Observation& observation : model.observations) {
     std::vector<const ModelTerm*> terms;
     for (const ModelTerm& term : model.terms)
-      if (term.effect->applies_to(observation.profile->setup)) terms.push_back(&term);
+      if (term.acts_on(*observation.profile)) terms.push_back(&term);
     std::vector<Signal> signals(terms.size());
     std::vector<Ranking> entries(terms.size());
     const Eigen::VectorXd values = levelled_series(observation, observation.values);
@@ -142,7 +141,7 @@ RankingResult rank_effects(const Model& model, const Solution& fit) {
         "face cone and r^2 correlate to 0.968 with one another): a high coefficient alone does not "
         "select one");
   for (const CandidateCorrelation& pair : out.among_candidates)
-    if (std::abs(pair.coefficient) > kAlike)
+    if (std::abs(pair.coefficient) > model.gates.nearly_alike)
       out.notes.push_back("profile '" + pair.profile + "': " + pair.a + " and " + pair.b +
                           " are nearly one shape; their ranking says nothing");
   return out;

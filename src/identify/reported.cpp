@@ -8,7 +8,8 @@ namespace slideway {
 Reported::Reported(const Solution& solution, const MoreVariance& more)
     : solution_(solution), more_(more) {
   const auto is_declared = [](const Noise& noise) { return noise.declared; };
-  if (solution.linear.prior_rows.rows() > 0 || std::ranges::any_of(solution.noise, is_declared))
+  if (solution.linear.prior_rows.rows() > solution.linear.curve_rows ||
+      std::ranges::any_of(solution.noise, is_declared))
     return;
   most_freedom_ = 0.0;
   for (const Noise& noise : solution.noise) *most_freedom_ += noise.effective_values();

@@ -207,6 +207,21 @@ bool PriorResidual::Evaluate(const double* const* parameters, double* residuals,
   return std::isfinite(residuals[0]);
 }
 
+CurveResidual::CurveResidual(const Effect& effect, const Eigen::MatrixXd& rows)
+    : rows_(Eigen::MatrixXd::Zero(rows.rows(), effect.amplitudes())) {
+  rows_.middleCols(effect.knots()->first, rows.cols()) = rows;
+  set_num_residuals(static_cast<int>(rows_.rows()));
+  mutable_parameter_block_sizes()->push_back(effect.amplitudes());
+}
+
+bool CurveResidual::Evaluate(const double* const* parameters, double* residuals,
+                             double** jacobians) const {
+  Eigen::Map<Eigen::VectorXd> out(residuals, num_residuals());
+  out = rows_ * vector_of(parameters[0], rows_.cols());
+  give(jacobians, 0, rows_);
+  return out.allFinite();
+}
+
 EliminatedResidual::EliminatedResidual(const Model& model, const Linearisation& linear,
                                        const std::vector<Noise>& noise)
     : model_(model), observations_(linear.observations), noise_(noise) {

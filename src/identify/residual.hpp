@@ -92,6 +92,19 @@ class PriorResidual final : public ceres::CostFunction {
   Eigen::Index parameter_;
 };
 
+/// R c of a curve's amplitudes c. Parameter blocks: amplitudes of its term.
+class CurveResidual final : public ceres::CostFunction {
+ public:
+  /// @param rows  of the prior, curve_prior_rows()
+  CurveResidual(const Effect& effect, const Eigen::MatrixXd& rows);
+
+  bool Evaluate(const double* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  Eigen::MatrixXd rows_;
+};
+
 /// All profiles with the amplitudes and levelling eliminated: the residual of the best linear fit
 /// as a function of the shapes of all terms (variable projection, Kaufman's Jacobian), priors left
 /// aside. One parameter block of all shapes as the optimiser sees them.

@@ -18,7 +18,7 @@ std::vector<CoarseProfile> profiles_that_show(const Model& model, const ModelTer
   std::vector<CoarseProfile> out;
   for (const Observation& observation : model.observations) {
     const Profile& profile = *observation.profile;
-    if (profile.role != Role::fit || !term.effect->applies_to(profile.setup)) continue;
+    if (profile.role != Role::fit || !term.acts_on(profile)) continue;
     std::vector<double> positions = observation.low_band.positions(profile.positions);
     std::sort(positions.begin(), positions.end());
     out.push_back({&profile, std::move(positions)});
@@ -56,6 +56,7 @@ std::vector<double> shape_grid(const Model& model, const ModelTerm& term, int sh
   const Effect& effect = *term.effect;
   const Shape& kind = effect.shapes()[shape];
   const Parameter& parameter = effect.parameters()[kind.parameter];
+  if (kind.higher_order) return {0.0};
   const std::vector<CoarseProfile> profiles = profiles_that_show(model, term);
   std::vector<double> out;
   if (!profiles.empty() && kind.stepwise) out = places_between(profiles, model.machine);

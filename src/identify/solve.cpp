@@ -77,6 +77,11 @@ class FitProblem {
     for (Unknowns::Term& each : unknowns_.terms) {
       for (const Prior& prior : each.term->priors)
         problem_.AddResidualBlock(new PriorResidual(*each.term, prior), nullptr, blocks_of(each));
+      if (each.term == curve_term(model))
+        problem_.AddResidualBlock(
+            new CurveResidual(*each.term->effect,
+                              curve_prior_rows(*each.term->effect->knots(), *start.curve)),
+            nullptr, blocks_of(each));
       if (each.moves() && problem_.HasParameterBlock(each.shapes.data()))
         bound_shapes(*each.term, problem_, each.shapes.data(), 0);
     }
@@ -184,6 +189,8 @@ Estimate initial_estimate(const Model& model, const std::optional<Eigen::VectorX
     }
   for (const Observation* observation : fitted_observations(model))
     start.nuisances.emplace_back(Eigen::VectorXd::Zero(observation->nuisances.cols()));
+  if (const ModelTerm* const curve = curve_term(model))
+    start.curve = first_curve_prior(model, *curve->effect->knots());
   return start;
 }
 
@@ -214,7 +221,9 @@ SolveSummary solve(const Model& model, Linearisation& linear, const std::vector<
   const ceres::Solver::Summary summary = problem.solve();
   out.converged = summary.termination_type == ceres::CONVERGENCE;
   out.message = summary.message;
+  const std::optional<CurvePrior> curve = out.estimate.curve;
   out.estimate = problem.unknowns().estimate(model);
+  out.estimate.curve = curve;
   settle_residuals(model, out.estimate, linear);
   count_by_loss(linear, noise);
   out.shape_at_bound = bounds_met(model, out.estimate);

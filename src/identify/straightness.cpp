@@ -274,6 +274,8 @@ std::optional<Straightness> identified_straightness(const Model& model, const So
     out.reason = "these data do not tell the straightness from another effect";
     return out;
   }
+  if (const auto& prior = fit.estimate.curve; prior && term == curve_term(model))
+    out.form = CurveForm{prior->length_mm, prior->amplitude_mm / kMicrometre, prior->roughness};
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, travel.least, travel.greatest);
   const Reported reported(fit, more);
   const Locus slide(model, *term, fit, reported, on_slide());

@@ -12,7 +12,6 @@ namespace slideway {
 namespace {
 
 constexpr int kMemoryParameters = 2;  // size and length, or size and slope
-constexpr double kWorthNaming = 0.1;  // smallest |correlation| listed
 
 bool is_slope(const Observation& observation) {
   return observation.profile->setup.quantity == Quantity::slope;
@@ -76,7 +75,7 @@ void add_correlations(const Model& model, const Solution& fit, ModelResult& out)
       const double scale = std::sqrt(covariance(i, i) * covariance(j, j));
       if (!fit.null.identifiable[i] || !fit.null.identifiable[j] || !(scale > 0.0)) continue;
       const double correlation = std::clamp(covariance(i, j) / scale, -1.0, 1.0);
-      if (std::abs(correlation) >= kWorthNaming)
+      if (std::abs(correlation) >= model.gates.listed_correlation)
         out.correlations.emplace_back(names[i], names[j], correlation);
     }
 }
@@ -133,8 +132,10 @@ void add_noise(const Solution& fit, ModelResult& out) {
     out.degrees_of_freedom += n - static_cast<double>(observation.nuisances.cols());
     out.noise.push_back(std::move(summary));
   }
+  const Eigen::Index curve = fit.linear.curve_rows;
   out.degrees_of_freedom +=
-      static_cast<double>(fit.linear.prior_rows.rows() - fit.rank.basis.cols());
+      static_cast<double>(fit.linear.prior_rows.rows() - curve - fit.rank.basis.cols()) +
+      (fit.linear.prior_rows.bottomRows(curve) * fit.rank.basis).squaredNorm();
 }
 
 void add_residuals(const Model& model, const Solution& fit, ModelResult& out) {
@@ -170,12 +171,13 @@ void add_contributions(const Model& model, const Solution& fit, ModelResult& out
   for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
     const Observation& observation = *fit.linear.observations[i];
     const std::size_t first = out.contributions.size();
+    const Eigen::MatrixXd columns =
+        levelled(observation, fit.linear.columns[i].leftCols(model.amplitudes()));
     double total = 0.0;
     for (const ModelTerm& term : model.terms) {
       const Eigen::Index from = term.first_amplitude, count = term.effect->amplitudes();
-      Eigen::VectorXd signal = fit.linear.columns[i].middleCols(from, count) *
-                               fit.estimate.amplitudes.segment(from, count);
-      signal.array() -= signal.mean();
+      const Eigen::VectorXd signal =
+          columns.middleCols(from, count) * fit.estimate.amplitudes.segment(from, count);
       const double size = signal.norm() / per_sample(observation);
       total += size * size;
       Contribution& contribution = out.contributions.emplace_back();
@@ -191,6 +193,14 @@ void add_contributions(const Model& model, const Solution& fit, ModelResult& out
   }
 }
 
+/// Degrees of freedom of a profile's levelling: those of its noise.
+std::optional<double> levelling_freedom(const Solution& fit, std::size_t observation) {
+  const Noise& noise = fit.noise[observation];
+  if (!noise.is_estimated()) return std::nullopt;
+  const double spread = std::max(noise.log_long_run_variance(), 1e-9);
+  return std::max(1.0, std::min(noise.freedom, 2.0 / spread));
+}
+
 void add_nuisances(const Solution& fit, ModelResult& out) {
   for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
     const Observation& observation = *fit.linear.observations[i];
@@ -201,7 +211,8 @@ void add_nuisances(const Solution& fit, ModelResult& out) {
       nuisance.symbol = observation.nuisance_names[j];
       nuisance.unit = offset ? "um" : "rad";
       const double variance = fit.uncertainty.nuisance_covariances[i](j, j);
-      Reported::set(fit.estimate.nuisances[i][j], {std::sqrt(std::max(variance, 0.0)), {}},
+      Reported::set(fit.estimate.nuisances[i][j],
+                    Spread{std::sqrt(std::max(variance, 0.0)), levelling_freedom(fit, i)},
                     offset ? kMicrometre : 1.0, nuisance);
       out.nuisances.push_back(std::move(nuisance));
     }

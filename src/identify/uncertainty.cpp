@@ -92,6 +92,12 @@ Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
   return spread;
 }
 
+void Uncertainty::add(const Eigen::MatrixXd& more, const Compressed& compressed) {
+  const Eigen::MatrixXd to_basis =
+      basis.transpose() * compressed.triangle.transpose() * compressed.triangle;
+  covariance += to_basis * more * to_basis.transpose() / inflation;
+}
+
 Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
                    const std::vector<Noise>& noise, const Eigen::MatrixXd& basis,
                    double inflation) {
@@ -110,8 +116,11 @@ Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
         pools.size() > 1 ? noise[i].log_long_run_variance() : noise[i].log_size_variance();
     out.covariance += 2.0 * own * (information - information * information);
   }
-  for (const std::vector<std::size_t>& members : pools)
+  for (const std::vector<std::size_t>& members : pools) {
     out.allowed.push_back(allowed_noises(members, noise, linear, basis, out));
+    for (const auto& [probability, covariance] : out.allowed.back())
+      out.covariance += probability * (covariance - Eigen::MatrixXd::Identity(r, r));
+  }
   const Eigen::MatrixXd of_columns = basis * out.covariance * basis.transpose();
   for (const ProfileTriangle& profile : compressed.profiles)
     out.nuisance_covariances.emplace_back(inflation * profile.levelling_covariance(of_columns));

@@ -43,7 +43,8 @@ Conversion conversion(const ProfileSource& source, const TracePart& part, const 
       checked_unit(part.position_unit, source.position_unit, part.states_units, "position_unit");
   const std::string value_unit =
       checked_unit(part.value_unit, source.value_unit, part.states_units, "value_unit");
-  Conversion out{{}, scale_of(value_unit, setup.quantity == Quantity::slope), {}, source.window};
+  Conversion out{
+      {}, scale_of(value_unit, setup.quantity == Quantity::slope), {}, source.window, source.mask};
   if (source.position_unit == "s" && unit != "s")
     throw DataError("states positions in " + unit +
                     ", the problem position_unit = \"s\"; accepted: a length");
@@ -55,11 +56,14 @@ Conversion conversion(const ProfileSource& source, const TracePart& part, const 
                        "': positions in time need feed_mm_per_min to become mm");
     out.to_mm = {*setup.feed_mm_per_min, kMinute};
   }
-  if (out.window && unit != source.position_unit) {
-    const UnitScale asked = scale_of(source.position_unit, false);
-    for (double* end : {&out.window->first, &out.window->second})
+  if (unit == source.position_unit || !(out.window || !out.mask.empty())) return out;
+  const UnitScale asked = scale_of(source.position_unit, false);
+  const auto restate = [&](std::pair<double, double>& part) {
+    for (double* end : {&part.first, &part.second})
       *end = asked(*end) * out.position.divisor / out.position.factor;
-  }
+  };
+  if (out.window) restate(*out.window);
+  std::ranges::for_each(out.mask, restate);
   return out;
 }
 
@@ -109,7 +113,7 @@ void Intake::start(const TracePart& part) {
 
 void Intake::take(const TracePart& part) {
   if (!convert_) start(part);
-  const bool may_be_plain = !convert_->window && left_out_rows_.empty();
+  const bool may_be_plain = !convert_->window && convert_->mask.empty() && left_out_rows_.empty();
   constexpr std::size_t kCount = PlainSamples::kCount;
   for (std::size_t i = 0; i < part.positions.size();) {
     if (may_be_plain && kept_ > 1 && part.positions.size() - i >= kCount &&
@@ -133,6 +137,10 @@ void Intake::take_one(double given, double value_given) {
   };
   if (convert_->window && !(given >= convert_->window->first && given <= convert_->window->second))
     return;
+  if (convert_->is_masked(given)) {
+    ++masked_;
+    return pass_over(given);
+  }
   if (std::isnan(value_given)) {
     ++profile_->missing;
     return pass_over(given);
@@ -222,6 +230,8 @@ void Intake::finish() {
     notes.push_back(counted(profile_->missing, "missing point") + " left out");
   if (profile_->left_out > 0)
     notes.push_back(counted(profile_->left_out, "sample") + " left out by the problem's leave_out");
+  if (masked_ > 0) notes.push_back(counted(masked_, "sample") + " left out by the problem's mask");
+  profile_->left_out += masked_;
   if (block_ > 1) {
     notes.push_back(counted(kept_, "sample") + ", more than " +
                     std::to_string(source_->most_samples) + ": kept as means of " +

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -19,6 +20,12 @@ struct Conversion {
   UnitScale position, value;  // to mm, or s where positions are times; to mm or rad
   UnitScale to_mm;            // of a time
   std::optional<std::pair<double, double>> window;  // in the file's unit
+  std::vector<std::pair<double, double>> mask;      // in the file's unit
+
+  [[nodiscard]] bool is_masked(double given) const {
+    return std::ranges::any_of(
+        mask, [&](const auto& part) { return given >= part.first && given <= part.second; });
+  }
 };
 
 // Samples converted together, as most are: none missing, outside the window or out of order.
@@ -73,6 +80,7 @@ class Intake {
   std::vector<std::size_t> left_out_rows_;  // ascending
   PlainSamples plain_;
   std::size_t rows_ = 0, kept_ = 0;          // of the file; before means were taken
+  std::size_t masked_ = 0;                   // samples
   std::vector<Run> runs_;                    // kept samples whose rows follow one another
   double last_given_ = 0.0, last_mm_ = 0.0;  // positions
   std::pair<double, double> passed_over_{INFINITY, -INFINITY};  // smallest and largest of them, mm

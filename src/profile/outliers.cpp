@@ -42,7 +42,7 @@ double limit_of(double count) {
 }
 
 // Means of 2^halvings samples, and how far away their neighbours are.
-struct Look {
+struct Resolution {
   int halvings = 0;
   std::size_t lag = 1;
 };
@@ -56,12 +56,12 @@ struct Threshold {
 class Search {
  public:
   Search(std::span<const double> positions, std::span<const double> values);
-  // What is looked at, coarse first.
-  [[nodiscard]] std::vector<Look> looks() const;
-  // Whether no look would find a candidate, in one reading and without memory for means. Only of
+  // Coarse first.
+  [[nodiscard]] std::vector<Resolution> resolutions() const;
+  // Whether no resolution has a candidate, in one reading and without memory for means. Only of
   // profiles of even steps that are not short; false of others.
   [[nodiscard]] bool nothing_stands_out() const;
-  void look(const Look& look);
+  void search_at(const Resolution& resolution);
   [[nodiscard]] bool is_short() const { return values_.size() < kShort; }
   [[nodiscard]] std::size_t size() const { return values_.size(); }
   [[nodiscard]] std::vector<Outlier> found() const;
@@ -155,8 +155,8 @@ Search::Search(std::span<const double> positions, std::span<const double> values
   scale_ = level_.scale;
 }
 
-std::vector<Look> Search::looks() const {
-  std::vector<Look> out;
+std::vector<Resolution> Search::resolutions() const {
+  std::vector<Resolution> out;
   for (int halvings = kCoarsest; halvings >= 0 && !is_short(); --halvings)
     if ((size() >> halvings) >= kShort) out.push_back({halvings, 2});
   out.push_back({0, 1});
@@ -200,13 +200,13 @@ bool Search::nothing_stands_out() const {
   if (!uniform_ || is_short()) return false;
   const double limit = limit_of_errors();
   std::vector<Threshold> thresholds;
-  for (const Look& look : looks()) {
-    Level level = level_of(look.halvings);
-    level.lag = look.lag;
+  for (const Resolution& each : resolutions()) {
+    Level level = level_of(each.halvings);
+    level.lag = each.lag;
     level.find_scale(size() / level.block, [&](std::size_t i) {
       std::array<double, 5> means{};
       for (std::size_t k = 0; k < means.size(); ++k)
-        means[k] = mean(values_, (i + (k * look.lag) - 2 * look.lag) * level.block, level.block);
+        means[k] = mean(values_, (i + (k * each.lag) - 2 * each.lag) * level.block, level.block);
       return Level::cubic_error(&means[2], 1);
     });
     thresholds.push_back({level, limit * level.scale});
@@ -221,7 +221,7 @@ bool Search::nothing_stands_out() const {
   return std::ranges::find(found, 1) == found.end();
 }
 
-// Whether a mean of samples first ... last - 1 is one to look at.
+// Whether a mean of samples first ... last - 1 stands out.
 bool Search::any_above(std::vector<Threshold>& thresholds, std::size_t first, std::size_t last,
                        std::vector<double>& means) const {
   constexpr std::size_t kMargin = std::size_t{4} << kCoarsest;  // samples that judge the outermost
@@ -243,8 +243,8 @@ bool Search::any_above(std::vector<Threshold>& thresholds, std::size_t first, st
   return false;
 }
 
-void Search::look(const Look& look) {
-  const auto [halvings, lag] = look;
+void Search::search_at(const Resolution& resolution) {
+  const auto [halvings, lag] = resolution;
   if (level_.values.size() != size() >> halvings) fill_level(halvings);
   level_.lag = lag;
   level_.find_scale();
@@ -331,7 +331,7 @@ std::vector<Outlier> find_outliers(std::span<const double> positions,
   if (values.size() < kLeast) return {};
   Search search(positions, values);
   if (search.nothing_stands_out()) return {};
-  for (const Look& look : search.looks()) search.look(look);
+  for (const Resolution& each : search.resolutions()) search.search_at(each);
   return search.found();
 }
 

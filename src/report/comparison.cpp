@@ -120,7 +120,8 @@ Facts facts_of(const Analysis& analysis) {
   if (!analysis.trace) return facts;
   facts.emplace_back("closed loop", text_of(analysis.trace->verdict));
   std::vector<std::string> accepted;
-  for (const TraceRound& round : analysis.trace->rounds) accepted.push_back(round.accepted);
+  for (const TraceRound& round : analysis.trace->rounds)
+    accepted.push_back(term_name(round.accepted, round.profiles));
   facts.emplace_back("effects found", accepted.empty() ? "none" : joined(accepted));
   return facts;
 }

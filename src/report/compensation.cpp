@@ -69,13 +69,13 @@ std::string drowned(const Analysis& analysis, const Compensation& table,
   const Unnamed& left = *analysis.trace->unnamed;
   const bool slope = !left.rms_um;
   const double rms = left.rms_um.value_or(left.rms_urad.value_or(0.0));
-  std::vector<double> seen = form;
+  std::vector<double> reading = form;
   if (slope) {
     const double step = table.positions_mm[1] - table.positions_mm[0];
-    for (std::size_t i = 0; i + 1 < form.size(); ++i) seen[i] = (form[i + 1] - form[i]) / step;
-    seen.pop_back();
+    for (std::size_t i = 0; i + 1 < form.size(); ++i) reading[i] = (form[i + 1] - form[i]) / step;
+    reading.pop_back();
   }
-  const double size = rms_about_mean(seen) / (slope ? kMicroradian : kMicrometre);
+  const double size = rms_about_mean(reading) / (slope ? kMicroradian : kMicrometre);
   if (rms < size) return "";
   const std::string unit = slope ? " µrad" : " µm";
   return "the loop leaves " + significant(rms, 3) + unit +

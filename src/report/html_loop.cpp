@@ -32,13 +32,15 @@ Html accepted(const TraceResult& trace) {
                    {"on profiles left out of the fit", Column::number},
                    {"ΔBIC", Column::number},
                    {"p", Column::number},
+                   {"chosen by", Column::number},
                    {"not told apart from", Column::text}});
   for (const TraceRound& round : trace.rounds)
-    table.add({effect_title(round.accepted), values(round.parameters),
+    table.add({effect_title(names_of(round).front()), values(round.parameters),
                change(round.before_rms_um, round.after_rms_um, round.before_rms_urad,
                       round.after_rms_urad),
                change(round.before_holdout_rms_um, round.after_holdout_rms_um),
                html_number(round.delta_bic, 3), html_probability(round.p_value),
+               html_number(100.0 * round.stability, 2) + " %",
                or_dash(effect_titles(round.ambiguous_with, ", "))});
   return table.html();
 }
@@ -51,8 +53,9 @@ Html tried(const TraceResult& trace) {
                                     {"residual rms, µm", Column::number},
                                     {"why it is not in the model", Column::text}});
   const auto add = [&](const TriedEffect& effect, const std::string& round) {
-    table.add({effect_title(effect.effect), round, html_number(effect.delta_bic),
-               html_probability(effect.p_value), html_number(effect.rms_um),
+    table.add({effect_title(term_name(effect.effect, effect.profiles)), round,
+               html_number(effect.delta_bic), html_probability(effect.p_value),
+               html_number(effect.rms_um),
                with_titles(effect.refused.value_or("a rival of the accepted one"))});
   };
   for (std::size_t i = 0; i < trace.rounds.size(); ++i)
@@ -105,7 +108,7 @@ Html unnamed(const TraceResult& trace) {
              " (lack of fit " + html_p_value(left.p_value) + "), largest from " +
              html_number(left.from_mm) + " to " + html_number(left.to_mm) + " mm";
   if (!left.clock.empty())
-    out += "; most alike over " + Html(left.clock) + ", correlation length " +
+    out += "; best described as " + Html(likeness(left)) + ", correlation length " +
            html_number(left.correlation_length, 2) + " " + html_unit(left.correlation_unit);
   if (left.dominant_period_mm)
     out += "; dominant period " + html_number(left.dominant_period_mm) + " mm";

@@ -64,28 +64,42 @@ std::string subject(const Result& result) {
              : "Carriage errors of a lathe from the flatness of a turned face";
 }
 
+std::vector<std::string> remarks_on_columns(const Node& low_band, bool filtered) {
+  return {filtered ? "Low band: " + low_band["wavelet"].verbatim() + ", level " +
+                         std::to_string(low_band["level"].count()) + ", " +
+                         low_band["boundary"].verbatim() + "."
+                   : "Low band: none (level 0).",
+          "Neighbouring values are correlated. The effective values are the independent ones that "
+          "would hold the same information.",
+          "p is the probability that two unrelated series of so many effective values correlate as "
+          "much. A small p does not prove a cause: candidates that are alike correlate alike."};
+}
+
 std::string columns_page(const Node& document) {
-  HtmlTable table("Largest coefficient in the low band first",
-                  {{"candidate", Column::text},
-                   {"raw", Column::number},
-                   {"low band", Column::number},
-                   {"lag, rows", Column::number},
-                   {"at that lag", Column::number},
-                   {"effective values", Column::number},
-                   {"p", Column::number}});
+  const Node low_band = document["low_band"];
+  const bool filtered = low_band["level"].count() > 0;
+  std::vector<std::pair<Html, Column>> columns{{"candidate", Column::text},
+                                               {"raw", Column::number}};
+  if (filtered) columns.emplace_back("low band", Column::number);
+  for (const char* heading : {"lag, rows", "at that lag", "effective values", "p"})
+    columns.emplace_back(heading, Column::number);
+  HtmlTable table("Largest coefficient first", std::move(columns));
   const auto name = [](const Node& value) {
     return value.is_number() ? html_number(value.number(), 6) : Html(value.verbatim());
   };
-  for (const Node& row : document["ranking"].entries())
-    table.add({name(row["candidate"]), html_number(row["raw"].number(), 3),
-               html_number(row["low_band"].number(), 3), html_number(row["lag"].number(), 3),
-               html_number(row["lag_coefficient"].number(), 3),
-               html_number(row["effective_observations"].number(), 3),
-               html_probability(row["p_value"].number())});
+  for (const Node& row : document["ranking"].entries()) {
+    std::vector<Html> cells{name(row["candidate"]), html_number(row["raw"].number(), 3)};
+    if (filtered) cells.push_back(html_number(row["low_band"].number(), 3));
+    for (const char* key : {"lag", "lag_coefficient", "effective_observations"})
+      cells.push_back(html_number(row[key].number(), 3));
+    cells.push_back(html_probability(row["p_value"].number()));
+    table.add(cells);
+  }
   const Node signal = document["signal"];
   const std::string of = signal.is_number() ? std::to_string(signal.count()) : signal.verbatim();
-  return page_of("Correlation with column " + of, document["file"].verbatim() + " · slideway",
-                 {{"verdict", "Ranking", table.html()}});
+  return page_of(
+      "Correlation with column " + of, document["file"].verbatim() + " · slideway",
+      {{"verdict", "Ranking", table.html() + html_list(remarks_on_columns(low_band, filtered))}});
 }
 
 }  // namespace

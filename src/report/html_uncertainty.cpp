@@ -111,7 +111,14 @@ Html held_out(const Crosscheck& checks) {
   for (const ProfileCheck& check : checks.profiles)
     among.add({check.what, joined(check.profiles, " and "), html_number(check.En, 2),
                bold(text_of(check.verdict))});
-  return table.html() + among.html();
+  HtmlTable repeats("What repeats have in common and the model lacks", {{"profiles", Column::text},
+                                                                        {"F", Column::number},
+                                                                        {"p", Column::number},
+                                                                        {"verdict", Column::text}});
+  for (const PureErrorCheck& check : checks.repeats)
+    repeats.add({joined(check.profiles, " and "), html_number(check.F, 3),
+                 html_probability(check.p_value), bold(text_of(check.verdict))});
+  return table.html() + among.html() + repeats.html();
 }
 
 }  // namespace

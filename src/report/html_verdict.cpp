@@ -147,6 +147,15 @@ std::vector<Html> warnings(const Analysis& analysis) {
     out.push_back("The squareness of the fit and that of the run-out disagree, " +
                   html_symbol("E_n") + " = " + html_number(angle->En, 2) +
                   " > 1: " + angle->reason + ".");
+  for (const ProfileCheck& check : result.crosscheck.profiles)
+    if (check.verdict == Consistency::inconsistent)
+      out.push_back(effect_title(check.what) + " of " + joined(check.profiles, " and ") +
+                    " disagree, " + html_symbol("E_n") + " = " + html_number(check.En, 2) + ".");
+  for (const HeldOutCheck& check : result.crosscheck.held_out)
+    if (check.verdict == HeldOutVerdict::does_not_fit)
+      out.push_back(check.profile + ", held out, does not fit: off by " +
+                    html_size(check.largest_um, check.largest_urad) + " at " +
+                    html_number(check.at_mm) + " mm.");
   if (result.final)
     for (const UndeterminedDirection* direction : open_directions(*result.final)) {
       std::vector<std::string> names;

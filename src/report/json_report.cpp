@@ -21,7 +21,8 @@ inline constexpr auto kRecord<DataReport> =
     record("DataReport", "What the profiles are.", field("schema", &DataReport::schema),
            field("version", kOfData<&Result::version>), field("title", kOfData<&Result::title>),
            field("about", kOfData<&Result::about>), field("assumed", kOfData<&Result::assumed>),
-           field("inputs", kOfData<&Result::inputs>), field("closure", kOfData<&Result::closure>));
+           field("inputs", kOfData<&Result::inputs>), field("low_band", kOfData<&Result::low_band>),
+           field("closure", kOfData<&Result::closure>));
 
 namespace {
 

@@ -8,18 +8,27 @@
 #include "slideway/base/units.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/identifiability.hpp"
+#include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "text_parts.hpp"
 
 namespace slideway {
 namespace {
 
-constexpr double kHarmless = 0.1;        // of U: a shift that is none of the digits that matter
-constexpr std::size_t kFewLetters = 36;  // names that leave room for a sentence
+constexpr std::size_t kFewLetters = 38;            // names that leave room for a sentence
+constexpr std::size_t kShortNames = 30;            // and for its end
+constexpr std::size_t kBoxText = kLineWidth - 11;  // beside the label
 
-bool is_harmless(const Result& result) {
-  const std::optional<Shift> shift = largest_shift(result);
-  return shift && std::abs(shift->in_expanded_uncertainties) <= kHarmless;
+/// Of the declared numbers, in U: what is no alarm.
+double harmless_shift(const TraceResult& trace) {
+  for (const auto& [name, value] : trace.gates)
+    if (name == "harmless_shift") return value;
+  return Gates{}.harmless_shift;
+}
+
+bool is_harmless(const Analysis& analysis) {
+  const std::optional<Shift> shift = largest_shift(analysis.result);
+  return shift && std::abs(shift->in_expanded_uncertainties) <= harmless_shift(*analysis.trace);
 }
 
 std::string in_expanded_uncertainties(double shift) {
@@ -29,11 +38,42 @@ std::string in_expanded_uncertainties(double shift) {
 std::string found(const TraceResult& trace) {
   std::vector<std::string> out;
   for (const TraceRound& round : trace.rounds) {
-    std::vector<std::string> names{round.accepted};
-    names.insert(names.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
-    out.push_back(effect_titles(names, " or "));
+    out.push_back(effect_titles(names_of(round), " or "));
   }
   return joined(out, " and ");
+}
+
+/// The same in so many letters, if it can be: rivals are counted, then the last effects, and the
+/// rivals are left out.
+std::string found_in_brief(const TraceResult& trace, std::size_t letters) {
+  const std::size_t count = trace.rounds.size();
+  const auto first = [&](std::size_t named, bool with_rivals) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < named; ++i) {
+      const TraceRound& round = trace.rounds[i];
+      const std::size_t rivals = with_rivals ? round.ambiguous_with.size() : 0;
+      names.push_back(effect_title(round.accepted) +
+                      (rivals > 0 ? " (" + counted(rivals, "rival") + ")" : std::string()));
+    }
+    if (named < count) names.push_back(std::to_string(count - named) + " more");
+    return joined(names, " and ");
+  };
+  std::string out = found(trace);
+  for (std::size_t named = count; named > 0 && code_points(out) > letters; --named)
+    out = first(named, true);
+  return code_points(out) > letters ? first(1, false) : out;
+}
+
+/// Root mean square of what the missing effects make in the profiles, "" where it is not known.
+std::string size_of_missing(const Result& result) {
+  const auto size = [](const std::optional<double>& before, const std::optional<double>& after) {
+    return before && after && *before > *after
+               ? std::optional(std::sqrt(*before * *before - *after * *after))
+               : std::nullopt;
+  };
+  const auto um = size(result.declared->rms_um, result.final->rms_um),
+             urad = size(result.declared->rms_urad, result.final->rms_urad);
+  return um || urad ? ", " + size_text(um, urad, 2) + " rms" : "";
 }
 
 std::string left_over(const TraceResult& trace) {
@@ -56,9 +96,12 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   if (!analysis.trace)
     return say(Alarm::plain, "Fitted", "the declared model; no missing effect was looked for");
   const TraceResult& trace = *analysis.trace;
+  if (!trace.blunders.empty())
+    return say(Alarm::bad, "Blunder",
+               "profile " + trace.blunders.front().profile + " disagrees with the others: " +
+                   std::string(text_of(trace.blunders.front().what)));
   const std::string names = found(trace);
   const bool few = names.size() <= kFewLetters;
-  const std::string beside = trace.rounds.empty() ? "" : ", beside what was found";
   switch (trace.verdict) {
     case TraceVerdict::nothing_missing:
       return say(Alarm::good, "Nothing missing", "the model explains the profiles down to noise");
@@ -67,19 +110,19 @@ void say_verdict(const Analysis& analysis, Summary& out) {
           Alarm::good, "Explained",
           (few ? names + " was" : "what is named below was") + " missing and is in the model now");
     case TraceVerdict::ambiguous:
-      if (is_harmless(analysis.result))
+      if (is_harmless(analysis))
         return say(Alarm::plain, "Ambiguous, without harm",
-                   "what is missing moves nothing by 0.1 U");
+                   "what is missing moves nothing by " + number(harmless_shift(trace), 2) + " U");
       return say(Alarm::warn, "Ambiguous",
-                 few ? names + " is missing: the data cannot tell which"
+                 few ? names + " is missing" +
+                           (names.size() < kShortNames ? ": the data cannot tell which" : "")
                      : "the data cannot tell which effect is missing");
     case TraceVerdict::not_identifiable:
       return say(Alarm::bad, "Not identifiable", "the data cannot tell what made this form");
     case TraceVerdict::unnamed:
       break;
   }
-  say(Alarm::bad, "Unnamed",
-      "structure is left that no known effect explains" + left_over(trace) + beside);
+  say(Alarm::bad, "Unnamed", "no known effect explains what is left" + left_over(trace));
 }
 
 std::string straightness_of(const Result& result) {
@@ -106,24 +149,29 @@ std::string squareness_of(const Result& result) {
 
 void say_crosscheck(const Result& result, Summary& out) {
   const Crosscheck& checks = result.crosscheck;
-  std::vector<std::string> parts;
+  std::vector<std::string> parts, consistent;
   const auto& angle = checks.squareness;
   if (angle && angle->En) {
     QuantityValue indirect;
     indirect.value = angle->indirect_rad;
     indirect.expanded_uncertainty = angle->indirect_U_rad;
-    parts.push_back(
-        std::string(angle->verdict == Consistency::inconsistent ? "INCONSISTENT" : "consistent") +
-        " with the run-out, Eq. (21): " + value_text(indirect, kMicroradian) +
-        " µm/m, E_n = " + number(*angle->En, 2));
+    const bool is_consistent = angle->verdict != Consistency::inconsistent;
+    (is_consistent ? consistent : parts)
+        .push_back(std::string(is_consistent ? "consistent" : "INCONSISTENT") +
+                   " with the run-out, Eq. (21): " + value_text(indirect, kMicroradian) +
+                   " µm/m, E_n = " + number(*angle->En, 2));
   }
   for (const ProfileCheck& check : checks.profiles)
     if (check.verdict == Consistency::inconsistent)
       parts.push_back("INCONSISTENT: " + check.what + " of " + joined(check.profiles, " and ") +
                       (check.En ? ", E_n = " + number(*check.En, 2) : ""));
-  for (const HeldOutCheck& check : checks.held_out)
-    parts.push_back(check.profile + ", held out, " +
-                    (check.verdict == HeldOutVerdict::fits ? "fits" : "DOES NOT FIT"));
+  for (const HeldOutCheck& check : checks.held_out) {
+    const bool fits = check.verdict == HeldOutVerdict::fits;
+    (fits ? consistent : parts)
+        .push_back(check.profile + ", held out, " +
+                   (fits ? "fits" : "DOES NOT FIT at " + number(check.at_mm, 4) + " mm"));
+  }
+  std::ranges::move(consistent, std::back_inserter(parts));
   out.has_crosscheck = !parts.empty();
   if (parts.empty())
     parts.push_back("none" + (angle && !angle->reason.empty() ? ": " + angle->reason : ""));
@@ -131,22 +179,33 @@ void say_crosscheck(const Result& result, Summary& out) {
 }
 
 void say_missing(const Analysis& analysis, Summary& out) {
-  out.missing = "nothing that these data show";
-  if (!analysis.trace) out.missing = "not looked for";
+  out.missing = analysis.trace ? "nothing that these data show" : "not looked for";
+  if (analysis.trace && analysis.trace->verdict == TraceVerdict::unnamed)
+    out.missing = "nothing that has a name";
+  if (analysis.trace && !analysis.trace->blunders.empty())
+    out.missing = "not looked for while a profile has a blunder";
+  out.missing_in_brief = out.missing;
   if (!was_extended(analysis)) return;
   out.has_missing = true;
-  out.missing = found(*analysis.trace);
-  if (const auto shift = largest_shift(analysis.result))
-    out.missing = "moved " + shift->what + " by " +
-                  in_expanded_uncertainties(shift->in_expanded_uncertainties) + ": " + out.missing;
+  std::string moved, size;
+  const auto shift = largest_shift(analysis.result);
+  if (shift && std::abs(shift->in_expanded_uncertainties) > harmless_shift(*analysis.trace))
+    moved = "moved " + shift->what + " by " +
+            in_expanded_uncertainties(shift->in_expanded_uncertainties) + ": ";
+  else
+    size = size_of_missing(analysis.result);
+  const std::size_t left = kBoxText - std::min(kBoxText, code_points(moved + size));
+  out.missing = moved + found(*analysis.trace) + size;
+  out.missing_in_brief = moved + found_in_brief(*analysis.trace, left) + size;
 }
 
 std::string next_step(const Analysis& analysis) {
   const Result& result = analysis.result;
   if (!result.final) return "slideway identify, which fits and looks for what is missing";
+  if (analysis.trace && !analysis.trace->blunders.empty()) return analysis.trace->advice.front();
   for (const UndeterminedDirection* direction : open_directions(*result.final))
     if (!direction->advice.empty()) return with_titles(direction->advice);
-  if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(result))
+  if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(analysis))
     return "none is needed for these numbers";
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::inconsistent)
@@ -161,9 +220,16 @@ std::string next_step(const Analysis& analysis) {
 
 }  // namespace
 
+std::vector<std::string> names_of(const TraceRound& round) {
+  std::vector<std::string> names{term_name(round.accepted, round.profiles)};
+  names.insert(names.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
+  return names;
+}
+
 std::string effect_title(const std::string& name) {
+  if (name == "unnamed") return "something without a name";
   std::string title = name;
-  std::ranges::replace(title, '_', ' ');
+  std::replace(title.begin(), std::ranges::find(title, '['), '_', ' ');
   return title;
 }
 
@@ -201,6 +267,17 @@ bool is_squareness(const FittedParameter& parameter) {
 
 bool is_vertical(const std::string& effect) {
   return motion_error_of(effect) == MotionError::vertical_straightness;
+}
+
+std::string likeness(const Unnamed& left) {
+  constexpr const char* kVariables[][2] = {{"r", "the slide coordinate"},
+                                           {"t", "the cutting time"},
+                                           {"s", "the cutting distance"},
+                                           {"X", "the trace position"}};
+  for (const auto& [symbol, variable] : kVariables)
+    if (left.clock == symbol) return std::string("a curve over ") + variable;
+  return left.clock == "per profile" ? "a curve of its own in every profile"
+                                     : "a curve in " + left.clock;
 }
 
 std::string in_sentence(std::string text) {
@@ -270,6 +347,8 @@ Summary summary_of(const Analysis& analysis) {
   say_crosscheck(analysis.result, out);
   say_missing(analysis, out);
   out.next = next_step(analysis);
+  out.next_in_brief =
+      code_points(out.next) > kBoxText ? out.next.substr(0, out.next.find("; ")) : out.next;
   return out;
 }
 

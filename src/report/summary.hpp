@@ -21,13 +21,17 @@ struct Summary {
   std::string crosscheck;
   std::string missing;  // what was missing and what that had done
   std::string next;
+  std::string missing_in_brief, next_in_brief;  // in a line of the box, if it can be
   bool has_crosscheck = false, has_missing = false;
 };
 
 Summary summary_of(const Analysis& analysis);
 
-/// An effect's name for people: "thermal_drift" as "thermal drift".
+/// An effect's name for people: "thermal_drift" as "thermal drift", "unnamed" as "something without
+/// a name".
 std::string effect_title(const std::string& name);
+// An accepted effect, with the profiles it is confined to, and its rivals.
+std::vector<std::string> names_of(const TraceRound& round);
 std::string effect_titles(const std::vector<std::string>& names, const std::string& separator);
 /// "straightness.b2" with its symbol: "straightness b_2".
 std::string parameter_title(const FittedParameter& parameter);
@@ -39,6 +43,9 @@ bool is_squareness(const FittedParameter& parameter);
 /// Whether an effect is the pitch that the form of the vertical guideway makes.
 bool is_vertical(const std::string& effect);
 
+/// What has no name, as a curve over a variable or in a profile: "a curve in cut3 alone".
+std::string likeness(const Unnamed& left);
+
 /// With a capital and a full stop.
 std::string in_sentence(std::string text);
 
@@ -47,8 +54,9 @@ std::string value_of(const Assumption& assumption);
 
 /// The declared quantity that the missing effects had moved most.
 struct Shift {
-  std::string what;   // for people
-  double in_expanded_uncertainties = 0.0;  // declared minus final, in expanded uncertainties of the final
+  std::string what;  // for people
+  double in_expanded_uncertainties =
+      0.0;  // declared minus final, in expanded uncertainties of the final
 };
 
 /// None where the loop has added nothing or nothing can be compared.

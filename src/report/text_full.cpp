@@ -216,7 +216,7 @@ std::string residuals(const ModelResult& model) {
     for (const Contribution& c : model.contributions)
       shares.add({effect_title(c.effect), c.profile, size_text(c.rms_um, c.rms_urad),
                   fixed_point(100.0 * c.share, 1) + " %"});
-    out += heading("Share of each effect in the low band at the fitted values") + shares.text();
+    out += heading("Share of each effect in the levelled low band") + shares.text();
   }
   if (!model.residuals.empty()) {
     TextTable table({"profile", "role", "rms", "p-v"},
@@ -251,8 +251,8 @@ std::string squareness_check(const SquarenessCheck& check) {
   const auto amplitude = [](const std::optional<double>& um) {
     return um ? number(*um, 4) + " µm" : std::string("unknown");
   };
-  const bool told = check.verdict == Consistency::inconsistent;  // in the reason
-  if (!told && check.travel_mm && (check.fit_amplitude_um || check.indirect_amplitude_um))
+  const bool is_explained = check.verdict == Consistency::inconsistent;  // with these numbers
+  if (!is_explained && check.travel_mm && (check.fit_amplitude_um || check.indirect_amplitude_um))
     out += "Over the travel of " + number(*check.travel_mm, 5) + " mm that is " +
            amplitude(check.fit_amplitude_um) + " by the fit and " +
            amplitude(check.indirect_amplitude_um) + " by the run-out.";
@@ -269,6 +269,12 @@ std::string crosscheck(const Crosscheck& checks) {
                 number(check.chi2, 3) + ", p = " + probability(check.p_value) + "), off by up to " +
                 size_text(check.largest_um, check.largest_urad) + " at " + number(check.at_mm, 4) +
                 " mm");
+  for (const PureErrorCheck& check : checks.repeats)
+    out += note("repeats " + joined(check.profiles, " and ") + ": what they have in common " +
+                (check.verdict == RepeatFit::fits ? "is no more than noise"
+                                                  : "is LACK OF FIT of the model") +
+                " (F = " + number(check.F, 3) + ", p = " + probability(check.p_value) + ", " +
+                size_text(check.common_um, check.common_urad) + " rms)");
   return out.empty() ? "" : heading("Cross-check") + out;
 }
 
@@ -290,7 +296,7 @@ std::string in_words(const Combination& terms, const ModelResult& model) {
 
 std::string data_text(const Result& result) {
   return heading("slideway " + result.version + ": " + result.title).substr(1) + inputs(result) +
-         assumed(result) + closure(result);
+         low_band(result) + assumed(result) + closure(result);
 }
 
 std::string full_text(const Analysis& analysis) {

@@ -71,7 +71,8 @@ std::vector<std::string> first_lines(std::vector<std::string> lines, std::size_t
 
 // --- the box ---------------------------------------------------------------------------------
 
-/// Up to six lines; long entries give way from the last one up, the verdict and the numbers last.
+/// Up to six lines. Where a sentence needs a second one, entries that say nothing leave; only then
+/// long entries are cut, from the last one up, the verdict and the numbers last.
 std::string box(const Summary& summary, const std::string& page) {
   std::vector<std::vector<std::string>> entries;
   const auto add = [&](const char* label, const std::string& words) {
@@ -84,11 +85,18 @@ std::string box(const Summary& summary, const std::string& page) {
   add("Verdict", summary.badge + ": " + summary.verdict + ".");
   add("Result", summary.straightness + "; squareness " + summary.squareness);
   add("Check", summary.crosscheck);
-  add("Missing", summary.missing);
-  add("Next", summary.next);
+  add("Missing", summary.missing_in_brief);
+  add("Next", summary.next_in_brief);
   add("Page", page.empty() ? "none was written; --html FILE writes it" : page);
   std::size_t count = 0;
   for (const auto& lines : entries) count += lines.size();
+  const auto leave = [&](std::size_t entry, bool says_nothing) {
+    if (count <= kBoxLines || !says_nothing) return;
+    count -= entries[entry].size();
+    entries[entry].clear();
+  };
+  leave(5, page.empty());
+  leave(3, !summary.has_missing);
   for (const std::size_t give : {4U, 5U, 3U, 2U, 0U, 1U})
     while (count > kBoxLines && entries[give].size() > 1) {
       entries[give] = first_lines(entries[give], entries[give].size() - 1);

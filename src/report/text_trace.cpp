@@ -16,6 +16,9 @@ using Column = TextTable::Column;
 std::string last_name(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
 std::string verdict(const TraceResult& trace) {
+  if (!trace.blunders.empty())
+    return "profile " + trace.blunders.front().profile +
+           " disagrees with the others; no effect was looked for.";
   switch (trace.verdict) {
     case TraceVerdict::nothing_missing:
       return "nothing is missing that these data tell from noise (lack of fit p = " +
@@ -34,14 +37,13 @@ std::string verdict(const TraceResult& trace) {
 }
 
 std::string round(const TraceRound& round, std::size_t index) {
-  std::vector<std::string> names{round.accepted};
-  names.insert(names.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
-  std::string text =
-      item(std::to_string(index + 1) + ". " + effect_titles(names, " or ") + ": residual " +
-           residual_change(round.before_rms_um, round.after_rms_um, round.before_rms_urad,
-                           round.after_rms_urad) +
-           ", difference in BIC " + number(round.delta_bic, 3) + ", p " +
-           (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value));
+  std::string text = item(
+      std::to_string(index + 1) + ". " + effect_titles(names_of(round), " or ") + ": residual " +
+      residual_change(round.before_rms_um, round.after_rms_um, round.before_rms_urad,
+                      round.after_rms_urad) +
+      ", difference in BIC " + number(round.delta_bic, 3) + ", p " +
+      (round.p_value < 1e-4 ? "" : "= ") + probability(round.p_value) + ", chosen by " +
+      number(100.0 * round.stability, 2) + " % of the resamples");
   if (const std::string change =
           residual_change(round.before_holdout_rms_um, round.after_holdout_rms_um, {}, {});
       !change.empty())
@@ -58,7 +60,7 @@ std::string left_over(const Unnamed& left) {
                      probability(left.p_value) + "), largest from " + number(left.from_mm, 4) +
                      " to " + number(left.to_mm, 4) + " mm";
   if (!left.clock.empty())
-    text += "; most alike over " + left.clock + ", correlation length " +
+    text += "; best described as " + likeness(left) + ", correlation length " +
             number(left.correlation_length, 2) + " " + unit_text(left.correlation_unit);
   if (left.dominant_period_mm)
     text += "; dominant period " + number(*left.dominant_period_mm, 3) + " mm";
@@ -102,6 +104,17 @@ std::string untestable(const TraceResult& trace) {
   return text;
 }
 
+std::string cross_validation(const TraceResult& trace) {
+  if (!trace.gain) return "";
+  std::vector<std::string> gaps;
+  for (const BlockPrediction& each : trace.cross_validation)
+    gaps.push_back(number(each.block_mm, 3) + " mm " +
+                   residual_change(each.before_rms_um, each.after_rms_um, each.before_rms_urad,
+                                   each.after_rms_urad));
+  return item("Predicted over gaps of " + joined(gaps, ", ") + ": the gain is " +
+              std::string(text_of(*trace.gain)) + ".");
+}
+
 std::string gates(const TraceResult& trace) {
   std::vector<std::string> values;
   for (const auto& [gate, value] : trace.gates) values.push_back(gate + " " + number(value, 4));
@@ -117,6 +130,7 @@ std::string gates(const TraceResult& trace) {
 std::string trace_text(const TraceResult& trace) {
   std::string text = heading("Closed loop: " + verdict(trace));
   for (std::size_t i = 0; i < trace.rounds.size(); ++i) text += round(trace.rounds[i], i);
+  text += cross_validation(trace);
   if (trace.unnamed) text += left_over(*trace.unnamed);
   for (const std::string& line : trace.advice) text += note(with_titles(line));
   for (const NotSeparable& each : trace.not_separable)
@@ -124,7 +138,8 @@ std::string trace_text(const TraceResult& trace) {
                  " are one column here: not separable");
   for (const TriedEffect& tried : trace.refused)
     if (tried.refused && tried.delta_bic < -10.0)
-      text += note(effect_title(tried.effect) + " was refused: " + with_titles(*tried.refused));
+      text += note(effect_title(term_name(tried.effect, tried.profiles)) +
+                   " was refused: " + with_titles(*tried.refused));
   return text + untestable(trace) + limits(trace) + gates(trace);
 }
 

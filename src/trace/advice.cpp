@@ -8,9 +8,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kReach = 4.0;       // standard uncertainties a rival's shape may move, in
-constexpr int kSteps = 20;           // steps on either side
-constexpr double kSeparates = 10.0;  // predicted ΔBIC that tells two effects apart
+constexpr int kSteps = 20;  // of a rival's shape, on either side
 
 struct Measurement {
   std::string what;
@@ -92,7 +90,7 @@ Planned plan(const Problem& problem, const std::vector<Profile>& profiles, const
 
 /// A rival with a grid of its own around the shapes it was fitted at: a longer variable resolves
 /// more than the grid of the search.
-Candidate near_fitted(const Refined& rival) {
+Candidate near_fitted(const Refined& rival, double reach) {
   const Effect& effect = *rival.candidate->term.effect;
   Candidate out;
   out.term = rival.candidate->term;
@@ -104,7 +102,7 @@ Candidate near_fitted(const Refined& rival) {
   for (std::size_t s = 0; s < rival.shape.size(); ++s) {
     const auto index = static_cast<std::size_t>(effect.shapes()[s].parameter);
     const Parameter& parameter = effect.parameters()[index];
-    const double step = kReach / steps * rival.uncertainties[static_cast<Eigen::Index>(index)];
+    const double step = reach / steps * rival.uncertainties[static_cast<Eigen::Index>(index)];
     std::vector<double>& axis = axes.emplace_back();
     for (int i = -steps; i <= steps; ++i) {
       const double shape = rival.shape[s] + i * step;
@@ -132,7 +130,7 @@ double predicted_separation(const Planned& planned, const Whitened& data, const 
   }
   linear.prior_residuals.setZero();
   const Whitened white(linear, noise, Eigen::MatrixXd(signal.size(), 0));
-  const Candidate near = near_fitted(rival);
+  const Candidate near = near_fitted(rival, planned.model.gates.rival_reach);
   Finding best{&near};
   for (Eigen::Index atom = 0; atom < near.atoms(); ++atom) {
     const double gain =
@@ -164,7 +162,7 @@ std::string separating_measurement(const Problem& problem, const std::vector<Pro
     name = measurement.what + " (like " + like.name + ")";
   }
   const std::string pair = effect.candidate->name() + " and " + rival.candidate->name();
-  if (best < kSeparates)
+  if (best < model.gates.tie_bic)
     return pair + ": none of the cuts and traces tried on paper would tell them apart; " +
            effect.candidate->name() + " is separated by " +
            effect.candidate->term.effect->description().separated_by;

@@ -25,16 +25,19 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
   ClosedLoop loop;
   if (options.closes_loop) {
     loop = close_loop(problem, profiles, declared, progress);
-    if (loop.extended) last = &*loop.extended;
+    if (loop.extended) {
+      allow_for_other_form(problem, *loop.extended);
+      last = &*loop.extended;
+    }
     MoreVariance unnamed;
     if (loop.widening)
       unnamed = [&](const Eigen::RowVectorXd& row) { return loop.widening->variance(row); };
-    set_final(problem, last->model,
-              summarise(last->model, last->fit, unnamed, options.with_details), options.scope,
-              out.result);
+    set_final(problem, *last, summarise(last->model, last->fit, unnamed, options.with_details),
+              options.scope, out.result);
     out.trace = std::move(loop.trace);
     for (TraceRound& round : out.trace->rounds)
-      round.parameters = parameters_of(*out.result.final, round.accepted);
+      round.parameters =
+          parameters_of(*out.result.final, term_name(round.accepted, round.profiles));
   }
   if (options.with_details)
     out.details =

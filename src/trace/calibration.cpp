@@ -47,7 +47,8 @@ double Calibration::threshold(double significance) const {
   return location - scale * std::log(-std::log1p(-significance));
 }
 
-Eigen::MatrixXd null_residuals(const Whitened& data, Eigen::Index count) {
+Eigen::MatrixXd null_residuals(const Whitened& data, const Gates& gates) {
+  const auto count = static_cast<Eigen::Index>(gates.resamples);
   Eigen::MatrixXd out(data.rows(), count);
   Eigen::MatrixXd normals(count, static_cast<Eigen::Index>(data.observations()));
   std::vector<double> shares;  // one for all profiles: they share their memory
@@ -67,7 +68,7 @@ Calibration calibrate(const Whitened& data, const Candidates& candidates, const 
                       const std::function<void(double)>& progress) {
   const auto resamples = static_cast<Eigen::Index>(gates.resamples);
   const Eigen::VectorXd gains =
-      largest_gains(data, candidates, null_residuals(data, resamples), progress);
+      largest_gains(data, candidates, null_residuals(data, gates), progress);
   constexpr double kEuler = 0.5772156649015329;
   const double mean = gains.mean();
   const double variance =

@@ -17,7 +17,7 @@ struct Calibration {
 
 /// White residuals of data in which nothing is missing, outside the model's span. The noise of each
 /// is drawn from what its estimate leaves open, and made white with the estimate itself.
-Eigen::MatrixXd null_residuals(const Whitened& data, Eigen::Index count);
+Eigen::MatrixXd null_residuals(const Whitened& data, const Gates& gates);
 
 /// @param progress  as largest_gains()
 Calibration calibrate(const Whitened& data, const Candidates& candidates, const Gates& gates = {},

@@ -16,9 +16,7 @@ namespace {
 
 constexpr double kNormal = 1e9;  // degrees of freedom: Student's t is normal
 constexpr int kSpreadShapes = 5;
-constexpr int kMostRounds = 8;          // of a limit that depends on itself
-constexpr double kMostOfRange = 100.0;  // of a profile's range: what is larger would be seen
-constexpr double kNegligible = 0.02;    // of a column's size: not worth a name
+constexpr int kMostRounds = 8;  // of a limit that depends on itself
 
 /// Values of the first shape from one end of what the search looks at to the other, in the
 /// logarithm unless they are positions, at the nodes of Chebyshev: what lies between them can be
@@ -78,7 +76,7 @@ std::string made_by(const Model& model, const Solution& fit, const Whitened& dat
       continue;
     const double share =
         (columns * back.col(p) * parameters[p]).norm() / std::max(column.norm(), 1e-300);
-    if (share > kNegligible) out.push_back(names[static_cast<std::size_t>(p)]);
+    if (share > model.gates.absorbed_share) out.push_back(names[static_cast<std::size_t>(p)]);
   }
   return out.empty() ? "offset and tilt of the traces" : joined(out);
 }
@@ -166,12 +164,12 @@ std::optional<double> limit_at(const Design& design, const Case& one) {
   return limit;
 }
 
-/// Whether no profile would hold more of this signal than a hundred times its own range.
-bool is_flatness(const Linearisation& linear, const Eigen::VectorXd& signal) {
+/// Whether no profile would hold more of this signal than so many times its own range.
+bool is_flatness(const Linearisation& linear, const Eigen::VectorXd& signal, double most_of_range) {
   Eigen::Index first = 0;
   for (const Observation* observation : linear.observations) {
     const Eigen::VectorXd& values = observation->values;
-    const double most = kMostOfRange * (values.maxCoeff() - values.minCoeff());
+    const double most = most_of_range * (values.maxCoeff() - values.minCoeff());
     if (!(signal.segment(first, values.size()).cwiseAbs().maxCoeff() <= most)) return false;
     first += values.size();
   }
@@ -194,7 +192,8 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
         stacked_columns(model, candidate.term, shape, design.data.rows() - design.data.values())};
     const std::optional<double> limit = limit_at(design, one);
     if (!limit || !(*limit > 0.0) || !std::isfinite(*limit) ||
-        !is_flatness(design.fitted.fit.linear, one.columns * one.amplitudes(*limit)))
+        !is_flatness(design.fitted.fit.linear, one.columns * one.amplitudes(*limit),
+                     design.gates().most_of_range))
       continue;
     if (!shape.empty()) out.by_shape.push_back({shape[0], *limit});
     if (std::abs(s - middle) >= nearest) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "slideway/base/error.hpp"
@@ -64,7 +65,7 @@ class Viewer {
       const Observation& observation = *observations_[i];
       auto rows = out.middleRows(row, observation.values.size());
       row += rows.rows();
-      if (!term.effect->applies_to(observation.profile->setup)) continue;
+      if (!term.acts_on(*observation.profile)) continue;
       if (thin_[i]) {
         rows = thin_columns(term, shapes, observation, *thin_[i]);
         continue;
@@ -94,32 +95,35 @@ class Viewer {
 };
 
 /// What the problem lacks for an effect to be looked for, or nothing.
-std::string needs(const Model& model, const Effect& effect) {
-  bool shown = false;
+std::string needs(const Model& model, const ModelTerm& term) {
+  std::vector<const Setup*> shown;
   std::vector<std::string> keys;
   for (const Observation& observation : model.observations) {
     const Setup& setup = observation.profile->setup;
-    if (!effect.applies_to(setup)) continue;
-    shown = shown || observation.profile->role == Role::fit;
-    for (const std::string& key : effect.lacking(setup))
+    if (!term.acts_on(*observation.profile)) continue;
+    if (observation.profile->role == Role::fit) shown.push_back(&setup);
+    for (const std::string& key : term.effect->lacking(setup))
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
   }
   if (!keys.empty()) return joined(keys);
-  return shown ? "" : "a reading that shows it";
+  if (shown.empty()) return "a reading that shows it";
+  return joined(term.effect->lacking_together(shown));
 }
 
 void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
   candidate.grid = ShapeLattice(shape_axes(model, candidate.term));
   const Eigen::Index a = candidate.amplitudes(), atoms = candidate.atoms();
-  candidate.columns.resize(viewer.rows(), a * atoms);
+  auto columns = std::make_shared<Eigen::MatrixXd>(viewer.rows(), a * atoms);
   parallel_for((atoms + kAtomsAtATime - 1) / kAtomsAtATime, [&](std::size_t block) {
     const Eigen::Index first = static_cast<Eigen::Index>(block) * kAtomsAtATime;
     const Eigen::Index count = std::min(kAtomsAtATime, atoms - first);
     const auto shapes =
         std::span(candidate.grid.points())
             .subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
-    viewer.columns(candidate.term, shapes, candidate.columns.middleCols(first * a, count * a));
+    viewer.columns(candidate.term, shapes, columns->middleCols(first * a, count * a));
   });
+  candidate.rows = viewer.rows();
+  candidate.columns = std::move(columns);
 }
 
 /// The hypotheses about an effect: it is missing, or it needs more terms than the one declared of
@@ -138,13 +142,14 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
   bool added = false;
   for (const EffectOptions& options : hypotheses) {
     Candidate candidate;
-    candidate.term.name = name;
+    candidate.term.name = term_name(name, options.profiles);
+    candidate.term.profiles = options.profiles;
     candidate.options = options;
     candidate.options.above.reset();
     candidate.raises_degree = any;
     try {
       candidate.term.effect = make_effect(name, options, model.machine, model.range);
-      missing = needs(model, *candidate.term.effect);
+      missing = needs(model, candidate.term);
     } catch (const UsageError& error) {  // the machine lacks what the effect needs
       missing = error.what();
     }
@@ -156,14 +161,68 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
   if (!added && !missing.empty()) out.not_testable.push_back({name, missing});
 }
 
+/// The same effect in each profile alone, where several show it: a step in one cut, a warm-up that
+/// has faded in the next.
+std::vector<Candidate> in_one_profile(const Model& model, const Candidate& whole) {
+  const ModelTerm& term = whole.term;
+  std::vector<Candidate> out;
+  if (term.effect->is_carriage() || !term.profiles.empty() || whole.raises_degree) return out;
+  Eigen::Index row = 0;
+  const std::vector<const Observation*> observations = fitted_observations(model);
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Profile& profile = *observations[i]->profile;
+    const Eigen::Index rows = observations[i]->values.size();
+    if (term.acts_on(profile) && term.effect->lacking_together({&profile.setup}).empty()) {
+      Candidate& alone = out.emplace_back(whole);
+      alone.term.profiles = alone.options.profiles = {profile.name};
+      alone.term.name = term_name(term.name, alone.term.profiles);
+      alone.only = i;
+      alone.first_row = row;
+      alone.rows = rows;
+    }
+    row += rows;
+  }
+  if (out.size() < 2) out.clear();
+  for (Candidate& each : out) each.choice = 2.0 * std::log(static_cast<double>(out.size()));
+  return out;
+}
+
+/// The same effect in the traces of one surface alone, where it takes several traces to show it and
+/// there are several surfaces: the form a disc was clamped to.
+std::vector<Candidate> on_one_surface(const Model& model, const Candidate& whole) {
+  const ModelTerm& term = whole.term;
+  std::map<std::string, std::vector<const Profile*>> surfaces;
+  for (const Observation* observation : fitted_observations(model))
+    if (const Profile& profile = *observation->profile; profile.surface && term.acts_on(profile))
+      surfaces[*profile.surface].push_back(&profile);
+  std::vector<Candidate> out;
+  if (term.effect->is_carriage() || !term.profiles.empty() || surfaces.size() < 2) return out;
+  for (const auto& [surface, profiles] : surfaces) {
+    std::vector<const Setup*> setups;
+    std::vector<std::string> names;
+    for (const Profile* profile : profiles) {
+      setups.push_back(&profile->setup);
+      names.push_back(profile->name);
+    }
+    if (term.effect->lacking_together({setups.front()}).empty() ||
+        !term.effect->lacking_together(setups).empty())
+      continue;
+    Candidate& alone = out.emplace_back(whole);
+    alone.term.profiles = alone.options.profiles = names;
+    alone.term.name = term_name(term.name, names);
+  }
+  for (Candidate& each : out) each.choice = 2.0 * std::log(static_cast<double>(surfaces.size()));
+  return out;
+}
+
 }  // namespace
 
 Eigen::MatrixXd Candidate::columns_around(Eigen::Index atom) const {
   const std::vector<Eigen::Index> atoms = grid.around(atom);
-  Eigen::MatrixXd out(columns.rows(), std::ssize(atoms) * amplitudes());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(columns->rows(), std::ssize(atoms) * amplitudes());
   for (std::size_t i = 0; i < atoms.size(); ++i)
-    out.middleCols(static_cast<Eigen::Index>(i) * amplitudes(), amplitudes()) =
-        columns.middleCols(atoms[i] * amplitudes(), amplitudes());
+    out.block(first_row, static_cast<Eigen::Index>(i) * amplitudes(), rows, amplitudes()) =
+        columns_of(atoms[i], 1);
   return out;
 }
 
@@ -176,6 +235,15 @@ Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::In
   const Viewer viewer(model, prior_rows);
   for (const std::string& name : problem.trace.candidates)
     add_hypotheses(model, problem, name, viewer, out);
+  std::vector<Candidate> alone;
+  for (const Candidate& whole : out.candidates) {
+    std::ranges::move(in_one_profile(model, whole), std::back_inserter(alone));
+    for (Candidate& each : on_one_surface(model, whole)) {
+      lay_out(model, viewer, each);
+      alone.push_back(std::move(each));
+    }
+  }
+  std::ranges::move(alone, std::back_inserter(out.candidates));
   return out;
 }
 

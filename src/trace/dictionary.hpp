@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +16,22 @@ struct Candidate {
   EffectOptions options;
   bool raises_degree = false;  // of the declared effect; the columns are the terms that one lacks
   ShapeLattice grid;           // its points are the atoms
-  Eigen::MatrixXd columns;     // stacked rows by (#amplitudes * #atoms), not whitened
+  /// Stacked rows by (#amplitudes * #atoms), not whitened; shared with the same effect in one
+  /// profile alone.
+  std::shared_ptr<const Eigen::MatrixXd> columns;
+  std::optional<std::size_t> only;  // the one fitted observation it acts on; none: all
+  double choice = 0.0;  // price of choosing that one among those that show it, as BIC counts
+  Eigen::Index first_row = 0, rows = 0;  // of the columns, those it acts on
 
-  [[nodiscard]] const std::string& name() const { return term.name; }
+  [[nodiscard]] const std::string& name() const { return term.name; }  // "step[feed2]"
+  [[nodiscard]] const std::string& effect_name() const { return term.effect->description().name; }
   [[nodiscard]] Eigen::Index amplitudes() const { return term.effect->amplitudes(); }
   [[nodiscard]] Eigen::Index atoms() const { return std::ssize(grid.points()); }
-  /// Columns of an atom and of its neighbours on the grid, for a shape that lies between them.
+  /// Columns of `count` atoms from `first` on, in the rows it acts on.
+  [[nodiscard]] auto columns_of(Eigen::Index first, Eigen::Index count) const {
+    return columns->block(first_row, first * amplitudes(), rows, count * amplitudes());
+  }
+  /// Stacked columns of an atom and of its neighbours on the grid, for a shape between them.
   [[nodiscard]] Eigen::MatrixXd columns_around(Eigen::Index atom) const;
   /// Free numbers: the amplitudes that the model does not span, and the shapes.
   [[nodiscard]] Eigen::Index unknowns(Eigen::Index rank) const {
@@ -40,7 +52,8 @@ struct Dictionary {
   std::vector<Untestable> not_testable;
 };
 
-/// The hypotheses of every candidate effect about itself (Effect::hypotheses).
+/// The hypotheses of every candidate effect about itself (Effect::hypotheses), and each that is no
+/// carriage's also in one profile alone, where several show it.
 /// @param prior_rows  rows of zeros below the observations', one per prior of the model
 Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows);
 

@@ -5,11 +5,17 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kMostValues = 2048;  // of a profile, in a search
+bool has_more_values(const Observation& observation, std::size_t most) {
+  return (observation.profile->positions.size() >> observation.low_band.options().level) > most;
+}
 
-bool is_long(const Observation& observation) {
-  return (observation.profile->positions.size() >> observation.low_band.options().level) >
-         kMostValues;
+/// Whether an effect of the model leaves a candidate nothing to say: it is the same effect and acts
+/// in all profiles, or in one of the candidate's. In all profiles, the candidate may still be the
+/// better name for what others hold.
+bool says_the_same(const Candidate& in_model, const Candidate& candidate) {
+  const std::vector<std::string>&p = in_model.term.profiles, &q = candidate.term.profiles;
+  return in_model.effect_name() == candidate.effect_name() &&
+         (p.empty() || std::ranges::find_first_of(p, q) != p.end());
 }
 
 Model with(Model model, const std::vector<AcceptedEffect>& effects) {
@@ -17,7 +23,8 @@ Model with(Model model, const std::vector<AcceptedEffect>& effects) {
     if (effect.candidate->raises_degree)
       remake_term(model, effect.name(), effect.candidate->options);
     else
-      append_term(model, {effect.name(), effect.candidate->options, {}}, model.range);
+      append_term(model, {effect.candidate->effect_name(), effect.candidate->options, {}},
+                  model.range);
   return model;
 }
 
@@ -31,8 +38,10 @@ std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::si
 ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
                              const FittedModel& declared, const Progress& progress)
     : declared_(declared), progress_(progress) {
+  const auto most = static_cast<std::size_t>(declared.model.gates.search_values);
+  const auto is_long = [&](const Observation& each) { return has_more_values(each, most); };
   if (std::ranges::any_of(declared.model.observations, is_long))
-    coarser_ = fit_model(build_model(problem, profiles, kMostValues));
+    coarser_ = fit_model(build_model(problem, profiles, most));
   if (progress_) progress_("making the columns of every candidate", 0.0);
   dictionary_ = make_dictionary(base().model, problem, base().fit.linear.prior_rows.rows());
 }
@@ -94,16 +103,29 @@ FittedModel ModelExtender::in_declared_band(const std::vector<AcceptedEffect>& e
 Candidates ModelExtender::candidates_beside(const std::vector<AcceptedEffect>& effects) const {
   Candidates out;
   for (const Candidate& candidate : dictionary_.candidates)
-    if (std::ranges::find(effects, candidate.name(), &AcceptedEffect::name) == effects.end())
+    if (std::ranges::none_of(effects, [&](const AcceptedEffect& effect) {
+          return says_the_same(*effect.candidate, candidate);
+        }))
       out.push_back(&candidate);
   return out;
 }
 
 Eigen::VectorXd ModelExtender::shapes_of(const std::vector<AcceptedEffect>& effects) const {
-  const Eigen::VectorXd& own = base().fit.estimate.shapes;
-  std::vector<double> all(own.begin(), own.end());
+  std::vector<double> all;
+  const auto append = [&](std::span<const double> shape) {
+    all.insert(all.end(), shape.begin(), shape.end());
+  };
+  for (const ModelTerm& term : base().model.terms) {
+    const auto raised = std::ranges::find_if(effects, [&](const AcceptedEffect& effect) {
+      return effect.candidate->raises_degree && effect.name() == term.name;
+    });
+    if (raised != effects.end())
+      append(raised->shape);
+    else
+      append(slideway::shapes_of(term, base().fit.estimate.shapes));
+  }
   for (const AcceptedEffect& effect : effects)
-    all.insert(all.end(), effect.shape.begin(), effect.shape.end());
+    if (!effect.candidate->raises_degree) append(effect.shape);
   return Eigen::Map<const Eigen::VectorXd>(all.data(), std::ssize(all));
 }
 

@@ -30,6 +30,7 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
 /// What some profiles say: model, and model with effect, fitted to their rows and the priors.
 struct FitOfOthers {
   LeastSquares without, with;
+  Eigen::Index rank = 0;  // amplitudes of the effect that they tell from the model
 
   /// @param amplitudes  of the effect as all profiles have it
   FitOfOthers(const Linearisation& linear, const std::vector<Eigen::MatrixXd>& rows,
@@ -51,6 +52,7 @@ struct FitOfOthers {
     targets << kept.rightCols(1), kept.middleCols(k, a) * amplitudes;
     without = least_squares(kept.leftCols(k), targets);
     with = least_squares(kept.leftCols(k + a), kept.rightCols(1));
+    rank = orthonormal(kept.leftCols(k + a)).cols() - orthonormal(kept.leftCols(k)).cols();
   }
 
   [[nodiscard]] double gain() const { return without.squares[0] - with.squares[0]; }
@@ -95,7 +97,8 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
     const auto model = rows[i].leftCols(k), effect = rows[i].middleCols(k, a);
     if (effect.isZero(0.0)) continue;
     const FitOfOthers others(linear, rows, i, amplitudes);
-    if (!(others.expected() >= gates.holdout_share * whole.gain)) continue;
+    if (others.rank < whole.rank || !(others.expected() >= gates.holdout_share * whole.gain))
+      continue;
     const Eigen::VectorXd carried = others.with.values.bottomRows(a);
     const Eigen::VectorXd astray = carried - amplitudes;
     shown += whole.gain - others.expected();

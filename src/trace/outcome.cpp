@@ -14,7 +14,8 @@ std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
   for (const TestedCandidate& each : round.tested) {
     if (&each == except) continue;
     const Refined& refined = each.refined;
-    TriedEffect entry{each.name(), refined.delta_bic, each.p_value};
+    TriedEffect entry{refined.candidate->effect_name(), refined.candidate->term.profiles,
+                      refined.delta_bic, each.p_value};
     if (std::string why = each.refused(gates); !why.empty()) entry.refused = std::move(why);
     if (before_rms_um)
       entry.rms_um =
@@ -22,7 +23,7 @@ std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
     const std::vector<Parameter>& known = refined.candidate->term.effect->parameters();
     for (std::size_t p = 0; p < known.size(); ++p) {
       FittedParameter parameter;
-      parameter.name = entry.effect + "." + known[p].name;
+      parameter.name = each.name() + "." + known[p].name;
       parameter.symbol = known[p].symbol;
       parameter.unit = known[p].unit;
       parameter.value = refined.values[static_cast<Eigen::Index>(p)];

@@ -76,12 +76,12 @@ std::vector<std::size_t> moving_shapes(const Finding& finding, bool stepwise) {
   return out;
 }
 
-/// Brings the smooth shapes to their best together, between the neighbours on the grid.
-void move_smooth_shapes(const Model& model, const Whitened& data, const Finding& finding,
-                        std::vector<double>& shape) {
-  const ModelTerm& term = finding.candidate->term;
-  const std::vector<std::size_t> moving = moving_shapes(finding, false);
-  if (moving.empty()) return;
+using Bounds = std::pair<double, double>;
+
+/// Brings shapes to their best together. @param bounds  of each of `moving`
+void move_shapes(const Model& model, const Whitened& data, const ModelTerm& term,
+                 const std::vector<std::size_t>& moving, const std::vector<Bounds>& bounds,
+                 std::vector<double>& shape) {
   ProjectedResidual cost(model, data, term, shape, moving);
   ceres::Problem::Options keep;
   keep.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -91,9 +91,8 @@ void move_smooth_shapes(const Model& model, const Whitened& data, const Finding&
   problem.AddResidualBlock(&cost, nullptr, x.data());
   for (std::size_t j = 0; j < moving.size(); ++j) {
     const Shape& kind = term.effect->shapes()[moving[j]];
-    const auto [low, high] = finding.candidate->grid.neighbours(finding.atom, moving[j]);
-    problem.SetParameterLowerBound(x.data(), static_cast<int>(j), kind.inner(low));
-    problem.SetParameterUpperBound(x.data(), static_cast<int>(j), kind.inner(high));
+    problem.SetParameterLowerBound(x.data(), static_cast<int>(j), kind.inner(bounds[j].first));
+    problem.SetParameterUpperBound(x.data(), static_cast<int>(j), kind.inner(bounds[j].second));
   }
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -105,6 +104,38 @@ void move_smooth_shapes(const Model& model, const Whitened& data, const Finding&
   ceres::Solve(options, &problem, &summary);
   for (std::size_t j = 0; j < moving.size(); ++j)
     shape[moving[j]] = term.effect->shapes()[moving[j]].outer(x[j]);
+}
+
+/// Brings the smooth shapes to their best together, between the neighbours on the grid.
+void move_smooth_shapes(const Model& model, const Whitened& data, const Finding& finding,
+                        std::vector<double>& shape) {
+  const std::vector<std::size_t> moving = moving_shapes(finding, false);
+  if (moving.empty()) return;
+  std::vector<Bounds> bounds;
+  for (const std::size_t s : moving)
+    bounds.push_back(finding.candidate->grid.neighbours(finding.atom, s));
+  move_shapes(model, data, finding.candidate->term, moving, bounds, shape);
+}
+
+/// Frees the shapes of higher order one after the other, each with all those before it, which move
+/// over the whole grid then.
+void move_higher_orders(const Model& model, const Whitened& data, const Finding& finding,
+                        std::vector<double>& shape) {
+  const ModelTerm& term = finding.candidate->term;
+  std::vector<std::size_t> moving = moving_shapes(finding, false);
+  std::vector<Bounds> bounds;
+  for (const std::size_t s : moving) {
+    const std::vector<double>& axis = finding.candidate->grid.axes()[s];
+    bounds.emplace_back(axis.front(), axis.back());
+  }
+  for (std::size_t s = 0; s < shape.size(); ++s) {
+    const Shape& kind = term.effect->shapes()[s];
+    if (!kind.higher_order) continue;
+    const Parameter& parameter = term.effect->parameters()[kind.parameter];
+    moving.push_back(s);
+    bounds.emplace_back(parameter.lower, parameter.upper);
+    move_shapes(model, data, term, moving, bounds, shape);
+  }
 }
 
 /// Places between two samples of any profile, between the neighbours on the grid; first the one
@@ -150,7 +181,9 @@ bool is_at_end(const Candidate& candidate, const std::vector<double>& shape) {
     const std::vector<double>& axis = candidate.grid.axes()[s];
     const double first = kind.inner(axis.front()), last = kind.inner(axis.back());
     const double at = kind.inner(shape[s]);
-    if (!kind.stepwise && std::min(at - first, last - at) < 1e-6 * (last - first)) return true;
+    if (!kind.stepwise && !kind.higher_order &&
+        std::min(at - first, last - at) < 1e-6 * (last - first))
+      return true;
   }
   return false;
 }
@@ -193,6 +226,7 @@ Refined refine(const Model& model, const Whitened& data, const Finding& finding)
     move_stepwise_shapes(model, data, finding, out.shape);
     move_smooth_shapes(model, data, finding, out.shape);
   }
+  move_higher_orders(model, data, finding, out.shape);
   out.at_end = is_at_end(*finding.candidate, out.shape);
   out.columns = stacked_columns(model, term, out.shape, data.rows() - data.values());
   out.projection = project(data, out.columns);

@@ -44,10 +44,16 @@ template <typename Use>
 void for_block(const Whitened& data, const Candidate& candidate, Eigen::Index first,
                Eigen::Index count, const Eigen::MatrixXd& residuals, Use&& use) {
   const Eigen::Index a = candidate.amplitudes();
-  Eigen::MatrixXd columns = candidate.columns.middleCols(first * a, count * a);
-  data.whiten(columns);
-  const Eigen::MatrixXd inside = data.basis().transpose() * columns;
-  const Eigen::MatrixXd products = columns.transpose() * residuals;
+  Eigen::MatrixXd columns = candidate.columns_of(first, count);
+  if (candidate.only)
+    data.noise()[*candidate.only].whiten(columns);
+  else
+    data.whiten(columns);
+  const auto own_rows = [&](const Eigen::MatrixXd& stacked) {
+    return stacked.middleRows(candidate.first_row, candidate.rows);
+  };
+  const Eigen::MatrixXd inside = own_rows(data.basis()).transpose() * columns;
+  const Eigen::MatrixXd products = columns.transpose() * own_rows(residuals);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto own = columns.middleCols(i * a, a);
     const auto spanned = inside.middleCols(i * a, a);
@@ -79,6 +85,10 @@ double penalty(const Whitened& data, Eigen::Index unknowns) {
   return static_cast<double>(unknowns) * std::log(static_cast<double>(data.values()));
 }
 
+double penalty(const Whitened& data, const Candidate& candidate, Eigen::Index rank) {
+  return penalty(data, candidate.unknowns(rank)) + candidate.choice;
+}
+
 std::vector<Finding> search(const Whitened& data, const Candidates& candidates) {
   const std::vector<Block> blocks = blocks_of(candidates);
   std::vector<Finding> best(blocks.size());
@@ -89,7 +99,7 @@ std::vector<Finding> search(const Whitened& data, const Candidates& candidates) 
     for_block(data, candidate, block.first, block.count, data.residual(),
               [&](Eigen::Index atom, const GramRoot& root, const auto& products) {
                 const double gain = (root.root * products).squaredNorm();
-                const double bic = penalty(data, candidate.unknowns(root.rank)) - gain;
+                const double bic = penalty(data, candidate, root.rank) - gain;
                 if (root.rank > 0 && bic < best[b].delta_bic)
                   best[b] = {&candidate, atom, gain, bic, root.rank};
               });
@@ -129,7 +139,7 @@ Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates
         data, candidate, blocks[b].first, blocks[b].count, residuals,
         [&](Eigen::Index, const GramRoot& root, const auto& products) {
           if (root.rank == 0) return;
-          const double cost = penalty(data, candidate.unknowns(root.rank));
+          const double cost = penalty(data, candidate, root.rank);
           best.col(b) = best.col(b).cwiseMax(
               ((root.root * products).colwise().squaredNorm().array() - cost).matrix().transpose());
         });

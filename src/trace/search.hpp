@@ -19,6 +19,8 @@ struct Finding {
 
 /// What so many unknowns cost in BIC: unknowns ln n.
 double penalty(const Whitened& data, Eigen::Index unknowns);
+/// Of a candidate of which the model leaves `rank` amplitudes, with the choice of its profile.
+double penalty(const Whitened& data, const Candidate& candidate, Eigen::Index rank);
 
 /// Best atom of every candidate, in the order of the dictionary.
 std::vector<Finding> search(const Whitened& data, const Candidates& candidates);

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <tuple>
 
+#include "modulation.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/left_out.hpp"
@@ -12,9 +14,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kWorthRefining = 30.0;  // behind the best on the grid, or
-constexpr double kWorthShare = 0.6;      // of it: a line between two points of the grid loses some
-constexpr std::size_t kMostRefined = 12;
+constexpr std::size_t kEnoughPass = 3;  // names: a later check may refuse the best ones
 constexpr int kNoiseRounds = 3;
 
 const Finding& best_of(const std::vector<Finding>& findings) {
@@ -59,8 +59,8 @@ bool alike(const TestedCandidate& a, const TestedCandidate& b, const Gates& gate
   return std::abs(a.fitted.dot(b.fitted)) > gates.alike * a.fitted.norm() * b.fitted.norm();
 }
 
-/// Candidates refined to their best shapes, best BIC first: those near the best, and on down while
-/// none of them passes.
+/// Candidates refined to their best shapes, best BIC first: those near the best, and on down until
+/// several effects pass.
 std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
                                        const Whitened& data, std::vector<Finding> findings,
                                        const Calibration& calibration) {
@@ -70,21 +70,30 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     tested.refined = refine(model, data, finding);
     tested.p_value = calibration.p_value(-tested.refined.delta_bic);
     tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
+    tested.modulates = modulated_effect(model, fit.estimate.shapes, tested.refined);
     tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
     return tested;
   };
   const auto worth = [&](double most) {
     const auto first_not = std::ranges::find_if(
         findings, [&](const Finding& f) { return f.rank == 0 || f.delta_bic > most; });
-    return std::min<std::size_t>(first_not - findings.begin(), kMostRefined);
+    return std::min<std::size_t>(first_not - findings.begin(),
+                                 static_cast<std::size_t>(model.gates.most_refined));
   };
   const double best = findings.front().delta_bic;
-  std::vector<TestedCandidate> out(worth(std::max(best + kWorthRefining, kWorthShare * best)));
+  std::vector<TestedCandidate> out(
+      worth(std::max(best + model.gates.refine_bic, model.gates.refine_share * best)));
   parallel_for(out.size(), [&](std::size_t i) { out[i] = test(findings[i]); });
-  const std::size_t pay = worth(kWorthRefining - model.gates.delta_bic);
-  const auto passes = [&](const TestedCandidate& t) { return t.refused(model.gates).empty(); };
-  while (out.size() < pay && std::ranges::none_of(out, passes))
+  const std::size_t pay = worth(model.gates.refine_bic - model.gates.delta_bic);
+  std::set<std::string> passing;
+  const auto note = [&](const TestedCandidate& tested) {
+    if (tested.refused(model.gates).empty()) passing.insert(tested.name());
+  };
+  std::ranges::for_each(out, note);
+  while (out.size() < pay && passing.size() < kEnoughPass) {
     out.push_back(test(findings[out.size()]));
+    note(out.back());
+  }
   std::ranges::stable_sort(out, {}, [](const auto& each) { return each.refined.delta_bic; });
   return out;
 }
@@ -114,6 +123,7 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
 
 std::string TestedCandidate::refused(const Gates& gates) const {
   if (refined.projection.rank == 0) return "the model makes the same columns";
+  if (!modulates.empty()) return "its line is a modulation of " + modulates;
   if (refined.delta_bic > -gates.delta_bic)
     return "gains too little: difference in BIC " + significant(refined.delta_bic, 3);
   if (p_value > gates.significance) return "noise gives as much: p = " + significant(p_value, 2);
@@ -135,7 +145,8 @@ const TestedCandidate* SearchRound::choice(const Gates& gates,
   for (auto each = tested.begin(); each != tested.end(); ++each) {
     if (!each->refused(gates).empty() || std::ranges::count(excluded, each->name()) > 0) continue;
     const auto stands_before = [&](const TestedCandidate& better) {
-      return better.refined.delta_bic < each->refined.delta_bic - gates.tie_bic &&
+      return std::ranges::count(excluded, better.name()) == 0 &&
+             better.refined.delta_bic < each->refined.delta_bic - gates.tie_bic &&
              alike(better, *each, gates);
     };
     if (std::none_of(tested.begin(), each, stands_before)) return &*each;
@@ -146,6 +157,9 @@ const TestedCandidate* SearchRound::choice(const Gates& gates,
 std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& chosen,
                                                         const Gates& gates) const {
   std::vector<const TestedCandidate*> out;
+  const auto is_same_effect = [](const TestedCandidate& a, const TestedCandidate& b) {
+    return a.refined.candidate->effect_name() == b.refined.candidate->effect_name();
+  };
   const auto unknowns = [](const TestedCandidate& each) {
     return each.refined.candidate->unknowns(each.refined.projection.rank);
   };
@@ -155,8 +169,8 @@ std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& c
         (each.is_possible() && (unknowns(each) <= unknowns(chosen) ||
                                 chosen.refined.candidate->term.effect->is_carriage()));
     const bool known =
-        std::ranges::any_of(out, [&](const auto* other) { return other->name() == each.name(); });
-    if (counts && !known && each.name() != chosen.name() &&
+        std::ranges::any_of(out, [&](const auto* other) { return is_same_effect(*other, each); });
+    if (counts && !known && !is_same_effect(each, chosen) &&
         each.refined.delta_bic <= chosen.refined.delta_bic + gates.tie_bic &&
         alike(each, chosen, gates))
       out.push_back(&each);

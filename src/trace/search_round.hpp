@@ -13,6 +13,7 @@ struct TestedCandidate {
   double p_value = 1.0;
   std::optional<HeldOut> held_out;
   Eigen::VectorXd fitted;  // what it takes of the white residual
+  std::string modulates;   // the effect of the model whose line it modulates; empty: none
 
   [[nodiscard]] const std::string& name() const { return refined.candidate->name(); }
   /// Why it is not accepted; empty: it passes.

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "fit_numbers.hpp"
+#include "naming.hpp"
 #include "outcome.hpp"
 #include "slideway/base/text.hpp"
+#include "stability.hpp"
 #include "structure.hpp"
 #include "widening.hpp"
 
@@ -13,6 +15,8 @@ namespace slideway {
 namespace {
 
 using Effects = std::vector<AcceptedEffect>;
+
+constexpr const char* kUnnamedRival = "unnamed";  // among `ambiguous_with`
 
 /// "" if the residuals, in the units of the report, fall; else why the effect does not help. Where
 /// there are heights and slopes, the mean of their relative squares counts.
@@ -29,6 +33,14 @@ std::string worsens(const ModelResult& without, const ModelResult& with) {
   return "";
 }
 
+/// Size of an effect in the declared low band, in its standard uncertainties.
+double size_in_report(const ModelResult& told, const ModelTerm& term) {
+  const std::string name = term.name + "." + term.effect->parameters()[0].name;
+  const auto own = std::ranges::find(told.parameters, name, &FittedParameter::name);
+  if (!own->value || !own->standard_uncertainty) return INFINITY;
+  return std::abs(*own->value) / *own->standard_uncertainty;
+}
+
 class Selector {
  public:
   Selector(const Problem& problem, ModelExtender& extender, const Gates& gates,
@@ -39,8 +51,10 @@ class Selector {
     grow();
     exchange();
     take_back();
+    hold_against_the_unnamed();
     name_rivals();
     out_.lack_of_fit = left_over();
+    out_.withheld = out_.withheld || something_is_left();
     return std::move(out_);
   }
 
@@ -53,7 +67,8 @@ class Selector {
   /// The effect a candidate becomes, with the statistics of the search that found it.
   AcceptedEffect accepted(const SearchRound& round, const TestedCandidate& choice) {
     AcceptedEffect out{choice.refined.candidate, choice.refined.shape, {}};
-    out.round.accepted = choice.name();
+    out.round.accepted = choice.refined.candidate->effect_name();
+    out.round.profiles = choice.refined.candidate->term.profiles;
     out.round.delta_bic = choice.refined.delta_bic;
     out.round.p_value = choice.p_value;
     out.round.candidates = tried(round, gates_, &choice, extender_.summary({}).rms_um);
@@ -65,22 +80,41 @@ class Selector {
   }
 
   void grow() {
-    std::vector<std::string> ruled_out;
     while (std::ssize(out_.effects) < problem_.trace.max_effects) {
       const SearchRound& round = extender_.search(out_.effects);
-      const TestedCandidate* choice = round.choice(gates_, ruled_out);
+      const TestedCandidate* choice = round.choice(gates_, ruled_out_);
       if (!choice) return;
       Effects more = out_.effects;
       more.push_back(accepted(round, *choice));
-      const std::string why = reason_against(more, more.size() - 1);
+      std::string why = reason_against(more, more.size() - 1);
+      if (why.empty()) why = comes_and_goes(stability(round, *choice));
       if (!why.empty()) {
-        ruled_out.push_back(choice->name());
+        ruled_out_.push_back(choice->name());
         out_.notes.push_back(choice->name() + " was refused: " + why);
         continue;
       }
       out_.effects = std::move(more);
-      drop_superfluous(ruled_out);
+      drop_superfluous();
     }
+  }
+
+  /// Why an effect that resamples often find nothing instead of does not enter; "": it does.
+  [[nodiscard]] std::string comes_and_goes(const Stability& found) const {
+    if (found.share >= gates_.stable_share || found.other != kNothing) return "";
+    return "only " + significant(100.0 * found.share, 2) +
+           " % of the resamples choose it, the others most often nothing";
+  }
+
+  /// Whether the last search finds more than noise gives in several profiles, in whatever shape.
+  [[nodiscard]] bool something_is_left() {
+    const SearchRound& round = extender_.search(out_.effects);
+    if (round.data.observations() < 2) return false;
+    return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
+      return each.refined.projection.rank > 0 && each.modulates.empty() &&
+             each.refined.candidate->term.profiles.empty() && each.p_value <= gates_.significance &&
+             each.refined.delta_bic <= -gates_.delta_bic &&
+             std::ranges::count(ruled_out_, each.name()) == 0;
+    });
   }
 
   /// Why an effect of a set does not help beside the others; "": it does. A carriage's polynomial
@@ -88,9 +122,11 @@ class Selector {
   std::string reason_against(const Effects& effects, std::size_t which) {
     const Effects others = all_but(effects, which);
     std::string why = worsens(extender_.summary(others), extender_.summary(effects));
-    if (why.empty() && effects[which].candidate->term.effect->is_carriage() &&
-        !outdoes_process(effects, which))
-      why = "a smooth process without a name fits as well";
+    if (!why.empty() || !effects[which].candidate->term.effect->is_carriage()) return why;
+    const double margin = over_process(effects, which);
+    if (margin < gates_.process_margin)
+      why =
+          "a smooth process without a name fits as well: " + significant(margin, 2) + " nats less";
     return why;
   }
 
@@ -103,24 +139,25 @@ class Selector {
     if (!term->effect->has_one_size() || effects[which].candidate->raises_degree) return "";
     const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term->first_parameter);
     const double more = unnamed ? unnamed->variance(row) : 0.0;
-    const double size =
+    const double size = std::min(
         std::abs(fitted.fit.parameters.values[term->first_parameter]) /
-        std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more));
+            std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more)),
+        size_in_report(extender_.summary(effects), *term));
     if (!(size < gates_.size)) return "";
     return "its size is only " + significant(size, 2) + " of its standard uncertainties";
   }
 
-  /// Whether an effect says more than a process without a name would in its place.
-  bool outdoes_process(const Effects& effects, std::size_t which) {
+  /// By how much a carriage's polynomial outdoes a process without a name in its place, nats.
+  double over_process(const Effects& effects, std::size_t which) {
     const FittedModel& with = extender_.extended(effects);
     const FittedModel& without = extender_.extended(all_but(effects, which));
     const std::vector<Noise>& noise = with.fit.noise;
     const Whitened with_it(with.fit.linear, noise), without_it(without.fit.linear, noise);
-    const double gain = (without_it.residual().squaredNorm() - with_it.residual().squaredNorm()) +
-                        find_structure(with.model, with_it, with.fit.linear).gain() -
-                        find_structure(without.model, without_it, without.fit.linear).gain();
     const Candidate& candidate = *effects[which].candidate;
-    return gain - penalty(with_it, candidate.unknowns(candidate.amplitudes())) >= gates_.delta_bic;
+    return 0.5 * (without_it.residual().squaredNorm() - with_it.residual().squaredNorm() -
+                  penalty(with_it, candidate, candidate.amplitudes())) +
+           find_structure(with.model, with_it, with.fit.linear).process.log_evidence -
+           find_structure(without.model, without_it, without.fit.linear).process.log_evidence;
   }
 
   /// -ΔBIC of an effect beside the others of the set.
@@ -132,17 +169,17 @@ class Selector {
     const Projection own =
         project(data, stacked_columns(without.model, effect.candidate->term, effect.shape,
                                       data.rows() - data.values()));
-    return own.gain - penalty(data, effect.candidate->unknowns(own.rank));
+    return own.gain - penalty(data, *effect.candidate, own.rank);
   }
 
   /// Earlier effects that the last one has made superfluous leave.
-  void drop_superfluous(std::vector<std::string>& ruled_out) {
+  void drop_superfluous() {
     for (std::size_t i = 0; i + 1 < out_.effects.size();) {
       if (gain_beside(out_.effects, i) >= gates_.delta_bic) {
         ++i;
         continue;
       }
-      ruled_out.push_back(out_.effects[i].name());
+      ruled_out_.push_back(out_.effects[i].name());
       leave(i, out_.effects.back().name() + " has made it superfluous");
     }
   }
@@ -178,9 +215,17 @@ class Selector {
     for (std::size_t i = out_.effects.size(); i-- > 0;) {
       const std::string why = reason_to_leave(i);
       if (why.empty()) continue;
+      // The search, under the noise beside it, has found something.
+      out_.withheld |= stands_out(i);
       leave(i, why);
       i = out_.effects.size();  // the others once more
     }
+  }
+
+  /// Whether an effect of all profiles passes the gates of the search beside the others.
+  bool stands_out(std::size_t i) {
+    return out_.effects[i].candidate->term.profiles.empty() &&
+           find_tested(extender_.search(all_but(out_.effects, i)), out_.effects[i], gates_);
   }
 
   std::string reason_to_leave(std::size_t i) {
@@ -194,7 +239,6 @@ class Selector {
     std::string why = reason_against(out_.effects, i);
     if (why.empty()) why = too_small(out_.effects, i, nullptr);
     if (!why.empty() || !left_over().significant(gates_)) return why;
-    if (!outdoes_process(out_.effects, i)) return "a smooth process without a name fits as well";
     const FittedModel& fitted = extender_.extended(out_.effects);
     const SearchRound& last = extender_.search(out_.effects);
     const Widening unnamed = widening(
@@ -206,9 +250,44 @@ class Selector {
     for (std::size_t i = 0; i < out_.effects.size(); ++i) {
       AcceptedEffect& effect = out_.effects[i];
       const SearchRound& round = extender_.search(all_but(out_.effects, i));
-      for (const TestedCandidate* rival : round.rivals(*find_tested(round, effect, gates_), gates_))
+      const TestedCandidate& own = *find_tested(round, effect, gates_);
+      for (const TestedCandidate* rival : round.rivals(own, gates_))
         effect.round.ambiguous_with.push_back(rival->name());
+      const Stability found = stability(round, own);
+      effect.round.stability = found.share;
+      if (found.share >= gates_.stable_share || !effect.round.ambiguous_with.empty()) continue;
+      effect.round.ambiguous_with.push_back(found.other == kNothing ? kUnnamedRival : found.other);
+      out_.notes.push_back(effect.name() + ": only " + significant(100.0 * found.share, 2) +
+                           " % of the resamples choose it; the others most often " + found.other);
     }
+  }
+
+  /// Names what nothing without a name explains as well.
+  void hold_against_the_unnamed() {
+    while (!out_.effects.empty()) {
+      const Standing found = standing(extender_, out_.effects, gates_);
+      if (found.margin >= 0.0) return;
+      if (found.margin >= -gates_.unnamed_tie) {
+        out_.unsure = found.in_place_of;
+        for (const std::size_t i : found.in_place_of) {
+          out_.effects[i].round.ambiguous_with.emplace_back(kUnnamedRival);
+          out_.notes.push_back(out_.effects[i].name() + ": " + found.rival +
+                               " explains as much, within " + significant(-found.margin, 2) +
+                               " nats of the margin");
+        }
+        return;
+      }
+      leave(weakest(found.in_place_of), found.rival + " without a name explains more, by " +
+                                            significant(-found.margin, 2) + " nats");
+      out_.withheld = true;
+      take_back();
+    }
+  }
+
+  /// The effect of a set that gains least beside the others.
+  std::size_t weakest(const std::vector<std::size_t>& among) {
+    return *std::ranges::min_element(among, {},
+                                     [&](std::size_t i) { return gain_beside(out_.effects, i); });
   }
 
   void tell(const std::string& stage, std::size_t i) const {
@@ -220,6 +299,7 @@ class Selector {
   ModelExtender& extender_;
   const Gates& gates_;
   const Progress& progress_;
+  std::vector<std::string> ruled_out_;  // names that do not help beside the others
   Selection out_;
 };
 
@@ -232,6 +312,13 @@ const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffec
   };
   const auto found = std::ranges::find_if(round.tested, is_it);
   return found == round.tested.end() ? nullptr : &*found;
+}
+
+Selection nothing_selected(ModelExtender& extender, const Gates& gates) {
+  Selection out;
+  out.lack_of_fit =
+      lack_of_fit(extender.base().fit.linear, extender.search({}).data.noise(), gates);
+  return out;
 }
 
 Selection select_effects(const Problem& problem, ModelExtender& extender, const Gates& gates,

@@ -10,17 +10,23 @@ struct Selection {
   std::vector<AcceptedEffect> effects;                    // with their rivals
   std::vector<std::pair<std::string, std::string>> left;  // accepted, then taken back; why
   std::vector<std::string> notes;
-  LackOfFit lack_of_fit;  // of what these effects leave
+  LackOfFit lack_of_fit;            // of what these effects leave
+  bool withheld = false;            // effects left because what has no name fits better
+  std::vector<std::size_t> unsure;  // effects that what has no name may stand in place of
 };
 
 /// Adds effects one by one, each the best of a search; exchanges them for better ones; takes back
-/// those that do not pass every gate beside the others as they are in the end.
+/// those that do not pass every gate beside the others as they are in the end; holds the rest
+/// against what has no name (naming.hpp).
 ///
 /// A round adds an effect or rules one out, and what has left stays out: with c names the search
 /// ends after 2 c rounds at most. Every later step looks at subsets of what was found once. No set
 /// of effects is searched twice (ModelExtender::search()).
 Selection select_effects(const Problem& problem, ModelExtender& extender, const Gates& gates,
                          const Progress& progress);
+
+/// The declared model as it is: what is left of it, and no effect.
+Selection nothing_selected(ModelExtender& extender, const Gates& gates);
 
 /// The candidate of a search that is this effect and passes, or null.
 const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,

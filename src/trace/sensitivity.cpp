@@ -8,8 +8,7 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kMostTried = 4;  // changes of one gate that are tried out
-constexpr double kBeyond = 1e-6;       // relative, past the statistic
+constexpr double kBeyond = 1e-6;  // relative, past the statistic
 
 /// A gate at the statistic that was held against it.
 struct Change {
@@ -50,7 +49,7 @@ class Changes {
   /// Nearest first.
   [[nodiscard]] std::vector<Change> sorted() && {
     std::ranges::stable_sort(all_, {}, &Change::size);
-    all_.resize(std::min(all_.size(), kMostTried));
+    all_.resize(std::min(all_.size(), static_cast<std::size_t>(gates_.tried_changes)));
     return std::move(all_);
   }
 
@@ -62,7 +61,7 @@ class Changes {
 TraceVerdict verdict_of(const Selection& selection, const Gates& gates) {
   TraceResult out;
   for (const AcceptedEffect& effect : selection.effects) out.rounds.push_back(effect.round);
-  if (selection.lack_of_fit.significant(gates)) out.unnamed.emplace();
+  if (selection.withheld || selection.lack_of_fit.significant(gates)) out.unnamed.emplace();
   return verdict(out, false);
 }
 

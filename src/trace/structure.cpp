@@ -1,7 +1,5 @@
 #include "structure.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -11,98 +9,6 @@
 
 namespace slideway {
 namespace {
-
-constexpr Eigen::Index kCosines = 24;
-constexpr double kLengths[] = {0.03, 0.05, 0.1, 0.2, 0.4, 0.8};  // of the clock's range
-constexpr double kSizes[] = {0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0};  // of the noise
-
-struct ClockOf {
-  std::string symbol, unit;
-  double (*read)(const Stations&, Eigen::Index);
-  std::optional<IndependentVariable> needs;
-};
-
-const std::vector<ClockOf>& clocks() {
-  static const std::vector<ClockOf> kAll{
-      {"r", "mm", [](const Stations& s, Eigen::Index i) { return s.slide(i); }, std::nullopt},
-      {"t", "s", [](const Stations& s, Eigen::Index i) { return s.time(i); },
-       IndependentVariable::time},
-      {"s", "mm", [](const Stations& s, Eigen::Index i) { return s.distance(i); },
-       IndependentVariable::distance},
-      {"X", "mm", [](const Stations& s, Eigen::Index i) { return s.trace(i); }, std::nullopt}};
-  return kAll;
-}
-
-/// Readings of a clock at the low-band values of every fitted profile, or nothing.
-std::vector<Eigen::VectorXd> readings(const Model& model, const Linearisation& linear,
-                                      const ClockOf& clock) {
-  std::vector<Eigen::VectorXd> out;
-  for (const Observation* observation : linear.observations) {
-    const Setup& setup = observation->profile->setup;
-    if (clock.needs && !missing_for(*clock.needs, setup).empty()) return {};
-    if (clock.symbol == "s" && setup.kind != Kind::face) return {};
-    const std::vector<double> positions =
-        observation->low_band.positions(observation->profile->positions);
-    const Stations stations(positions, setup, model.machine);
-    Eigen::VectorXd values(stations.size());
-    for (Eigen::Index i = 0; i < stations.size(); ++i) values[i] = clock.read(stations, i);
-    out.push_back(std::move(values));
-  }
-  return out;
-}
-
-Eigen::MatrixXd cosines_of(const Eigen::VectorXd& clock, double low, double high) {
-  Eigen::MatrixXd out(clock.size(), kCosines);
-  for (Eigen::Index j = 0; j < kCosines; ++j)
-    out.col(j) = (kPi * static_cast<double>(j) * (clock.array() - low) / (high - low)).cos();
-  return out;
-}
-
-/// Matérn 3/2 spectral weights of the cosines for a length in units of the range; they sum to 1.
-Eigen::VectorXd weights(double length) {
-  Eigen::VectorXd out(kCosines);
-  for (Eigen::Index j = 0; j < kCosines; ++j) {
-    const double w = kPi * static_cast<double>(j);
-    out[j] = std::pow(3.0 / (length * length) + w * w, -2.0);
-  }
-  return out / out.sum();
-}
-
-struct Process {
-  double log_evidence = -INFINITY;
-  double length = 0.0;
-  Eigen::VectorXd sizes, coefficients;
-};
-
-/// Best length and size by evidence. @param copies  how many sets of cosines stand side by side
-Process best_process(const Whitened& data, Eigen::MatrixXd columns, Eigen::Index copies) {
-  columns = data.outside(std::move(columns));
-  const double unit = std::sqrt(columns.squaredNorm() / static_cast<double>(data.rows()));
-  if (!(unit > 0.0)) return {};
-  columns /= unit;
-  const Eigen::MatrixXd gram = columns.transpose() * columns;
-  const Eigen::VectorXd products = columns.transpose() * data.residual();
-  Process best;
-  for (const double length : kLengths)
-    for (const double size : kSizes) {
-      const Eigen::VectorXd root = size * weights(length).cwiseSqrt().replicate(copies, 1);
-      const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(root.size(), root.size()) +
-                                    root.asDiagonal() * gram * root.asDiagonal();
-      const Eigen::LLT<Eigen::MatrixXd> llt(inner);
-      const Eigen::VectorXd scaled = root.asDiagonal() * products;
-      const Eigen::VectorXd solved = llt.solve(scaled);
-      const double log_evidence =
-          0.5 * scaled.dot(solved) - llt.matrixLLT().diagonal().array().log().sum();
-      if (log_evidence > best.log_evidence)
-        best = {log_evidence, length, root / unit, root.asDiagonal() * solved / unit};
-    }
-  return best;
-}
-
-double per_sample(const Observation& observation) {
-  return std::sqrt(static_cast<double>(observation.values.size()) /
-                   static_cast<double>(observation.low_band.samples()));
-}
 
 /// Share of the square that is odd about the spindle axis, for a trace over (nearly) a diameter.
 std::optional<double> odd_share(const Profile& profile, const Eigen::VectorXd& values) {
@@ -150,57 +56,30 @@ void locate(const Profile& profile, const std::vector<double>& positions,
 Structure find_structure(const Model& model, const Whitened& data, const Linearisation& linear) {
   Structure found;
   Unnamed& out = found.description;
-  double& best_evidence = found.log_evidence;
-  const auto consider = [&](const std::string& symbol, const std::string& unit, double range,
-                            const std::vector<Eigen::MatrixXd>& columns, Eigen::Index copies) {
-    const Process process = best_process(
-        data, stack(linear, columns[0].cols(), [&](std::size_t i) { return columns[i]; }), copies);
-    out.log_evidence.emplace_back(symbol, process.log_evidence);
-    if (!(process.log_evidence > best_evidence)) return;
-    best_evidence = process.log_evidence;
-    found.columns = columns;
-    found.sizes = process.sizes;
-    found.coefficients = process.coefficients;
-    out.clock = symbol;
-    out.correlation_length = process.length * range;
-    out.correlation_unit = unit;
-  };
-  for (const ClockOf& clock : clocks()) {
-    const std::vector<Eigen::VectorXd> values = readings(model, linear, clock);
-    if (values.empty()) continue;
-    double low = INFINITY, high = -INFINITY;
-    for (const Eigen::VectorXd& one : values) {
-      low = std::min(low, one.minCoeff());
-      high = std::max(high, one.maxCoeff());
-    }
-    if (!(low < high)) continue;
-    std::vector<Eigen::MatrixXd> columns;
-    for (const Eigen::VectorXd& one : values) columns.push_back(cosines_of(one, low, high));
-    consider(clock.symbol, clock.unit, high - low, columns, 1);
+  for (ProcessVariable& variable : process_variables(model, linear)) {
+    Process process = best_process(data, linear, variable);
+    out.log_evidence.emplace_back(variable.symbol, process.log_evidence);
+    if (!(process.log_evidence > found.process.log_evidence)) continue;
+    out.clock = variable.symbol;
+    out.correlation_length = process.length * variable.range;
+    out.correlation_unit = variable.unit;
+    found.columns = std::move(variable.cosines);
+    found.process = std::move(process);
   }
-  if (const auto count = static_cast<Eigen::Index>(linear.observations.size()); count > 1) {
-    std::vector<Eigen::MatrixXd> columns;
-    double range = 0.0;
-    for (Eigen::Index p = 0; p < count; ++p) {
-      const Observation& observation = *linear.observations[static_cast<std::size_t>(p)];
-      const auto own = observation.low_band.positions(observation.profile->positions);
-      const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(own.data(), std::ssize(own));
-      Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(x.size(), count * kCosines);
-      rows.middleCols(p * kCosines, kCosines) = cosines_of(x, x.minCoeff(), x.maxCoeff());
-      range = std::max(range, x.maxCoeff() - x.minCoeff());
-      columns.push_back(std::move(rows));
-    }
-    consider("per profile", "mm", range, columns, count);
+  if (found.columns.empty()) {  // no variable makes anything beside the model
+    for (const Observation* observation : linear.observations)
+      found.columns.emplace_back(Eigen::MatrixXd::Zero(observation->values.size(), 1));
+    found.process.sizes = found.process.coefficients = Eigen::VectorXd::Zero(1);
   }
-  for (auto& [symbol, evidence] : out.log_evidence) evidence -= best_evidence;
+  for (auto& [symbol, evidence] : out.log_evidence) evidence -= found.process.log_evidence;
   return found;
 }
 
 Unnamed describe(const Structure& found, const Whitened& data, const Linearisation& linear) {
   Unnamed out = found.description;
   double largest = -1.0;
-  Eigen::VectorXd process =
-      stack(linear, 1, [&](std::size_t i) { return found.columns[i] * found.coefficients; });
+  Eigen::VectorXd process = stack(
+      linear, 1, [&](std::size_t i) { return found.columns[i] * found.process.coefficients; });
   const Eigen::MatrixXd span = model_span(linear);
   process -= span * least_squares(span, process).values;  // that part shows as parameters
   for (std::size_t i = 0; i < found.columns.size(); ++i) {
@@ -211,7 +90,7 @@ Unnamed describe(const Structure& found, const Whitened& data, const Linearisati
     if (standing_out <= largest) continue;
     largest = standing_out;
     const bool slope = observation.profile->setup.quantity == Quantity::slope;
-    values *= per_sample(observation) / (slope ? kMicroradian : kMicrometre);
+    values /= low_band_scale(observation) * (slope ? kMicroradian : kMicrometre);
     const double rms = values.norm() / std::sqrt(static_cast<double>(values.size()));
     const double pv = values.maxCoeff() - values.minCoeff();
     out.rms_um = slope ? std::nullopt : std::optional(rms);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "advice.hpp"
+#include "blunder.hpp"
+#include "cross_validation.hpp"
 #include "detection.hpp"
 #include "fit_numbers.hpp"
 #include "loop.hpp"
@@ -30,12 +33,16 @@ class Loop {
 
   ClosedLoop run() {
     const Gates& gates = problem_.trace.gates;
-    Selection selection = select_effects(problem_, extender_, gates, progress_);
+    std::vector<Blunder> blunders = find_blunders(extender_.base());
+    if (!blunders.empty() && explained_by_an_effect(blunders)) blunders.clear();
+    Selection selection = blunders.empty() ? select_effects(problem_, extender_, gates, progress_)
+                                           : nothing_selected(extender_, gates);
     tell_rounds(selection.effects);
     if (progress_) progress_("describing what is left", 0.0);
     ClosedLoop closed;
     TraceResult& out = closed.trace;
     for (const Gate& gate : gate_table()) out.gates.emplace_back(gate.name, gates.*gate.value);
+    out.blunders = std::move(blunders);
     report_effects(selection, out);
     report_rest(selection, closed);
     report_limits(selection, out);
@@ -45,8 +52,14 @@ class Loop {
                                                extender_.summary(selection.effects)),
                               extender_.summary(selection.effects));
     if (!other_cause.empty()) out.advice.insert(out.advice.begin(), other_cause);
+    if (!out.blunders.empty()) out.advice.insert(out.advice.begin(), blunder_advice(out.blunders));
     out.verdict = verdict(out, !other_cause.empty());
-    if (other_cause.empty()) out.fragile = smallest_change(problem_, extender_, selection, gates);
+    if (other_cause.empty() && out.blunders.empty())
+      out.fragile = smallest_change(problem_, extender_, selection, gates);
+    out.cross_validation =
+        cross_validate(extender_.base().fit, extender_.extended(selection.effects).fit, gates);
+    if (!selection.effects.empty() && !out.cross_validation.empty())
+      out.gain = gain_of(out.cross_validation);
     out.searches = extender_.searches();
     if (!selection.effects.empty())
       closed.extended = extender_.take_in_declared_band(selection.effects);
@@ -54,6 +67,23 @@ class Loop {
   }
 
  private:
+  /// Whether an effect of all profiles leaves less of the residual than the blunder that leaves
+  /// least: the sign of a drift, too, turns with the direction of the cut.
+  bool explained_by_an_effect(const std::vector<Blunder>& blunders) {
+    const SearchRound& round = extender_.search({});
+    const double square = round.data.residual().squaredNorm();
+    const auto noise = static_cast<double>(round.data.values());
+    const double least = std::ranges::min(blunders, {}, &Blunder::left).left;
+    return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
+      const Candidate& candidate = *each.refined.candidate;
+      if (!candidate.term.profiles.empty() || candidate.term.effect->is_carriage() ||
+          !each.refused(problem_.trace.gates).empty())
+        return false;
+      const double rest = std::max(square - each.refined.projection.gain - noise, 0.0);
+      return rest < problem_.trace.gates.blunder_rival * least * (square - noise);
+    });
+  }
+
   /// The residuals of the rounds as if the effects had been added one after the other: some have
   /// been exchanged, and some have left.
   void tell_rounds(std::vector<AcceptedEffect>& effects) {
@@ -116,11 +146,26 @@ class Loop {
                              ? "max_effects effects are in the model"
                              : "beside the others it does not help";
     out.lack_of_fit_p = selection.lack_of_fit.p_value;
-    if (!selection.lack_of_fit.significant(gates)) return;
+    if (out.blunders.empty() && !selection.lack_of_fit.significant(gates) && !selection.withheld) {
+      if (!selection.unsure.empty()) closed.widening = widening_instead(selection, fitted, last);
+      return;
+    }
     const Structure structure = find_structure(fitted.model, last.data, fitted.fit.linear);
     out.unnamed = describe(structure, last.data, fitted.fit.linear);
     out.unnamed->p_value = selection.lack_of_fit.p_value;
     closed.widening = widening(fitted.model, fitted.fit, structure, last);
+  }
+
+  /// What a process without a name would do in the place of the effects that are not sure.
+  Widening widening_instead(const Selection& selection, const FittedModel& fitted,
+                            const SearchRound& last) {
+    std::vector<AcceptedEffect> sure = selection.effects;
+    for (const std::size_t i : std::views::reverse(selection.unsure))
+      sure = all_but(std::move(sure), i);
+    const FittedModel& without = extender_.extended(sure);
+    const Whitened data(without.fit.linear, last.data.noise(), last.data.undescribed());
+    return widening(fitted.model, fitted.fit,
+                    find_structure(without.model, data, without.fit.linear), last);
   }
 
   void report_limits(const Selection& selection, TraceResult& out) {
@@ -132,9 +177,10 @@ class Loop {
         inseparable(fitted.model, fitted.fit, data, extender_.candidates_beside(selection.effects));
     if (!extender_.calibration()) return;
     const FittedModel& base = extender_.base();
-    out.detection_limits =
-        detection_limits(base, {base.fit.linear, data.noise()}, fitted.fit.noise,
-                         extender_.candidates_beside({}), *extender_.calibration());
+    Candidates everywhere = extender_.candidates_beside({});
+    std::erase_if(everywhere, [](const Candidate* each) { return !each->term.profiles.empty(); });
+    out.detection_limits = detection_limits(base, {base.fit.linear, data.noise()}, fitted.fit.noise,
+                                            everywhere, *extender_.calibration());
   }
 
   const Problem& problem_;

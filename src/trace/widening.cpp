@@ -47,7 +47,7 @@ Widening widening(const Model& model, const Solution& fit, const Structure& stru
   Widening out;
   out.process = response(fit, stack(fit.linear, structure.columns[0].cols(),
                                     [&](std::size_t i) { return structure.columns[i]; })) *
-                structure.sizes.asDiagonal();
+                structure.process.sizes.asDiagonal();
   out.refused.resize(out.process.rows(), 0);
   for (const TestedCandidate& each : last.tested) {
     if (each.refined.delta_bic > -model.gates.delta_bic || !each.is_possible()) continue;

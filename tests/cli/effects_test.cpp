@@ -12,18 +12,32 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 // Name and independent variable of every effect of the interface.
-const std::map<std::string, std::string> kEffects{
-    {"straightness", "x"},        {"vertical_straightness", "r"},
-    {"squareness", "r"},          {"linear_drift", "t"},
-    {"thermal_drift", "t"},       {"time_periodic", "t"},
-    {"tool_wear", "s"},           {"tool_running_in", "s"},
-    {"slide_periodic", "x"},      {"gantry_sag", "x"},
-    {"revolution_periodic", "k"}, {"spindle_runout", "k"},
-    {"feed_marks", "k"},          {"step", "r"},
-    {"centre_height", "r"},       {"speed_effect", "r"},
-    {"edge_roll_off", "r"},       {"cup", "r"},
-    {"traverse_datum", "X"},      {"centre_step", "X"},
-    {"traverse_periodic", "m"}};
+const std::map<std::string, std::string> kEffects{{"straightness", "x"},
+                                                  {"vertical_straightness", "r"},
+                                                  {"squareness", "r"},
+                                                  {"linear_drift", "t"},
+                                                  {"thermal_drift", "t"},
+                                                  {"time_periodic", "t"},
+                                                  {"tool_wear", "s"},
+                                                  {"tool_running_in", "s"},
+                                                  {"slide_periodic", "x"},
+                                                  {"gantry_sag", "x"},
+                                                  {"revolution_periodic", "k"},
+                                                  {"spindle_runout", "k"},
+                                                  {"feed_marks", "k"},
+                                                  {"step", "r"},
+                                                  {"centre_height", "r"},
+                                                  {"speed_effect", "r"},
+                                                  {"edge_roll_off", "r"},
+                                                  {"cup", "r"},
+                                                  {"traverse_datum", "X"},
+                                                  {"centre_step", "X"},
+                                                  {"traverse_periodic", "m"},
+                                                  {"chucking_lobes", "r"},
+                                                  {"local_form", "x"},
+                                                  {"centring", "X"},
+                                                  {"chord", "r"},
+                                                  {"hysteresis", "x"}};
 
 class Effects : public ProgramTest {};
 

@@ -32,10 +32,13 @@ TEST_F(Html, GoesToStdoutAloneIfAsked) {
 TEST_F(Html, IsMadeOfARankingToo) {
   EXPECT_EQ(run({"rank", kProblem, "--html", "problem.html"}).exit_code, 0);
   EXPECT_THAT(contents(path("problem.html")), HasSubstr("Ranking only"));
-  const ProgramRun columns = run({"rank", shipped("data/axis-ranking.csv"), "--signal", "2",
-                                  "--candidates", "3", "4", "--html", "columns.html"});
+  const ProgramRun columns =
+      run({"rank", shipped("data/axis-ranking.csv"), "--signal", "2", "--candidates", "3", "4",
+           "--level", "5", "--html", "columns.html"});
   EXPECT_EQ(columns.exit_code, 0) << columns.err;
-  EXPECT_THAT(contents(path("columns.html")), HasSubstr("Correlation with column"));
+  const std::string page = contents(path("columns.html"));
+  EXPECT_THAT(page, HasSubstr("Correlation with column"));
+  EXPECT_THAT(page, HasSubstr("Low band: db1, level 5, symmetric."));
 }
 
 TEST_F(Html, WhatIsNoReportIsRefused) {

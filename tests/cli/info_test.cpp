@@ -124,6 +124,21 @@ TEST_F(Info, TakesWhatItIsToldOfTheText) {
   EXPECT_EQ(json::parse(done.out)["value_max"], 2.345);
 }
 
+// Means of 2^level samples: 20 samples are 5 at level 2; the second profile is as it is.
+TEST_F(Info, ShowsTheLowBandOfEachProfileOfAProblem) {
+  folder_.file("face.csv", face_csv(20));
+  const auto profile = [](const std::string& name, const std::string& keys) {
+    return "[[profile]]\nname = \"" + name + "\"\nfile = \"face.csv\"\nkind = \"slide\"\n" +
+           "position_unit = \"mm\"\nvalue_unit = \"um\"\n" + keys;
+  };
+  folder_.file("two.toml",
+               "[low_band]\nlevel = 2\n" + profile("a", "") + profile("b", "level = 0\n"));
+  const json bands = json::parse(run({"info", "two.toml", "--json", "-"}).out).at("low_band");
+  EXPECT_EQ(bands[0]["values"], 5);
+  EXPECT_EQ(bands[1]["values"], 20);
+  EXPECT_THAT(run({"info", "two.toml"}).out, HasSubstr("none, as it is"));
+}
+
 TEST_F(Info, RefusesInOneLine) {
   folder_.file("face.csv", face_csv(20));
   EXPECT_TRUE(is_refused(run({"info", "gone.csv"}), 3));

@@ -35,7 +35,8 @@ TEST(Catalogue, HoldsTheEffectsOfTheInterface) {
                           "thermal_drift", "time_periodic", "tool_wear", "tool_running_in",
                           "slide_periodic", "gantry_sag", "revolution_periodic", "spindle_runout",
                           "feed_marks", "step", "centre_height", "speed_effect", "edge_roll_off",
-                          "cup", "traverse_datum", "centre_step", "traverse_periodic"));
+                          "cup", "traverse_datum", "centre_step", "traverse_periodic",
+                          "chucking_lobes", "local_form", "centring", "chord", "hysteresis"));
 }
 
 TEST(Catalogue, TellsTheErrorsOfTheCarriagesByTermAndParameter) {

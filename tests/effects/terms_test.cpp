@@ -4,32 +4,12 @@
 
 #include <cmath>
 
-#include "effects/effect_cases.hpp"
+#include "effects/heights.hpp"
 
 namespace slideway {
 namespace {
 
 using namespace testing_support;
-
-Case face(std::vector<double> positions, double feed = 2.0,
-          CutDirection direction = CutDirection::inward) {
-  Case profile{"face", setup_of(Kind::face, Quantity::height, 0, 10), std::move(positions)};
-  profile.setup.feed_mm_per_min = feed;
-  profile.setup.cut_direction = direction;
-  return profile;
-}
-
-Eigen::VectorXd values(std::initializer_list<double> list) {
-  Eigen::VectorXd result(static_cast<Eigen::Index>(list.size()));
-  std::copy(list.begin(), list.end(), result.data());
-  return result;
-}
-
-// Height in µm.
-Eigen::VectorXd height_um(const std::string& name, const Case& profile,
-                          std::initializer_list<double> parameters) {
-  return signal(*make(name), profile, values(parameters)) / kMicrometre;
-}
 
 TEST(LinearDrift, RisesWithTheTimeOfTheCut) {
   // 10 nm/min: 50 nm in the 300 s of feed 2, 12.5 nm in the 75 s of feed 8.
@@ -193,6 +173,61 @@ TEST(SpindleRunout, GrowsAlongTheReading) {
   const Eigen::VectorXd second =
       height_um("spindle_runout", profile, {0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 60.0});
   EXPECT_NEAR(second[3], -1.0, 1e-12);
+}
+
+// A phase q P_2(τ), P_2 = (3τ² - 1)/2, is q at both ends and -q/2 in the middle; a quarter turn
+// makes a cosine of the wave into nothing, half a turn into its negative.
+TEST(SpindleRunout, DriftOfTheSpeedTurnsThePhase) {
+  Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), {0.0, 50.0, 100.0}};
+  profile.setup.feed_mm_per_min = 60.0;  // whole turns at whole mm
+  const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(10);
+  values[0] = 1.0;
+  values[8] = 60.0;
+  values[9] = 0.5;
+  for (const CutDirection direction : {CutDirection::inward, CutDirection::outward}) {
+    profile.setup.cut_direction = direction;
+    const Eigen::VectorXd z = signal(*effect, profile, values) * 1e3;
+    EXPECT_NEAR(z[0], -1.0, 1e-12);
+    EXPECT_NEAR(z[1], 0.0, 1e-12);
+    EXPECT_NEAR(z[2], -1.0, 1e-12);
+  }
+}
+
+// P_3 is odd: what a reading has at its start it has with the other sign at its end.
+TEST(SpindleRunout, AnOddDriftFollowsTheTimeAndNotThePosition) {
+  Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), {0.0, 100.0}};
+  profile.setup.feed_mm_per_min = 60.0;
+  const auto effect = make_effect("spindle_runout", {.degree = 3}, lathe(), kTravel);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(11);
+  values[1] = 1.0;  // a sine
+  values[8] = 60.0;
+  values[10] = 0.25;
+  for (const double sign : {1.0, -1.0}) {
+    profile.setup.cut_direction = sign > 0.0 ? CutDirection::outward : CutDirection::inward;
+    const Eigen::VectorXd z = signal(*effect, profile, values) * 1e3;
+    EXPECT_NEAR(z[0], -sign, 1e-12);
+    EXPECT_NEAR(z[1], sign, 1e-12);
+  }
+}
+
+// The rate of t n/60 + q P_2(τ) over the reading changes from -3q·2 to 3q·2 cycles, P_2' = 3τ.
+TEST(SpindleRunout, ItsLinesCoverTheDrift) {
+  Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), spaced(0, 100, 10001)};
+  profile.setup.feed_mm_per_min = 60.0;
+  const Stations stations(profile.positions, profile.setup, lathe());
+  const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
+  const std::vector<LineBand> lines = effect->lines(stations, std::vector<double>{60.0, 0.5});
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_NEAR(lines[0].low, 97.0, 1e-3);  // steps of the profile: a chord over 1e-4 of it
+  EXPECT_NEAR(lines[0].high, 103.0, 1e-3);
+  EXPECT_NEAR(lines[1].high, 206.0, 2e-3);
+}
+
+TEST(SpindleRunout, AFaceKnowsNoDrift) {
+  const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
+  EXPECT_FALSE(effect->applies_to(all_cases()[0].setup));
+  EXPECT_TRUE(make("spindle_runout")->applies_to(all_cases()[0].setup));
 }
 
 TEST(SearchRange, StaysWithinWhatTheProfileShows) {

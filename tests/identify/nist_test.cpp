@@ -3,13 +3,11 @@
 // exact arithmetic from the printed data (SOURCE.md beside them).
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <sstream>
 
-#include "identify/cases.hpp"
+#include "identify/nist.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/result.hpp"
 #include "support/measured_data.hpp"
@@ -54,32 +52,14 @@ class NistLinear : public ::testing::TestWithParam<std::string> {
     return out;
   }
 
-  /// A profile has no position twice: the j-th reading at a position goes to the j-th profile.
   [[nodiscard]] std::vector<Profile> profiles(const std::string& set) const {
     std::multimap<double, double> points;
     for (const auto& row : rows(set + ".csv")) points.emplace(std::stod(row[0]), std::stod(row[1]));
-    std::vector<std::pair<std::vector<double>, std::vector<double>>> readings;
-    std::size_t repeat = 0;
-    for (auto point = points.begin(); point != points.end(); ++point) {
-      repeat = point != points.begin() && std::prev(point)->first == point->first ? repeat + 1 : 0;
-      readings.resize(std::max(readings.size(), repeat + 1));
-      readings[repeat].first.push_back(point->first);
-      readings[repeat].second.push_back(point->second);
-    }
-    std::vector<Profile> out;
-    for (auto& [x, y] : readings) {
-      out.push_back(cases::profile(set + std::to_string(out.size()), Kind::slide, x, y));
-      out.back().free_offset = out.back().free_tilt = false;
-    }
-    return out;
+    return nist::profiles(points);
   }
 
   std::filesystem::path folder_;
 };
-
-double digits(double found, double certified) {
-  return found == certified ? 15.0 : -std::log10(std::abs(found / certified - 1.0));
-}
 
 // Rounding the data to double precision moves the exact solution in the 14th digit already. The
 // heights of the Wamplers reach 2.5e7 while the answers are 1: half the digits are gone.
@@ -102,10 +82,10 @@ TEST_P(NistLinear, CoefficientsAndTheirUncertaintiesAreTheCertifiedOnes) {
   for (int k = 0; k <= degree; ++k) {
     const FittedParameter& parameter = result.parameters[k];
     ASSERT_TRUE(parameter.value) << parameter.name;
-    EXPECT_GE(digits(*parameter.value, answer.coefficients[k]), wanted_digits(set))
+    EXPECT_GE(nist::digits(*parameter.value, answer.coefficients[k]), wanted_digits(set))
         << parameter.name;
     if (answer.residual_deviation > 0.0) {
-      EXPECT_GE(digits(*parameter.standard_uncertainty, answer.deviations[k]), 13.0)
+      EXPECT_GE(nist::digits(*parameter.standard_uncertainty, answer.deviations[k]), 13.0)
           << parameter.name;
     }
   }

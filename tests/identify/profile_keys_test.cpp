@@ -14,6 +14,12 @@ using ::testing::IsSupersetOf;
 using ::testing::Not;
 using ::testing::ThrowsMessage;
 
+std::vector<std::string> keys_of(const std::vector<Assumption>& assumed) {
+  std::vector<std::string> keys;
+  for (const Assumption& each : assumed) keys.push_back(each.key);
+  return keys;
+}
+
 TEST_F(ProblemFile, GivesAProfileALowBandOfItsOwn) {
   const Problem problem =
       read(kMachine + ("[low_band]\nwavelet = \"db4\"\nlevel = 3\n" + profile()) +
@@ -73,6 +79,65 @@ TEST_F(ProblemFile, TakesTheNoseOfTheToolOfAFace) {
               HasSubstr(":10: profile.nose_radius_mm: belongs to kind = \"face\" only"));
 }
 
+TEST_F(ProblemFile, TakesWhereATraceLiesAndWhatMeasuredIt) {
+  const Problem problem =
+      read(kMachine +
+           profile("azimuth_deg = 60.0\nsurface = \"disc 3\"\ninstrument = \"PGI\"\n"
+                   "mask = [[1.0, 2.0], [4, 5]]") +
+           profile("", "plain") + kEffect);
+  const ProfileEntry& own = problem.profiles[0];
+  EXPECT_EQ(own.profile.setup.azimuth_deg, 60.0);
+  EXPECT_EQ(own.profile.surface, "disc 3");
+  EXPECT_EQ(own.profile.instrument, "PGI");
+  EXPECT_THAT(own.source.mask, ElementsAre(std::pair{1.0, 2.0}, std::pair{4.0, 5.0}));
+  const ProfileEntry& plain = problem.profiles[1];
+  EXPECT_EQ(plain.profile.setup.azimuth_deg, 0.0);
+  EXPECT_FALSE(plain.profile.surface);
+  EXPECT_FALSE(plain.profile.instrument);
+  EXPECT_TRUE(plain.source.mask.empty());
+  EXPECT_THAT(keys_of(problem.assumed), Contains("profile.plain.azimuth_deg"));
+}
+
+TEST_F(ProblemFile, RefusesAPlaceOfATraceThatIsNone) {
+  EXPECT_THAT(profile_refusal("azimuth_deg = 361"),
+              HasSubstr(":9: profile.azimuth_deg: 361 is out of range"));
+  EXPECT_THAT(profile_refusal("kind = \"slide\"\nazimuth_deg = 10"),
+              HasSubstr(":10: profile.azimuth_deg: belongs to kind = \"face\" only"));
+  for (const char* mask : {"mask = [1.0, 2.0]", "mask = [[2.0, 1.0]]", "mask = 3"})
+    EXPECT_THAT(profile_refusal(mask), HasSubstr(":9: profile.mask: must be a list of ranges"));
+}
+
+TEST_F(ProblemFile, ConfinesAnEffectToProfiles) {
+  const std::string profiles = profile() + profile("", "feed8") + profile("", "feed20");
+  const Problem problem =
+      read(kMachine + profiles + kEffect +
+           "[[effect]]\nname = \"step\"\nprofiles = [\"feed8\"]\n"
+           "[[effect]]\nname = \"cup\"\nscope = \"profile\"\nprofiles = [\"feed2\", "
+           "\"feed8\"]\n"
+           "[truth]\nparameters = { \"step[feed8].height_um\" = 0.5 }\n"
+           "[[truth.effect]]\nname = \"edge_roll_off\"\nscope = \"profile\"\n"
+           "amplitude_um = 1\nwidth_mm = 0.2\n");
+  std::vector<std::string> names;
+  for (const DeclaredEffect& effect : problem.effects)
+    names.push_back(term_name(effect.name, effect.options.profiles));
+  EXPECT_THAT(names, IsSupersetOf({"step[feed8]", "cup[feed2]", "cup[feed8]"}));
+  EXPECT_THAT(names, Not(Contains("cup[feed20]")));
+  ASSERT_TRUE(problem.truth);
+  EXPECT_EQ(problem.truth->effects.size(), 3U);
+  EXPECT_THAT(problem.truth->effects[2].options.profiles, ElementsAre("feed20"));
+}
+
+TEST_F(ProblemFile, RefusesProfilesThatAreNone) {
+  const auto refused = [&](const std::string& keys) {
+    return refusal(kMachine + profile() + kEffect + "[[effect]]\nname = \"cup\"\n" + keys);
+  };
+  EXPECT_THAT(refused("profiles = [\"feed3\"]\n"), HasSubstr("did you mean 'feed2'?"));
+  EXPECT_THAT(refused("profiles = []\n"), HasSubstr("profiles: is empty; accepted: feed2"));
+  EXPECT_THAT(refused("scope = \"cut\"\n"), HasSubstr("accepted: all profile"));
+  EXPECT_THAT(refused("profiles = [\"feed2\"]\n[[effect]]\nname = \"cup\"\n"),
+              HasSubstr("declared twice for the same body and profile"));
+}
+
 TEST_F(ProblemFile, TakesALoss) {
   const auto loss = [&](const char* line) {
     return read(kMachine + profile(line) + kEffect).profiles[0].profile.loss;
@@ -106,12 +171,6 @@ TEST_F(ProblemFile, NamesTheLineOfAKeyThatDoesNotFitTheData) {
                                         ":8: profile.center_mm: 'feed2': the spindle axis lies "
                                         "1e+09 mm away from a trace of 10 mm; accepted: up to a "
                                         "million times its length"));
-}
-
-std::vector<std::string> keys_of(const std::vector<Assumption>& assumed) {
-  std::vector<std::string> keys;
-  for (const Assumption& each : assumed) keys.push_back(each.key);
-  return keys;
 }
 
 TEST_F(ProblemFile, ListsWhatItAssumes) {

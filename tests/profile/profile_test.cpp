@@ -54,6 +54,22 @@ TEST_F(ReadProfile, ConvertsToMillimetresAndCompletesTheSetup) {
               ElementsAre("text: commas between columns, decimal point, 1 header line"));
 }
 
+TEST_F(ReadProfile, LeavesOutWhatIsMasked) {
+  source_.mask = {{1.5, 3.0}, {9.0, 20.0}};
+  read("x_mm,z_um\n0,1\n1,2\n2,3\n3,4\n4,5\n9.5,6\n");
+  EXPECT_THAT(profile_.positions, ElementsAre(0.0, 1.0, 4.0));
+  EXPECT_EQ(profile_.left_out, 3U);
+  EXPECT_EQ(profile_.missing, 0U);
+  EXPECT_THAT(profile_.notes, Contains("3 samples left out by the problem's mask"));
+}
+
+TEST_F(ReadProfile, MasksInTheUnitOfTheProblem) {
+  source_.position_unit = "um";
+  source_.mask = {{1500.0, 2500.0}};
+  read("x_um,z_um\n0,1\n1000,2\n2000,3\n3000,4\n");
+  EXPECT_THAT(profile_.positions, ElementsAre(0.0, 1.0, 3.0));
+}
+
 TEST_F(ReadProfile, GivesTheSamePositionsFromMillimetresAndMicrometres) {
   // mm text is rounded once, um text is rounded and then divided: within 1 ulp of one another.
   std::string in_mm, in_um;

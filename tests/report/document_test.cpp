@@ -17,7 +17,8 @@ using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
 
 TraceResult sample_trace() {
-  TriedEffect tried{"cup", -20.0, 0.04, 0.15, {fitted("cup.sag_um", "A", "um", 0.2, 0.1)}, "why"};
+  TriedEffect tried{"cup", {}, -20.0, 0.04, 0.15, {fitted("cup.sag_um", "A", "um", 0.2, 0.1)},
+                    "why"};
   TraceRound round;
   round.accepted = "thermal_drift";
   round.ambiguous_with = {"tool_wear"};

@@ -45,7 +45,7 @@ TraceResult sample_trace() {
   round.after_rms_um = 0.05;
   trace.rounds = {round};
   trace.advice = {"measure a second feed"};
-  trace.refused = {{"tool_wear", -20.0, 0.04, 0.15, {}, "the joint fit does not bear it out"}};
+  trace.refused = {{"tool_wear", {}, -20.0, 0.04, 0.15, {}, "the joint fit does not bear it out"}};
   return trace;
 }
 

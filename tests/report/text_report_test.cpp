@@ -64,7 +64,8 @@ TEST(TextReport, StartsWithABoxOfAtMostSixLines) {
     round.ambiguous_with = {"time_periodic", "traverse_periodic"};
   }
   trace.advice = {"a cut at another speed and " + std::string(50, 'w') + " would tell them apart"};
-  for (const std::string& text : {short_text(sample_result()), short_text(result, trace)}) {
+  for (const std::string& text :
+       {short_text(sample_result()), text_report({result, trace}, {.page = "face.html"})}) {
     const std::vector<std::string> lines = lines_of(text);
     std::size_t box = 0;
     while (lines[box].starts_with("│")) ++box;
@@ -73,6 +74,31 @@ TEST(TextReport, StartsWithABoxOfAtMostSixLines) {
       EXPECT_THAT(text, HasSubstr(std::string("│ ") + label));
     expect_fits(text);
   }
+}
+
+TEST(TextReport, CutsNoSentenceOfTheBoxWhileAnEntrySaysNothing) {
+  TraceResult trace;
+  trace.verdict = TraceVerdict::unnamed;
+  trace.advice = {"thermal_drift and cup: a cut at 12 mm/min (like feed2) would tell them apart " +
+                  std::string("best; predicted difference in BIC 55")};
+  Result result = sample_result();
+  result.final->identifiability.unidentifiable.clear();  // its advice would come first
+  const std::string text = short_text(result, trace);
+  EXPECT_THAT(on_one_line(text), HasSubstr("(like feed2) would tell │ them apart best"));
+  EXPECT_THAT(text, Not(HasSubstr("…")));
+  EXPECT_THAT(text, Not(HasSubstr("│ Page")));
+}
+
+TEST(TextReport, CountsInTheBoxWhatItHasNoRoomToName) {
+  TraceResult trace;
+  trace.verdict = TraceVerdict::explained;
+  for (const char* name : {"thermal_drift", "spindle_runout", "centre_height", "tool_wear"}) {
+    TraceRound& round = trace.rounds.emplace_back();
+    round.accepted = name;
+    round.ambiguous_with = {"time_periodic", "traverse_periodic"};
+  }
+  EXPECT_THAT(line_with(short_text(sample_result(), trace), "│ Missing"),
+              HasSubstr("thermal drift (2 rivals) and spindle runout (2 rivals) and 2 more"));
 }
 
 TEST(TextReport, IsAtMost40LinesHoweverMuchThereIsToSay) {

@@ -60,14 +60,16 @@ TEST(Named, SlidePeriodicOfAPeriodOffTheGrid) {
   expect_within_4u(round->parameters, "slide_periodic.amplitude_um", 0.1);
 }
 
-TEST(Named, CentreStep) {
+// A cone whose axis lies a little beside the trace's centre makes the same step.
+TEST(Named, CentreStepOrAnAxisOffTheCentre) {
   const Closed result = close_on(
       {"centre_step", nullptr, [](double X, double) { return X < 0.0 ? -0.05e-3 : 0.05e-3; }}, 2,
       kBlunt, 5);
   SCOPED_TRACE(story(result));
-  expect_only(result, "centre_step");
+  EXPECT_THAT(named(result), ::testing::ElementsAre("centre_step"));
   const TraceRound* round = round_of(result, "centre_step");
   ASSERT_NE(round, nullptr);
+  EXPECT_THAT(round->ambiguous_with, ::testing::ElementsAre("centring"));
   expect_within_4u(round->parameters, "centre_step.height_um", 0.05);
 }
 

@@ -178,9 +178,9 @@ TEST(Calibration, PValueAndThresholdAreInverse) {
 
 TEST(NullResiduals, AreOutsideTheModelAndRepeat) {
   const Whitened data = Bench().white();
-  const Eigen::MatrixXd null = null_residuals(data, 5);
+  const Eigen::MatrixXd null = null_residuals(data, {});
   EXPECT_LT((data.basis().transpose() * null).cwiseAbs().maxCoeff(), kRounding);
-  EXPECT_EQ(null, null_residuals(data, 5));
+  EXPECT_EQ(null, null_residuals(data, {}));
   EXPECT_NE(null.col(0), null.col(1));
 }
 
@@ -188,11 +188,12 @@ TEST(NullResiduals, AreOutsideTheModelAndRepeat) {
 // are rows beside the basis.
 TEST(NullResiduals, HaveTheSizeOfWhiteNoise) {
   const Whitened data = Bench().white();
-  const Eigen::Index count = 200;
+  Gates gates;
+  gates.resamples = 200;
   const auto freedom = static_cast<double>(data.rows() - data.basis().cols());
-  const double mean = null_residuals(data, count).colwise().squaredNorm().mean();
+  const double mean = null_residuals(data, gates).colwise().squaredNorm().mean();
   // Five standard deviations of the mean of 200: 6e-7 of correct programs fail.
-  EXPECT_NEAR(mean, freedom, 5.0 * std::sqrt(2.0 * freedom / static_cast<double>(count)));
+  EXPECT_NEAR(mean, freedom, 5.0 * std::sqrt(2.0 * freedom / gates.resamples));
 }
 
 // Kolmogorov-Smirnov on 60 p-values of pure noise with known correlation: distance 0.21 is exceeded

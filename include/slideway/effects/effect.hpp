@@ -70,6 +70,8 @@ struct Shape {
   int parameter = 0;         // index into parameters()
   bool logarithmic = false;  // search and step on a log scale
   bool stepwise = false;     // columns are piecewise constant in it: scanned, not differentiated
+  /// A correction of higher order: 0 on a search grid, moved from there once those before it are.
+  bool higher_order = false;
 
   /// The optimiser's view of a value and back: its logarithm where it is logarithmic.
   [[nodiscard]] double inner(double value) const { return logarithmic ? std::log(value) : value; }
@@ -90,6 +92,16 @@ struct TravelRange {
   double beam_span_mm = 0.0;                // between the supports of the cross-beam; 0: unknown
 };
 
+/// How the form of a slide is described.
+enum class Form { polynomial, curve };
+
+/// Amplitudes that are values of a Gaussian process at places along the slide. How long and how
+/// large it is comes from the data, together with the fit (curve_prior.hpp).
+struct Knots {
+  Eigen::Index first = 0;        // amplitude of the first knot
+  Eigen::VectorXd positions_mm;  // slide coordinates, evenly spaced, rising; one for each amplitude
+};
+
 /// What the problem file says of a declared effect, besides its name.
 struct EffectOptions {
   std::optional<std::string> body = std::nullopt;
@@ -97,6 +109,16 @@ struct EffectOptions {
   std::optional<double> span_mm = std::nullopt;  // between the supports of a beam
   /// Only the terms above this degree: what a search adds to a declared effect.
   std::optional<int> above = std::nullopt;
+  /// Names of the profiles it acts in; empty: all.
+  std::vector<std::string> profiles = {};
+  std::optional<Form> form = std::nullopt;             // of a straightness: a polynomial
+  std::optional<double> resolution_mm = std::nullopt;  // of a curve: between its knots
+};
+
+/// Rates between which a line of an effect lies, in cycles over one profile: the resolution of the
+/// profile's spectrum is 1.
+struct LineBand {
+  double low = 0.0, high = 0.0;
 };
 
 class Effect;
@@ -135,6 +157,10 @@ class Effect {
   /// Keys of the problem file this profile lacks for the effect's variable; see missing_for().
   [[nodiscard]] virtual std::vector<std::string> lacking(const Setup& setup) const;
 
+  /// What all the profiles it acts in lack together ("azimuth_deg of at least three traces").
+  [[nodiscard]] virtual std::vector<std::string> lacking_together(
+      const std::vector<const Setup*>& setups) const;
+
   /// Fills `out` (#stations by #amplitudes): mm per unit of amplitude for heights, rad for slopes.
   /// Finite for every shape inside the bounds. REQUIRES lacking(stations.setup()) empty.
   virtual void columns(const Stations& stations, std::span<const double> shape,
@@ -149,12 +175,19 @@ class Effect {
   virtual void derivatives(const Stations& stations, std::span<const double> shape, int which,
                            Eigen::Ref<Eigen::MatrixXd> out) const;
 
+  /// The amplitudes that are a process along the slide; by default none.
+  [[nodiscard]] virtual std::optional<Knots> knots() const { return std::nullopt; }
+
   /// Parameters from amplitudes and shape, with the Jacobian.
   [[nodiscard]] virtual ParameterValues parameter_values(const Eigen::VectorXd& amplitudes,
                                                          std::span<const double> shape) const = 0;
 
   /// The reverse: amplitudes (first) and shape (behind them) from parameter values.
   [[nodiscard]] virtual Eigen::VectorXd from_parameters(const Eigen::VectorXd& values) const = 0;
+
+  /// Lines of the effect's spectrum in a profile; empty: it has none. REQUIRES as search_range().
+  [[nodiscard]] virtual std::vector<LineBand> lines(const Stations& stations,
+                                                    std::span<const double> shape) const;
 
   /// True if parameter_values() is linear in the amplitudes (no phase, no modulus).
   [[nodiscard]] virtual bool linear_parameters() const { return true; }

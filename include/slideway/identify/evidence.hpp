@@ -17,7 +17,8 @@ struct Evidence {
   std::vector<double> values;
 };
 
-/// The evidence in a fit; linearised at the estimate where an effect has shapes.
+/// The evidence in a fit; linearised at the estimate where an effect has shapes. No rows where a
+/// term is a curve: its amplitudes are no parameters.
 Evidence evidence(const Model& model, const Solution& fit);
 
 }  // namespace slideway

@@ -25,6 +25,9 @@ struct Solution {
   Rank rank;
   NullDirections null;
   Uncertainty uncertainty;
+  /// ln of the likelihood ratio by which a curve beside the polynomial form of the slide refutes
+  /// its degree: allow_for_other_form().
+  std::optional<double> other_form;
 };
 
 /// Fits all profiles jointly by generalised least squares, Eq. (16): solve() under noise_under(),
@@ -50,6 +53,12 @@ struct FittedModel {
 /// A model together with fit(), the values left out that its columns do not describe
 /// (left_out.hpp).
 FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
+
+/// Whether a curve beside the declared polynomial form of the slide, the noise as it is, is
+/// likelier than none by 1 / Gates::lack_of_fit_p. If so, its coefficients are not those of the
+/// slide, and all uncertainties allow for what the fit has put into its parameters: the second
+/// moments of the curve, its prior integrated out. Nothing where the model has no polynomial form.
+void allow_for_other_form(const Problem& problem, FittedModel& fitted);
 
 /// The declared model, built and fitted.
 /// @throws UsageError, DataError  as build_model(), fit()

@@ -17,6 +17,14 @@ struct Gates {
   double exchange_bic = 2.0;
   double alike = 0.3;
   double holdout_share = 0.1;
+  double modulation_widths = 5.0;
+  double modulation_share = 0.1;
+
+  // What a name must be better than.
+  double process_margin = 0.0;
+  double local_form_margin = 0.0;
+  double unnamed_tie = 5.0;
+  double stable_share = 0.8;
 
   // When the residual is structure.
   double lack_of_fit_p = 1e-3;
@@ -34,6 +42,19 @@ struct Gates {
   double false_line = 1e-3;
   double most_lines = 12.0;
 
+  // When profiles agree.
+  double en_limit = 1.0;
+  double false_disagreement = 0.0455;
+  double held_out_p = 0.01;
+  double same_place = 0.25;
+  double values_per_repeated_cosine = 3.0;
+  double blunder_bic = 20.0;
+  double blunder_rival = 0.5;
+  double blunder_left = 0.1;
+  double sister_factor = 2.0;
+  double most_blocks = 40.0;
+  double least_blocks = 5.0;
+
   // What is left out of a face.
   double nose_radius_mm = 2.0;
   double most_lost = 0.1;
@@ -42,6 +63,23 @@ struct Gates {
   double rank_tolerance = 1e-9;
   double resamples = 99.0;
   double detection_power = 0.8;
+  double search_values = 2048.0;
+  double refine_bic = 30.0;
+  double refine_share = 0.6;
+  double most_refined = 12.0;
+  double rival_reach = 4.0;
+  double tried_changes = 4.0;
+  double noise_spread = 1.0;
+
+  // What is said beside the verdict.
+  double nearly_alike = 0.95;
+  double ranking_p = 0.05;
+  double ranking_lead = 0.8;
+  double listed_correlation = 0.1;
+  double most_straightness = 10.0;
+  double most_of_range = 100.0;
+  double absorbed_share = 0.02;
+  double harmless_shift = 0.1;
 };
 
 /// One gate, as the problem file and the help have it.

@@ -21,7 +21,7 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
                 Scope scope = Scope::identify);
 
 /// Puts what the data say of a model into a result as the final one, and cross-checks it.
-void set_final(const Problem& problem, const Model& model, ModelResult summary, Scope scope,
+void set_final(const Problem& problem, const FittedModel& fitted, ModelResult summary, Scope scope,
                Result& result);
 
 /// What the profiles are and whether their lines close, no more.

@@ -16,13 +16,21 @@ namespace slideway {
 /// One effect of the model with the place of its numbers among all: linear amplitudes and shape
 /// parameters of all effects are numbered through, effect by effect.
 struct ModelTerm {
-  std::string name;  // "squareness"
+  std::string name;  // term_name() of the effect: "squareness", "step[feed2]"
   std::shared_ptr<const Effect> effect;
   std::vector<Prior> priors;
   Eigen::Index first_amplitude = 0;
   Eigen::Index first_shape = 0;
   Eigen::Index first_parameter = 0;
+  std::vector<std::string> profiles = {};  // those it acts in; empty: all
+
+  /// Whether it acts in a profile, and the reading sees it.
+  [[nodiscard]] bool acts_on(const Profile& profile) const;
 };
+
+/// Name of an effect in a model, with the profiles it is confined to: "step[feed2]",
+/// "step[feed2,feed3]".
+std::string term_name(const std::string& effect, const std::vector<std::string>& profiles);
 
 /// The shape parameters of a term among those of all terms.
 inline std::span<const double> shapes_of(const ModelTerm& term, const Eigen::VectorXd& shapes) {

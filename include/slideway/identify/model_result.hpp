@@ -83,7 +83,7 @@ using ParameterCorrelation = std::tuple<std::string, std::string, double>;
 /// One effect's share of the low band at the fitted values.
 struct Contribution {
   std::string effect, profile;
-  std::optional<double> rms_um, rms_urad;  // about its mean
+  std::optional<double> rms_um, rms_urad;  // of what levelling leaves
   double share = 0.0;  // of the sum of mean squares of all effects on that profile
 };
 
@@ -126,6 +126,13 @@ struct StraightnessStation {
   std::optional<double> expanded_uncertainty_um;
 };
 
+/// The process a curve is described by: curve_prior.hpp.
+struct CurveForm {
+  double length_mm = 0.0;     // ℓ of its Matérn covariance
+  double amplitude_um = 0.0;  // a
+  double roughness = 0.0;     // ν
+};
+
 /// Straightness of the slide the fit has found, E_ZX, with its uncertainty.
 struct Straightness {
   std::optional<double> end_point_um, least_squares_um, minimum_zone_um;  // by reference line
@@ -133,7 +140,8 @@ struct Straightness {
   std::vector<StraightnessError> errors;                                  // one for each line
   std::vector<StraightnessStation> stations;                              // of slides, 50 at most
   StraightnessCurve curve;
-  std::string reason;  // why there is none; then all else is empty
+  std::optional<CurveForm> form;  // of form = "curve"
+  std::string reason;             // why there is none; then all else is empty
 };
 
 enum class EvaluationType { type_a, type_b };  // GUM 3.3.4: by statistics, or otherwise

@@ -27,6 +27,9 @@ class Noise {
   /// White noise of a standard deviation, mm or rad.
   static Noise white(double standard_deviation, Eigen::Index n);
 
+  /// The same noise with all variances multiplied.
+  [[nodiscard]] Noise scaled(double factor) const;
+
   bool declared = false;   // white, as the problem file has it; else estimated from the residual
   bool overruled = false;  // a declared uncertainty was there, and the residual refutes it
   std::size_t pool = 0;    // profiles with the same one have their memory in common

@@ -21,6 +21,10 @@ namespace slideway {
 std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
                                 const std::vector<Eigen::MatrixXd>& suspect = {});
 
+/// noise_beside() what a profile may lack, each profile fitted by itself: what profiles disagree by
+/// is in the noise of none of them.
+std::vector<Noise> noise_of_each(const Linearisation& linear, const Gates& gates);
+
 /// The noise a model is fitted under.
 struct FitNoise {
   std::vector<Noise> profiles;  // per fitted observation

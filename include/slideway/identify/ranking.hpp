@@ -39,7 +39,7 @@ std::optional<LeadByFit> lead_by_fit(const Model& model, const Solution& fit);
 /// if it is larger by more than its expanded uncertainty and not by a convention; else the doubt
 /// says why there is none.
 Dominant dominant_effects(const RankingResult& ranking, const std::optional<LeadByFit>& fit,
-                          const Identifiability& identifiability);
+                          const Identifiability& identifiability, const Gates& gates = {});
 
 /// One column held against the signal's column.
 struct ColumnRanking {

@@ -32,6 +32,8 @@ struct InputSummary {
   Kind kind = Kind::face;
   Quantity quantity = Quantity::height;
   Role role = Role::fit;
+  std::optional<double> azimuth_deg;  // of a face
+  std::optional<std::string> surface, instrument;
   std::size_t samples = 0;
   std::size_t missing = 0;
   std::size_t left_out = 0;
@@ -148,6 +150,7 @@ struct ProfileCheck {
   std::string what;
   std::optional<double> En;
   Consistency verdict = Consistency::not_available;
+  std::optional<double> chi2, p_value;  // of the profiles being one, over all effects
 };
 
 enum class HeldOutVerdict { fits, does_not_fit };
@@ -157,16 +160,29 @@ inline constexpr std::array<std::string_view, 2> kTexts<HeldOutVerdict>{"fits", 
 /// Whether a held-out profile lies where the model predicts it, within the uncertainty.
 struct HeldOutCheck {
   std::string profile;
-  double chi2 = 0.0, p_value = 1.0;
+  double chi2 = 0.0, p_value = 1.0;  // χ² per degree of freedom
   std::optional<double> largest_um, largest_urad;
   double at_mm = 0.0;
   HeldOutVerdict verdict = HeldOutVerdict::fits;
+};
+
+enum class RepeatFit { fits, lack_of_fit };
+template <>
+inline constexpr std::array<std::string_view, 2> kTexts<RepeatFit>{"fits", "lack of fit"};
+
+/// What repeats of one trace have in common and the model lacks, against their differences.
+struct PureErrorCheck {
+  std::vector<std::string> profiles;
+  double F = 0.0, p_value = 1.0;
+  std::optional<double> common_um, common_urad;  // rms of the slow part in common
+  RepeatFit verdict = RepeatFit::fits;
 };
 
 struct Crosscheck {
   std::optional<SquarenessCheck> squareness;  // none: nothing was fitted
   std::vector<ProfileCheck> profiles;
   std::vector<HeldOutCheck> held_out;
+  std::vector<PureErrorCheck> repeats;
 };
 
 enum class ConformityVerdict { conforms, does_not_conform, undecided };

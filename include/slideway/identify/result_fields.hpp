@@ -48,6 +48,9 @@ inline constexpr auto kRecord<InputSummary> =
            field("format", &InputSummary::format), field("sha256", &InputSummary::sha256),
            field("kind", &InputSummary::kind), field("quantity", &InputSummary::quantity),
            field("role", &InputSummary::role, "holdout: never fitted, only predicted"),
+           field("azimuth_deg", &InputSummary::azimuth_deg, "of a face"),
+           field("surface", &InputSummary::surface, "as the problem names it"),
+           field("instrument", &InputSummary::instrument, "as the problem names it"),
            field("samples", &InputSummary::samples),
            field("missing", &InputSummary::missing, "points of the file that have no value"),
            field("left_out", &InputSummary::left_out, "samples left out as the problem asks"),
@@ -197,7 +200,7 @@ template <>
 inline constexpr auto kRecord<Contribution> =
     record("Contribution", "An effect's part of a profile's low band.",
            field("effect", &Contribution::effect), field("profile", &Contribution::profile),
-           field("rms_um", &Contribution::rms_um, "about its mean"),
+           field("rms_um", &Contribution::rms_um, "of what levelling leaves of it"),
            field("rms_urad", &Contribution::rms_urad),
            field("share", &Contribution::share, "of the sum of mean squares of all effects"));
 
@@ -245,6 +248,13 @@ inline constexpr auto kRecord<StraightnessStation> =
            field("expanded_uncertainty_um", &StraightnessStation::expanded_uncertainty_um));
 
 template <>
+inline constexpr auto kRecord<CurveForm> =
+    record("CurveForm", "The process a curve is described by: a Matérn covariance.",
+           field("length_mm", &CurveForm::length_mm),
+           field("amplitude_um", &CurveForm::amplitude_um, "its standard deviation"),
+           field("roughness", &CurveForm::roughness, "its exponent: 1.5 or 2.5"));
+
+template <>
 inline constexpr auto kRecord<Straightness> = record(
     "Straightness", "Straightness error of the slide, E_ZX, ISO 230-1.",
     field("end_point_um", &Straightness::end_point_um),
@@ -253,7 +263,7 @@ inline constexpr auto kRecord<Straightness> = record(
     field("expanded_uncertainty_um", &Straightness::expanded_uncertainty_um, "of end_point_um"),
     field("stations", &Straightness::stations, "of slides"),
     field("errors", &Straightness::errors, "one for each reference line"),
-    field("curve", &Straightness::curve),
+    field("curve", &Straightness::curve), field("form", &Straightness::form, "of a curve"),
     field("reason", &Straightness::reason, "why there is none"));
 
 template <>
@@ -308,21 +318,32 @@ template <>
 inline constexpr auto kRecord<ProfileCheck> =
     record("ProfileCheck", "One quantity from each of several profiles that should agree.",
            field("profiles", &ProfileCheck::profiles), field("what", &ProfileCheck::what),
-           field("En", &ProfileCheck::En), field("verdict", &ProfileCheck::verdict));
+           field("En", &ProfileCheck::En), field("verdict", &ProfileCheck::verdict),
+           field("chi2", &ProfileCheck::chi2, "per degree of freedom, over all effects"),
+           field("p_value", &ProfileCheck::p_value));
 
 template <>
 inline constexpr auto kRecord<HeldOutCheck> =
     record("HeldOutCheck", "Whether a held-out profile lies where the model predicts it.",
-           field("profile", &HeldOutCheck::profile), field("chi2", &HeldOutCheck::chi2),
+           field("profile", &HeldOutCheck::profile),
+           field("chi2", &HeldOutCheck::chi2, "per degree of freedom"),
            field("p_value", &HeldOutCheck::p_value), field("largest_um", &HeldOutCheck::largest_um),
            field("largest_urad", &HeldOutCheck::largest_urad), field("at_mm", &HeldOutCheck::at_mm),
            field("verdict", &HeldOutCheck::verdict));
 
 template <>
+inline constexpr auto kRecord<PureErrorCheck> = record(
+    "PureErrorCheck", "What repeats have in common and the model lacks.",
+    field("profiles", &PureErrorCheck::profiles), field("F", &PureErrorCheck::F),
+    field("p_value", &PureErrorCheck::p_value),
+    field("common_um", &PureErrorCheck::common_um, "rms of the slow part in common"),
+    field("common_urad", &PureErrorCheck::common_urad), field("verdict", &PureErrorCheck::verdict));
+
+template <>
 inline constexpr auto kRecord<Crosscheck> =
     record("Crosscheck", "The final model against what it was not made of.",
            field("squareness", &Crosscheck::squareness), field("profiles", &Crosscheck::profiles),
-           field("held_out", &Crosscheck::held_out));
+           field("held_out", &Crosscheck::held_out), field("repeats", &Crosscheck::repeats));
 
 template <>
 inline constexpr auto kRecord<Conformity> = record(

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "slideway/identify/curve_prior.hpp"
 #include "slideway/identify/model.hpp"
 #include "slideway/identify/noise.hpp"
 
@@ -15,6 +16,7 @@ struct Estimate {
   Eigen::VectorXd amplitudes;  // of all terms
   Eigen::VectorXd shapes;
   std::vector<Eigen::VectorXd> nuisances;  // per fitted observation
+  std::optional<CurvePrior> curve;         // where a term is a curve
 };
 
 /// The model linearised at an estimate, on the observations with Role::fit.
@@ -24,6 +26,7 @@ struct Linearisation {
   std::vector<Eigen::VectorXd> residuals;  // values - model - nuisances
   Eigen::MatrixXd prior_rows;              // #priors by (A + S), divided by their uncertainty
   Eigen::VectorXd prior_residuals;         // (prior - value) / uncertainty
+  Eigen::Index curve_rows = 0;             // the last of them: the prior of a curve
 };
 
 /// The observations with Role::fit, in order.
@@ -36,6 +39,10 @@ Eigen::VectorXd model_values(const Model& model, const Observation& observation,
 /// Nuisances of an observation that fit `rest` best by ordinary least squares: the levelling of a
 /// profile whose noise is not known.
 Eigen::VectorXd fitted_nuisances(const Observation& observation, const Eigen::VectorXd& rest);
+
+/// Low-band columns of all amplitudes and derivatives by all shapes: #values by (A + S).
+Eigen::MatrixXd linear_columns(const Model& model, const Estimate& estimate,
+                               const Observation& observation);
 
 Linearisation linearise(const Model& model, const Estimate& estimate);
 

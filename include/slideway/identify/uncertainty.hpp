@@ -20,11 +20,13 @@ struct Spread {
 /// In coordinates w in which the information Σ_i G_i + priors is the unit matrix (G_i that of
 /// profile i), the covariance of w is
 ///
-///   I + 2 Σ_i var(ln s_i) (G_i - G_i²)
+///   I + Σ_g p_g (C_g - I) + 2 Σ_i var(ln s_i) (G_i - G_i²)
 ///
-/// where s_i is the part of the long-run variance of profile i's noise that the profiles do not
-/// share: the second part allows for weights that come from the same data (Kenward and Roger 1997,
-/// for columns slow against the noise; Meier 1953 for a weighted mean). All is multiplied by the
+/// where C_g is the covariance under noise g of those the residual allows, p_g its probability, and
+/// s_i the part of the long-run variance of profile i's noise that the profiles do not share. The
+/// second part makes it the mean over the noises; the third allows for weights that come from the
+/// same data (Kenward and Roger 1997, for columns slow against the noise; Meier 1953 for a weighted
+/// mean). All is multiplied by the
 /// inflation for structure the model lacks (FitNoise). Degrees of freedom by Satterthwaite's
 /// formula (GUM G.4.1) from how the variance differs between the noises the residual allows, and
 /// from the degrees of freedom of each noise's size.
@@ -40,6 +42,10 @@ struct Uncertainty {
   std::vector<std::vector<AllowedNoise>> allowed;  // per pool
   std::vector<double> size_freedom;                // per fitted observation; 0: its size is known
   std::vector<Eigen::MatrixXd> nuisance_covariances;  // levelling, per fitted observation
+
+  /// Adds a covariance of (amplitudes, shapes), whatever the inflation.
+  /// @param compressed  of the model that assess() had
+  void add(const Eigen::MatrixXd& more, const Compressed& compressed);
 
   /// Of row * (amplitudes, shapes). REQUIRES the row to be orthogonal to the null space.
   [[nodiscard]] Spread of(const Eigen::RowVectorXd& row) const;

@@ -48,6 +48,9 @@ struct Profile {
   std::string sha256;  // of the file's bytes
   Setup setup;
   Role role = Role::fit;
+  std::optional<std::string> surface;     // traces of one surface share its form; none: its own
+  std::optional<std::string> instrument;  // traces of one share its errors; none: one for each kind
+                                          // and quantity
   std::optional<Line> line;
   std::vector<double> positions;
   std::vector<double> values;
@@ -74,6 +77,7 @@ struct ProfileSource {
   std::string position_unit;                        // of kLengthUnits; "s": time * feed_mm_per_min
   std::string value_unit;                           // of kLengthUnits or kSlopeUnits
   std::optional<std::pair<double, double>> window;  // in position_unit
+  std::vector<std::pair<double, double>> mask;      // parts treated as missing, in position_unit
   std::vector<std::size_t> left_out_rows;           // data rows treated as missing, from 1
   bool leave_out_spikes = false;                    // outliers treated as missing
   std::size_t most_samples = 10'000'000;            // more are kept as means of 2, 4, 8, ...; even

@@ -37,7 +37,8 @@ struct Setup {
   double start_s = 0.0;
   std::optional<double> traverse_mm_per_s;
   std::optional<double> nose_radius_mm;  // of the tool that cut a face
-  double first_mm = 0.0;                 // smallest and largest trace position
+  double azimuth_deg = 0.0;  // of a face: direction of the trace, X > 0, on the workpiece
+  double first_mm = 0.0;     // smallest and largest trace position
   double last_mm = 0.0;
 };
 

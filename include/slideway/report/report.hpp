@@ -24,7 +24,8 @@ std::string html_report(const Analysis& analysis);
 /// @throws DataError  as read_report()
 std::string html_report(std::string_view json, const std::string& name);
 
-/// What the profiles are, the report's `inputs` and `closure` alone: schema "slideway.data/1".
+/// What the profiles are, the report's `inputs`, `low_band` and `closure`: schema
+/// "slideway.data/1".
 std::string data_json(const Result& result);
 
 /// The same for people: the report down to there.

@@ -9,6 +9,7 @@ namespace slideway {
 template <>
 inline constexpr auto kRecord<TriedEffect> =
     record("Tried", "A candidate of the loop.", field("effect", &TriedEffect::effect),
+           field("profiles", &TriedEffect::profiles, "those it acts in; empty: all"),
            field("delta_bic", &TriedEffect::delta_bic), field("p_value", &TriedEffect::p_value),
            field("rms_um", &TriedEffect::rms_um), field("parameters", &TriedEffect::parameters),
            field("refused", &TriedEffect::refused, "why it was not accepted; none: a rival"));
@@ -16,6 +17,7 @@ inline constexpr auto kRecord<TriedEffect> =
 template <>
 inline constexpr auto kRecord<TraceRound> = record(
     "Round", "One effect that entered the model.", field("accepted", &TraceRound::accepted),
+    field("profiles", &TraceRound::profiles, "those it acts in; empty: all"),
     field("ambiguous_with", &TraceRound::ambiguous_with),
     field("before_rms_um", &TraceRound::before_rms_um),
     field("after_rms_um", &TraceRound::after_rms_um),
@@ -24,6 +26,7 @@ inline constexpr auto kRecord<TraceRound> = record(
     field("before_holdout_rms_um", &TraceRound::before_holdout_rms_um),
     field("after_holdout_rms_um", &TraceRound::after_holdout_rms_um),
     field("delta_bic", &TraceRound::delta_bic), field("p_value", &TraceRound::p_value),
+    field("stability", &TraceRound::stability, "share of resamples that choose the effect"),
     field("parameters", &TraceRound::parameters), field("candidates", &TraceRound::candidates));
 
 template <>
@@ -38,6 +41,21 @@ inline constexpr auto kRecord<Unnamed> =
            field("correlation_unit", &Unnamed::correlation_unit),
            field("dominant_period_mm", &Unnamed::dominant_period_mm),
            field("odd_share", &Unnamed::odd_share));
+
+template <>
+inline constexpr auto kRecord<BlockPrediction> =
+    record("BlockPrediction", "A single profile predicted over gaps of one length.",
+           field("block_mm", &BlockPrediction::block_mm),
+           field("before_rms_um", &BlockPrediction::before_rms_um, "declared model"),
+           field("after_rms_um", &BlockPrediction::after_rms_um, "final model"),
+           field("before_rms_urad", &BlockPrediction::before_rms_urad),
+           field("after_rms_urad", &BlockPrediction::after_rms_urad));
+
+template <>
+inline constexpr auto kRecord<Blunder> =
+    record("Blunder", "A slip of the hand that would make one profile agree with the others.",
+           field("profile", &Blunder::profile), field("what", &Blunder::what),
+           field("delta_bic", &Blunder::delta_bic, "against the profile as it is"));
 
 template <>
 inline constexpr auto kRecord<NotTestable> = record("NotTestable",
@@ -81,6 +99,9 @@ inline constexpr auto kRecord<TraceResult> = record(
     field("gates", &TraceResult::gates, "the limits that were used"),
     field("fragile", &TraceResult::fragile, "none: no change of one gate within its range does"),
     field("rounds", &TraceResult::rounds), field("unnamed", &TraceResult::unnamed),
+    field("cross_validation", &TraceResult::cross_validation, "of a single profile"),
+    field("gain", &TraceResult::gain, "of the accepted effects, by cross_validation"),
+    field("blunders", &TraceResult::blunders, "rivals, most likely first; then no effect is named"),
     field("advice", &TraceResult::advice), field("not_testable", &TraceResult::not_testable),
     field("not_separable", &TraceResult::not_separable),
     field("refused", &TraceResult::refused, "of the last search, best first"),

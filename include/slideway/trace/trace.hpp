@@ -15,8 +15,9 @@ namespace slideway {
 /// A candidate as a round saw it, best shape.
 struct TriedEffect {
   std::string effect;
-  double delta_bic = 0.0;  // of adding it; below 0 it would pay
-  double p_value = 1.0;    // chance that the search finds as much in noise, over all candidates
+  std::vector<std::string> profiles;  // those it acts in; empty: all
+  double delta_bic = 0.0;             // of adding it; below 0 it would pay
+  double p_value = 1.0;  // chance that the search finds as much in noise, over all candidates
   std::optional<double> rms_um;  // residual of the height profiles with it
   std::vector<FittedParameter> parameters;
   std::optional<std::string> refused;  // why it was not accepted; none: it was, or is a rival
@@ -25,6 +26,7 @@ struct TriedEffect {
 /// One effect that entered the model.
 struct TraceRound {
   std::string accepted;
+  std::vector<std::string> profiles;        // those it acts in; empty: all
   std::vector<std::string> ambiguous_with;  // rivals within 10 of its BIC, in the final model
   std::optional<double> before_rms_um, after_rms_um;      // residual of the height profiles
   std::optional<double> before_rms_urad, after_rms_urad;  // and of the slope profiles
@@ -33,8 +35,38 @@ struct TraceRound {
   std::optional<double> before_holdout_rms_um, after_holdout_rms_um;
   double delta_bic = 0.0;
   double p_value = 1.0;
+  double stability = 1.0;                   // share of the resamples that choose the same effect
   std::vector<FittedParameter> parameters;  // of the effect, in the final fit
   std::vector<TriedEffect> candidates;      // what else was tried in that round, best first
+};
+
+/// A single profile predicted over gaps of one length, without and with the accepted effects.
+struct BlockPrediction {
+  double block_mm = 0.0;
+  std::optional<double> before_rms_um, after_rms_um, before_rms_urad, after_rms_urad;
+};
+
+/// What the accepted effects bring: at every length of gap, or over short gaps only.
+enum class Gain { prediction, interpolation };
+template <>
+inline constexpr std::array<std::string_view, 2> kTexts<Gain>{"prediction", "interpolation"};
+
+/// A slip of the hand that would make one profile agree with the others.
+enum class BlunderKind { sign, inch, per_inch, metre, per_metre, cut_direction, clock };
+template <>
+inline constexpr std::array<std::string_view, 7> kTexts<BlunderKind>{"wrong sign",
+                                                                     "values 25.4 times too small",
+                                                                     "values 25.4 times too large",
+                                                                     "values 1000 times too small",
+                                                                     "values 1000 times too large",
+                                                                     "wrong cut_direction",
+                                                                     "wrong start_s"};
+
+struct Blunder {
+  std::string profile;
+  BlunderKind what = BlunderKind::sign;
+  double delta_bic = 0.0;  // against the profile as it is
+  double left = 0.0;       // share of the square of the disagreement that it leaves
 };
 
 /// What is left and has no name.
@@ -105,6 +137,9 @@ struct TraceResult {
   std::optional<Fragile> fragile;                     // none: no such change does
   std::vector<TraceRound> rounds;
   std::optional<Unnamed> unnamed;
+  std::vector<BlockPrediction> cross_validation;  // of a single profile, shortest gaps first
+  std::optional<Gain> gain;                       // of the accepted effects, by those
+  std::vector<Blunder> blunders;  // rivals, most likely first; effects are then not looked for
   std::vector<std::string> advice;
   std::vector<NotTestable> not_testable;
   std::vector<NotSeparable> not_separable;

@@ -29,8 +29,9 @@ std::unique_ptr<Effect> make_centre_height(const Request& request) {
                       .typical = "h is 1 to 50 µm; the nub at the centre is at most as high as the "
                                  "depth of cut",
                       .variable = IndependentVariable::radius,
-                      .confounded_with = "speed_effect; a trace off the diameter by h",
-                      .confounded_effects = {"speed_effect"},
+                      .confounded_with =
+                          "speed_effect; chord, a trace off the diameter by h, exactly",
+                      .confounded_effects = {"speed_effect", "chord"},
                       .separated_by =
                           "parallel traces at known spacing, a microscope: a nub is there "
                           "or not",

@@ -28,7 +28,9 @@ std::unique_ptr<Effect> make_centre_step(const Request& request) {
                           "cut at opposite spindle angles",
                       .typical = "5 to 50 nm (aerostatic spindle), 0.1 to 1 µm (rolling bearings)",
                       .variable = IndependentVariable::trace,
-                      .confounded_with = "a centring error of the trace on a conical face",
+                      .confounded_with =
+                          "centring, the trace off the centre of a conical face, exactly",
+                      .confounded_effects = {"centring"},
                       .separated_by = "traces at three or more azimuths: the step goes with the "
                                       "spindle angle; on a radius it cannot be seen"},
       .amplitude = {"height_um", "A", "µm", 0.01},

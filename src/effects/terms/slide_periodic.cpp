@@ -10,10 +10,6 @@ namespace {
 
 constexpr double kTurn = 2.0 * kPi;
 
-// The height itself, without a pitch: waviness shorter than the carriage lifts it but the pads even
-// out most of the slope.
-CarriageReading height_only() { return {.height = {1.0, 0.0}, .pitch = {0.0, 0.0}}; }
-
 std::pair<double, double> search(const Stations& stations) {
   const VariableRange range = range_of(stations, slide_of);
   return {std::max(4.0 * range.step, 0.1), range.extent()};

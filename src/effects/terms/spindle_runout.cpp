@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "../linear_effect.hpp"
@@ -13,8 +15,10 @@ constexpr int kHarmonics = 2;
 constexpr int kAmplitudes = 4 * kHarmonics;  // cos, sin and their growth
 constexpr double kRpmNoReach = 1e-9;
 constexpr double kRpmReach = 0.02;  // share of the nominal speed that is searched
+constexpr int kMostDegree = 5;      // of the angle as a polynomial in time
+constexpr double kMostTurns = 1e3;  // of a drift
 
-std::vector<Parameter> runout_parameters() {
+std::vector<Parameter> runout_parameters(int degree) {
   std::vector<Parameter> list;
   for (int h = 1; h <= kHarmonics; ++h) {
     const std::string order = std::to_string(h);
@@ -24,6 +28,17 @@ std::vector<Parameter> runout_parameters() {
     list.push_back({"sin" + order + "_growth_um", "b'_" + order, "µm", 0.1});
   }
   list.push_back({"rpm", "n", "1/min", 1.0, 1e-3, 1e6});
+  for (int d = 2; d <= degree; ++d) {
+    const std::string order = std::to_string(d);
+    list.push_back({"drift" + order + "_turns", "q_" + order, "1", 0.1, -kMostTurns, kMostTurns});
+  }
+  return list;
+}
+
+std::vector<Shape> runout_shapes(int degree) {
+  std::vector<Shape> list{{.parameter = kAmplitudes}};
+  for (int d = 2; d <= degree; ++d)
+    list.push_back({.parameter = kAmplitudes + d - 1, .higher_order = true});
   return list;
 }
 
@@ -34,21 +49,27 @@ Description describe() {
           "synchronous axial and tilt error motion, run-out of a test bar "
           "(ISO 230-7)",
       .formula =
-          "Σ_h (a_h + a'_h ξ) cos 2πhk + (b_h + b'_h ξ) sin 2πhk, h = 1, 2; k = t n/60, "
-          "ξ the position from -1 to 1, phase from t = 0",
+          "Σ_h (a_h + a'_h ξ) cos 2πhκ + (b_h + b'_h ξ) sin 2πhκ, h = 1, 2; ξ the position from "
+          "-1 to 1; κ the angle of the spindle in turns, t n/60 + Σ_d q_d P_d(τ), d = 2 to degree "
+          "(1 if not given: constant speed), P_d of Legendre, τ the time from -1 to 1 over a "
+          "reading along the slide",
       .source = "ISO 230-7",
       .cause =
           "eccentric and tilted axis: one and two lines per turn that grow along the "
-          "reading",
+          "reading; a spindle without a fixed gear runs at a speed that drifts",
       .typical =
           "5 to 50 nm (aerostatic spindle), 0.1 to 10 µm for a test bar read along the "
           "slide",
       .variable = IndependentVariable::revolution,
       .confounded_with =
           "slide_periodic at one feed; on a face one groove per turn samples it at "
-          "a fixed angle, so that its lines become constants and slow drifts",
-      .confounded_effects = {"slide_periodic"},
-      .separated_by = "a second feed or spindle speed: the lines stay at whole orders per turn"};
+          "a fixed angle, so that its lines become constants and slow drifts; a drift of the "
+          "speed looks like further lines beside those of the turn, time_periodic or "
+          "revolution_periodic",
+      .confounded_effects = {"slide_periodic", "time_periodic", "revolution_periodic"},
+      .separated_by =
+          "a second feed or spindle speed: the lines stay at whole orders per turn; the angle of "
+          "the spindle read beside the height"};
 }
 
 // Position from -1 to 1: over the cut radius of a face, over the trace of a slide reading.
@@ -60,26 +81,49 @@ double scaled_position(const Stations& stations, Eigen::Index i) {
   return high > low ? 2.0 * (stations.radius(i) - low) / (high - low) - 1.0 : 0.0;
 }
 
+/// P_0 to P_degree at τ, the time of a reading along the slide from -1 to 1.
+std::array<double, kMostDegree + 1> legendre(const Stations& stations, Eigen::Index i) {
+  const double position = scaled_position(stations, i);
+  const bool back = stations.setup().cut_direction == CutDirection::inward;
+  std::array<double, kMostDegree + 1> p{1.0, back ? -position : position};
+  for (int d = 1; d < kMostDegree; ++d)
+    p[d + 1] = ((2 * d + 1) * p[1] * p[d] - d * p[d - 1]) / (d + 1);
+  return p;
+}
+
 class SpindleRunout : public LinearEffect {
  public:
-  SpindleRunout()
-      : LinearEffect(describe(), runout_parameters(), diagonal_map(kAmplitudes, kMicrometre),
-                     {{.parameter = kAmplitudes, .logarithmic = false, .stepwise = false}}) {}
+  explicit SpindleRunout(int degree)
+      : LinearEffect(describe(), runout_parameters(degree), diagonal_map(kAmplitudes, kMicrometre),
+                     runout_shapes(degree)) {}
 
-  [[nodiscard]] std::pair<double, double> search_range(int /*shape*/,
+  [[nodiscard]] std::pair<double, double> search_range(int shape,
                                                        const Stations& stations) const override {
+    if (shape > 0) return {-kMostTurns, kMostTurns};
     const double rpm = *stations.setup().spindle_rpm;
     // One groove per turn samples a face: another speed would be another alias, any slow line.
     const double reach = stations.setup().kind == Kind::face ? kRpmNoReach : kRpmReach;
     return {rpm * (1.0 - reach), rpm * (1.0 + reach)};
   }
 
-  [[nodiscard]] double resolution(int /*shape*/, double /*value*/,
+  [[nodiscard]] double resolution(int shape, double /*value*/,
                                   const Stations& stations) const override {
+    if (shape > 0) return kCyclesPerStep / kHarmonics;
     return kCyclesPerStep / kHarmonics * kMinute / range_of(stations, time_of).extent();
   }
 
-  [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_height(setup); }
+  // On a face one groove per turn samples it: a drift of the speed moves the grooves.
+  [[nodiscard]] bool applies_to(const Setup& setup) const override {
+    return is_height(setup) && (shapes().size() == 1 || setup.kind == Kind::slide);
+  }
+
+  [[nodiscard]] std::vector<std::string> lacking_together(
+      const std::vector<const Setup*>& setups) const override {
+    const bool along_slide =
+        std::ranges::any_of(setups, [](const Setup* setup) { return setup->kind == Kind::slide; });
+    if (along_slide) return {};
+    return {"a reading along the slide: on a face every groove meets it at one angle"};
+  }
 
   [[nodiscard]] std::vector<std::string> lacking(const Setup& setup) const override {
     std::vector<std::string> keys = LinearEffect::lacking(setup);
@@ -89,16 +133,48 @@ class SpindleRunout : public LinearEffect {
 
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
-    fill(stations, shape[0], out, [](double /*angle_per_rpm*/, double& /*c*/, double& /*s*/) {});
+    fill(stations, shape, out, [](Eigen::Index, int, double& /*c*/, double& /*s*/) {});
   }
 
-  void derivatives(const Stations& stations, std::span<const double> shape, int /*which*/,
+  void derivatives(const Stations& stations, std::span<const double> shape, int which,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
-    fill(stations, shape[0], out, [](double angle_per_rpm, double& cosine, double& sine) {
-      const double slope = -angle_per_rpm * sine;
-      sine = angle_per_rpm * cosine;
+    fill(stations, shape, out, [&](Eigen::Index i, int h, double& cosine, double& sine) {
+      const double turns =
+          which == 0 ? stations.time(i) / kMinute : legendre(stations, i)[which + 1];
+      const double angle = 2.0 * kPi * h * turns;
+      const double slope = -angle * sine;
+      sine = angle * cosine;
       cosine = slope;
     });
+  }
+
+  // The rate of the angle from one end of the drift to the other.
+  [[nodiscard]] std::vector<LineBand> lines(const Stations& stations,
+                                            std::span<const double> shape) const override {
+    const VariableRange time = range_of(stations, time_of);
+    double low = INFINITY, high = -INFINITY;
+    for (Eigen::Index i = 1; i < stations.size(); ++i) {
+      const double passed = stations.time(i) - stations.time(i - 1);
+      const double rate = (turn(stations, shape, i) - turn(stations, shape, i - 1)) / passed;
+      low = std::min(low, rate * time.extent());
+      high = std::max(high, rate * time.extent());
+    }
+    std::vector<LineBand> out;
+    for (int h = 1; h <= kHarmonics; ++h) out.push_back({h * low, h * high});
+    return out;
+  }
+
+  // A drift of the speed, degree by degree: the search takes the one that pays.
+  [[nodiscard]] std::vector<EffectOptions> hypotheses(
+      const EffectOptions* declared) const override {
+    EffectOptions options = declared ? *declared : EffectOptions{};
+    std::vector<EffectOptions> out;
+    for (int degree = declared ? options.degree.value_or(1) + 1 : 1; degree <= kMostDegree;
+         ++degree) {
+      options.degree = degree;
+      out.push_back(options);
+    }
+    return out;
   }
 
   [[nodiscard]] double size(const Eigen::VectorXd& values) const override {
@@ -106,20 +182,28 @@ class SpindleRunout : public LinearEffect {
   }
 
  private:
+  // κ: the angle of the spindle in turns.
+  static double turn(const Stations& stations, std::span<const double> shape, Eigen::Index i) {
+    double turns = stations.time(i) * shape[0] / kMinute;
+    if (shape.size() == 1) return turns;
+    const auto p = legendre(stations, i);
+    for (std::size_t d = 1; d < shape.size(); ++d) turns += shape[d] * p[d + 1];
+    return turns;
+  }
+
   template <typename Line>
-  void fill(const Stations& stations, double rpm, Eigen::Ref<Eigen::MatrixXd> out,
-            Line&& line) const {
+  void fill(const Stations& stations, std::span<const double> shape,
+            Eigen::Ref<Eigen::MatrixXd> out, Line&& line) const {
     if (!applies_to(stations.setup())) return void(out.setZero());
     Phasor phasor;
     for (Eigen::Index i = 0; i < stations.size(); ++i) {
       const double position = scaled_position(stations, i);
-      const double turn = 2.0 * kPi * stations.time(i) / kMinute;
-      phasor.turn_to(turn * rpm);
+      phasor.turn_to(2.0 * kPi * turn(stations, shape, i));
       const double c = phasor.cosine(), s = phasor.sine();
       const double cosines[] = {c, (c - s) * (c + s)}, sines[] = {s, 2.0 * s * c};
       for (int h = 1; h <= kHarmonics; ++h) {
         double cosine = cosines[h - 1], sine = sines[h - 1];
-        line(h * turn, cosine, sine);
+        line(i, h, cosine, sine);
         out.row(i).segment<4>(4 * (h - 1)) << cosine, sine, position * cosine, position * sine;
       }
     }
@@ -129,8 +213,9 @@ class SpindleRunout : public LinearEffect {
 }  // namespace
 
 std::unique_ptr<Effect> make_spindle_runout(const Request& request) {
-  request.accept_only({});
-  return std::make_unique<SpindleRunout>();
+  request.accept_only({"degree"});
+  return std::make_unique<SpindleRunout>(request.options.degree ? request.degree(1, kMostDegree)
+                                                                : 1);
 }
 
 }  // namespace slideway

@@ -6,6 +6,7 @@
 #include "../linear_effect.hpp"
 #include "../locus.hpp"
 #include "../request.hpp"
+#include "../straightness_curve.hpp"
 #include "slideway/base/wide.hpp"
 
 namespace slideway {
@@ -40,19 +41,8 @@ ExtendedMatrix powers_from_legendre(int degree, const Interval& interval) {
 }
 
 std::vector<Parameter> parameters_of(int first, int degree, const TravelRange& range) {
-  const double reach = std::max({std::abs(range.slide_min), std::abs(range.slide_max), 1.0});
   std::vector<Parameter> parameters;
-  for (int k = first; k <= degree; ++k) {
-    const std::string index = std::to_string(k);
-    parameters.push_back({.name = "b" + index,
-                          .symbol = "b_" + index,
-                          .unit = power_of_mm(1 - k),
-                          .scale = kMicrometre * std::pow(reach, -k),
-                          .gauge = k == 0   ? 5
-                                   : k == 1 ? 4
-                                            : 1,
-                          .by_convention = k <= 1});
-  }
+  for (int k = first; k <= degree; ++k) parameters.push_back(straightness_parameter(k, range));
   return parameters;
 }
 
@@ -117,11 +107,14 @@ class Straightness : public LinearEffect {
     motion.beta += slope.rightCols(count).matrix().row(0).dot(amplitudes);
   }
 
-  [[nodiscard]] std::string advice(const UndeterminedPart& part) const override;
+  [[nodiscard]] std::string advice(const UndeterminedPart& part) const override {
+    return straightness_advice(*this, part);
+  }
 
   // A higher degree is one more hypothesis each: the search takes the one that pays.
   [[nodiscard]] std::vector<EffectOptions> hypotheses(
       const EffectOptions* declared) const override {
+    if (declared && declared->form == Form::curve) return {};
     EffectOptions options = declared ? *declared : EffectOptions{};
     const int known = declared ? *declared->degree : 1;  // b_0 and b_1 are the trace's own
     if (declared) options.above = known;
@@ -175,34 +168,15 @@ class Straightness : public LinearEffect {
   std::vector<double> ahead_, back_, rise_;
 };
 
-bool has(const UndeterminedPart& part, MotionError motion) {
-  return std::ranges::any_of(
-      part.others, [&](const Effect* other) { return other->description().motion == motion; });
-}
-
-std::string Straightness::advice(const UndeterminedPart& part) const {
-  const auto conventional = [&](const std::string& name) {
-    const auto own = std::ranges::find(parameters(), name, &Parameter::name);
-    return own->by_convention;
-  };
-  if (part.others.empty() && std::ranges::all_of(part.own, conventional))
-    return "offset and slope of a straightness are fixed by its reference line (ISO 230-1), not by "
-           "these data; no measurement is needed";
-  if (has(part, MotionError::vertical_straightness)) return "";  // that has its own advice
-  if (has(part, MotionError::squareness))
-    return "the squareness is the slope of the face: give the slope of the straightness by a prior "
-           "(an autocollimator against the spindle axis), or measure the squareness itself "
-           "(run-out, Eq. 21)";
-  if (part.model_has_others)
-    return "one profile cannot tell them apart: read the straightness along the slide (kind = "
-           "\"slide\"), give a prior, or cut with another feed or direction";
-  return "";
-}
-
 }  // namespace
 
 std::unique_ptr<Effect> make_straightness(const Request& request) {
-  request.accept_only({"body", "degree"});
+  if (request.options.form == Form::curve) {
+    request.accept_only({"body", "form", "resolution_mm"});
+    return make_curved_straightness(request.carriage(Axis::x), describe(), request.options,
+                                    request.range);
+  }
+  request.accept_only({"body", "degree", "form"});
   const int first = request.options.above ? *request.options.above + 1 : 0;
   return std::make_unique<Straightness>(request.carriage(Axis::x), first,
                                         request.degree(first, kMostDegree), request.range);

@@ -56,6 +56,12 @@ class Input:
     quantity: Literal["height", "slope"]
     role: Literal["fit", "holdout"]
     """holdout: never fitted, only predicted"""
+    azimuth_deg: float | None
+    """of a face"""
+    surface: str | None
+    """as the problem names it"""
+    instrument: str | None
+    """as the problem names it"""
     samples: int
     missing: int
     """points of the file that have no value"""
@@ -268,6 +274,17 @@ class StraightnessCurve:
 
 
 @dataclass(frozen=True)
+class CurveForm:
+    """The process a curve is described by: a Matérn covariance."""
+
+    length_mm: float
+    amplitude_um: float
+    """its standard deviation"""
+    roughness: float
+    """its exponent: 1.5 or 2.5"""
+
+
+@dataclass(frozen=True)
 class Straightness:
     """Straightness error of the slide, E_ZX, ISO 230-1."""
 
@@ -281,6 +298,8 @@ class Straightness:
     errors: list[StraightnessError]
     """one for each reference line"""
     curve: StraightnessCurve
+    form: CurveForm | None
+    """of a curve"""
     reason: str
     """why there is none"""
 
@@ -344,7 +363,7 @@ class Contribution:
     effect: str
     profile: str
     rms_um: float | None
-    """about its mean"""
+    """of what levelling leaves of it"""
     rms_urad: float | None
     share: float
     """of the sum of mean squares of all effects"""
@@ -443,6 +462,9 @@ class ProfileCheck:
     what: str
     En: float | None
     verdict: Literal["consistent", "inconsistent", "not_available"]
+    chi2: float | None
+    """per degree of freedom, over all effects"""
+    p_value: float | None
 
 
 @dataclass(frozen=True)
@@ -451,11 +473,25 @@ class HeldOutCheck:
 
     profile: str
     chi2: float
+    """per degree of freedom"""
     p_value: float
     largest_um: float | None
     largest_urad: float | None
     at_mm: float
     verdict: Literal["fits", "does not fit"]
+
+
+@dataclass(frozen=True)
+class PureErrorCheck:
+    """What repeats have in common and the model lacks."""
+
+    profiles: list[str]
+    F: float
+    p_value: float
+    common_um: float | None
+    """rms of the slow part in common"""
+    common_urad: float | None
+    verdict: Literal["fits", "lack of fit"]
 
 
 @dataclass(frozen=True)
@@ -465,6 +501,7 @@ class Crosscheck:
     squareness: SquarenessCheck | None
     profiles: list[ProfileCheck]
     held_out: list[HeldOutCheck]
+    repeats: list[PureErrorCheck]
 
 
 @dataclass(frozen=True)
@@ -495,6 +532,8 @@ class Tried:
     """A candidate of the loop."""
 
     effect: str
+    profiles: list[str]
+    """those it acts in; empty: all"""
     delta_bic: float
     p_value: float
     rms_um: float | None
@@ -508,6 +547,8 @@ class Round:
     """One effect that entered the model."""
 
     accepted: str
+    profiles: list[str]
+    """those it acts in; empty: all"""
     ambiguous_with: list[str]
     before_rms_um: float | None
     after_rms_um: float | None
@@ -517,6 +558,8 @@ class Round:
     after_holdout_rms_um: float | None
     delta_bic: float
     p_value: float
+    stability: float
+    """share of resamples that choose the effect"""
     parameters: list[Parameter]
     candidates: list[Tried]
 
@@ -539,6 +582,31 @@ class Unnamed:
     correlation_unit: str
     dominant_period_mm: float | None
     odd_share: float | None
+
+
+@dataclass(frozen=True)
+class BlockPrediction:
+    """A single profile predicted over gaps of one length."""
+
+    block_mm: float
+    before_rms_um: float | None
+    """declared model"""
+    after_rms_um: float | None
+    """final model"""
+    before_rms_urad: float | None
+    after_rms_urad: float | None
+
+
+@dataclass(frozen=True)
+class Blunder:
+    """A slip of the hand that would make one profile agree with the others."""
+
+    profile: str
+    what: Literal[
+        "wrong sign", "values 25.4 times too small", "values 25.4 times too large", "values 1000 times too small", "values 1000 times too large", "wrong cut_direction", "wrong start_s"
+    ]
+    delta_bic: float
+    """against the profile as it is"""
 
 
 @dataclass(frozen=True)
@@ -597,6 +665,12 @@ class Trace:
     """none: no change of one gate within its range does"""
     rounds: list[Round]
     unnamed: Unnamed | None
+    cross_validation: list[BlockPrediction]
+    """of a single profile"""
+    gain: Literal["prediction", "interpolation"] | None
+    """of the accepted effects, by cross_validation"""
+    blunders: list[Blunder]
+    """rivals, most likely first; then no effect is named"""
     advice: list[str]
     not_testable: list[NotTestable]
     not_separable: list[NotSeparable]

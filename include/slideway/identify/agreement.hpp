@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include "slideway/identify/fit.hpp"
+
+namespace slideway {
+
+/// The same quantity from each of two fitted profiles, for every effect that either determines by
+/// itself; of more than eight profiles, from each and from all others together.
+///
+/// Each profile is fitted alone under its noise in the joint fit, levelling free, shapes as the
+/// joint fit has them. An effect is compared as a curve: straightness as the deviation from the
+/// line through the ends of the common travel, others in the low band of the first profile. E_n is
+/// the largest |difference| / sqrt(U_a² + U_b²) along it, with U such that all comparisons of the
+/// report hold together (Gates::false_disagreement): Šidák's share for each, and for a curve the
+/// quantile of its largest standardised deviation, by simulation. `p_value`: χ² of the pair over
+/// all effects, near a gamma variable as in LackOfFit.
+std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit);
+
+}  // namespace slideway

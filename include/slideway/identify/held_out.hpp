@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "slideway/identify/fit.hpp"
+
+namespace slideway {
+
+/// Holds every profile that was not fitted against its prediction.
+///
+/// Prediction error e of the low band, levelling free: covariance R + C Σ Cᵀ, with the noise R of
+/// the profile, the columns C of the model and the covariance Σ of what was fitted. Directions that
+/// the fitted profiles do not determine are left free. R is that of the fitted profiles of the same
+/// kind, quantity, base and spacing, the largest in the long run; without one, that of the
+/// profile's own fine band. p is twice the smaller of two tail probabilities: of χ² of all values
+/// and of the slow band, each near a gamma variable as in LackOfFit. `at_mm` is where |e| is
+/// largest in its standard uncertainties.
+std::vector<HeldOutCheck> check_held_out(const Model& model, const Solution& fit);
+
+}  // namespace slideway

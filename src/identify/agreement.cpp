@@ -1,0 +1,287 @@
+#include "slideway/identify/agreement.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "reported.hpp"
+#include "slideway/base/distribution.hpp"
+#include "slideway/base/units.hpp"
+#include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/noise_model.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::size_t kMostPairwise = 8;  // profiles: 28 pairs a reader still reads
+constexpr Eigen::Index kCurvePoints = 101;
+constexpr double kOutside = 1e-6;  // of a row: less along a null direction is rounding
+
+using Profiles = std::vector<std::size_t>;  // of the fitted ones
+
+/// What some profiles say of (amplitudes, shapes) by themselves, as a change of the joint estimate.
+struct Alone {
+  Eigen::MatrixXd rows;  // [columns, residual], white and compressed
+  Eigen::MatrixXd basis, null_space;
+  Eigen::VectorXd change;
+  double freedom = 0.0;       // of the noise
+  double log_variance = 0.0;  // of the noise's size
+
+  Alone(const Linearisation& linear, const std::vector<Noise>& noise, const Compressed& all,
+        const Profiles& which, double tolerance) {
+    const Eigen::Index k = all.triangle.cols();
+    rows.resize(0, k + 1);
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(k);
+    double known = 0.0;
+    for (const std::size_t i : which) {
+      append(all.profiles[i].free());
+      squares += all.profiles[i].squares();
+      const double spread = noise[i].log_long_run_variance();
+      log_variance += spread / static_cast<double>(which.size());
+      freedom += spread > 0.0 ? 2.0 / spread : HUGE_VAL;
+      known += noise[i].effective_values();
+    }
+    append((Eigen::MatrixXd(linear.prior_rows.rows(), k + 1) << linear.prior_rows,
+            linear.prior_residuals)
+               .finished());
+    squares += linear.prior_rows.colwise().squaredNorm().transpose();
+    const Rank rank = analyse_rank(rows.leftCols(k), squares.cwiseSqrt(), tolerance);
+    basis = rank.basis;
+    null_space = rank.null_space;
+    change = basis * (basis.transpose() * (rows.leftCols(k).transpose() * rows.col(k)));
+    const bool estimated = std::isfinite(freedom);
+    if (estimated)
+      freedom = std::max(1.0, std::min(freedom, known - static_cast<double>(basis.cols())));
+  }
+
+  [[nodiscard]] bool determines(const Eigen::MatrixXd& curve) const {
+    const Eigen::MatrixXd open = curve * null_space;
+    for (Eigen::Index d = 0; d < open.cols(); ++d)
+      if (open.col(d).norm() > kOutside * curve.norm() * null_space.col(d).norm()) return false;
+    return true;
+  }
+
+ private:
+  void append(const Eigen::MatrixXd& more) {
+    Eigen::MatrixXd both(rows.rows() + more.rows(), rows.cols());
+    both << rows, more;
+    rows = std::move(both);
+  }
+};
+
+/// An effect as a curve: rows that are multiplied with (amplitudes, shapes).
+struct Curve {
+  std::string what;
+  Eigen::MatrixXd rows;
+};
+
+/// Where both profiles have readings of the slide, a bridge from foot to foot.
+SlideRange common_travel(const Model& model, const Profile& a, const Profile& b) {
+  SlideRange out{-INFINITY, INFINITY};
+  for (const Profile* profile : {&a, &b}) {
+    const SlideRange own = slide_range(*profile, model.machine);
+    const double foot = profile->setup.base_mm.value_or(0.0) / 2.0;
+    out.least = std::max(out.least, own.least - foot);
+    out.greatest = std::min(out.greatest, own.greatest + foot);
+  }
+  return out;
+}
+
+/// Deviation from the line through the ends of `travel`; nothing where there is none in common.
+Eigen::MatrixXd straightness_curve(const Model& model, const ModelTerm& term, const Solution& fit,
+                                   const SlideRange& travel) {
+  if (!(travel.greatest > travel.least)) return {};
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kCurvePoints, travel.least, travel.greatest);
+  Setup setup;
+  setup.kind = Kind::slide;
+  setup.first_mm = travel.least;
+  setup.last_mm = travel.greatest;
+  Eigen::MatrixXd out(x.size(), term.effect->amplitudes());
+  term.effect->columns({{x.data(), static_cast<std::size_t>(x.size())}, setup, model.machine},
+                       shapes_of(term, fit.estimate.shapes), out);
+  const Eigen::RowVectorXd first = out.row(0), last = out.row(x.size() - 1);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(x.size() - 1);
+    out.row(i) -= (1.0 - share) * first + share * last;
+  }
+  return out.middleRows(1, x.size() - 2);
+}
+
+/// Low band of an effect in one profile, as far as levelling leaves it, at most kCurvePoints rows.
+Eigen::MatrixXd levelled_curve(const Linearisation& linear, std::size_t i, const ModelTerm& term) {
+  const Eigen::MatrixXd all =
+      levelled(*linear.observations[i],
+               linear.columns[i].middleCols(term.first_amplitude, term.effect->amplitudes()));
+  const Eigen::Index count = std::min(kCurvePoints, all.rows());
+  Eigen::MatrixXd out(count, all.cols());
+  for (Eigen::Index row = 0; row < count; ++row) out.row(row) = all.row(row * all.rows() / count);
+  return out;
+}
+
+/// Every effect of the model as a curve of profile `a` and, for the slide, the travel in common.
+std::vector<Curve> curves(const Model& model, const Solution& fit, std::size_t a, std::size_t b) {
+  std::vector<Curve> out;
+  const auto& observations = fit.linear.observations;
+  for (const ModelTerm& term : model.terms) {
+    const bool of_slide = term.effect->description().motion == MotionError::straightness;
+    const Eigen::MatrixXd own =
+        of_slide ? straightness_curve(
+                       model, term, fit,
+                       common_travel(model, *observations[a]->profile, *observations[b]->profile))
+                 : levelled_curve(fit.linear, a, term);
+    if (own.size() == 0 || own.cwiseAbs().maxCoeff() == 0.0) continue;
+    Curve curve{term.name, Eigen::MatrixXd::Zero(own.rows(), fit.linear.prior_rows.cols())};
+    curve.rows.middleCols(term.first_amplitude, own.cols()) = own;
+    out.push_back(std::move(curve));
+  }
+  return out;
+}
+
+/// Length of the path of unit vectors that a curve's rows are on, each up to its sign.
+double path_length(const Eigen::MatrixXd& rows, const Eigen::VectorXd& variance, double least) {
+  double length = 0.0;
+  Eigen::RowVectorXd before(0);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    if (!(variance[i] > least)) continue;
+    const Eigen::RowVectorXd unit = rows.row(i) / std::sqrt(variance[i]);
+    if (before.size() > 0) length += std::min((unit - before).norm(), (unit + before).norm());
+    before = unit;
+  }
+  return length;
+}
+
+/// Factor that the standardised deviation of a curve exceeds somewhere with a given probability
+/// (tube formula: Sun and Loader 1994, Eq. 2.3).
+double simultaneous_factor(double length, double freedom, double outside) {
+  const auto probability = [&](double c) {
+    const double of_path = std::isfinite(freedom) ? std::pow(1.0 + c * c / freedom, -0.5 * freedom)
+                                                  : std::exp(-0.5 * c * c);
+    const double of_point =
+        std::isfinite(freedom) ? student_tail(freedom, c) : 0.5 * std::erfc(c / std::sqrt(2.0));
+    return length / kPi * of_path + 2.0 * of_point;
+  };
+  double low = 0.0, high = 1.0;
+  while (probability(high) > outside) low = high, high *= 2.0;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (probability(middle) > outside ? low : high) = middle;
+  }
+  return high;
+}
+
+/// Two sides of a comparison, and what they are called.
+struct Pair {
+  const Alone& a;
+  const Alone& b;
+  std::vector<std::string> names;
+  std::vector<Curve> curves;  // that both determine
+};
+
+double largest_en(const Pair& pair, const Curve& curve, double outside) {
+  constexpr double kNothing = 1e-12;  // of the largest variance: the ends of a levelled curve
+  const Eigen::MatrixXd of_a = curve.rows * pair.a.basis, of_b = curve.rows * pair.b.basis;
+  const Eigen::VectorXd variance_a = of_a.rowwise().squaredNorm(),
+                        variance_b = of_b.rowwise().squaredNorm(),
+                        variance = variance_a + variance_b;
+  const double least = kNothing * variance.maxCoeff();
+  const Eigen::VectorXd difference = curve.rows * (pair.a.change - pair.b.change);
+  Eigen::MatrixXd both(of_a.rows(), of_a.cols() + of_b.cols());
+  both << of_a, of_b;
+  Eigen::Index at = 0;
+  const double largest =
+      std::sqrt(difference.cwiseAbs2().cwiseQuotient(variance.cwiseMax(least)).maxCoeff(&at));
+  const double freedom = std::pow(variance[at], 2) / (std::pow(variance_a[at], 2) / pair.a.freedom +
+                                                      std::pow(variance_b[at], 2) / pair.b.freedom);
+  const double length = path_length(both, variance, least);
+  return largest / simultaneous_factor(length, freedom, outside);
+}
+
+/// χ² of two sides being one, and its tail probability.
+void set_chi_square(const Pair& pair, ProfileCheck& out) {
+  const Eigen::Index k = pair.a.rows.cols() - 1;
+  Eigen::MatrixXd rows(pair.a.rows.rows() + pair.b.rows.rows(), k + 1);
+  rows << pair.a.rows, pair.b.rows;
+  const auto left = [&](const Eigen::MatrixXd& of) {
+    return least_squares(of.leftCols(k), of.rightCols(1)).squares[0];
+  };
+  const auto rank = [&](const Eigen::MatrixXd& of) {
+    return static_cast<double>(orthonormal(of.leftCols(k)).cols());
+  };
+  const double count = rank(pair.a.rows) + rank(pair.b.rows) - rank(rows);
+  if (count < 1.0) return;
+  const double found = std::max(0.0, left(rows) - left(pair.a.rows) - left(pair.b.rows));
+  const double spread = 0.5 * std::min(pair.a.log_variance + pair.b.log_variance, 2.0);
+  const double mean = count * std::exp(0.5 * spread);
+  const double variance = 2.0 * mean * mean / count + mean * mean * std::expm1(spread);
+  out.chi2 = found / count;
+  out.p_value = gamma_tail(mean * mean / variance, found * mean / variance);
+}
+
+/// The pairs to be compared, with the curves that both sides determine. The noise is that of
+/// each by itself: what profiles disagree by is not in it.
+class ProfileComparison {
+ public:
+  ProfileComparison(const Model& model, const Solution& fit) : model_(model), fit_(fit) {
+    const std::vector<Noise> noise = noise_of_each(fit.linear, model.gates);
+    const Compressed compressed = compress(fit.linear, noise);
+    const std::size_t count = fit.linear.observations.size();
+    const bool pairwise = count <= kMostPairwise;
+    const auto side = [&](const Profiles& which) {
+      return Alone(fit.linear, noise, compressed, which, model.gates.rank_tolerance);
+    };
+    for (std::size_t i = 0; i < count; ++i) alone_.push_back(side({i}));
+    if (!pairwise) others_.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = i + 1; pairwise && j < count; ++j)
+        add(i, j, alone_[j], fit.linear.observations[j]->profile->name);
+      if (pairwise) continue;
+      Profiles rest;
+      for (std::size_t j = 0; j < count; ++j)
+        if (j != i) rest.push_back(j);
+      others_.push_back(side(rest));
+      add(i, rest.front(), others_.back(), "all others");
+    }
+  }
+
+  [[nodiscard]] std::vector<ProfileCheck> checks() const {
+    std::size_t comparisons = 0;
+    for (const Pair& pair : pairs_) comparisons += pair.curves.size();
+    const Gates& gates = model_.gates;
+    const double outside =
+        -std::expm1(std::log1p(-gates.false_disagreement) / static_cast<double>(comparisons));
+    std::vector<ProfileCheck> out;
+    for (const Pair& pair : pairs_)
+      for (const Curve& curve : pair.curves) {
+        ProfileCheck check{pair.names, curve.what};
+        check.En = largest_en(pair, curve, outside);
+        check.verdict =
+            *check.En <= gates.en_limit ? Consistency::consistent : Consistency::inconsistent;
+        set_chi_square(pair, check);
+        out.push_back(std::move(check));
+      }
+    return out;
+  }
+
+ private:
+  void add(std::size_t i, std::size_t j, const Alone& other, const std::string& name) {
+    Pair pair{alone_[i], other, {fit_.linear.observations[i]->profile->name, name}, {}};
+    for (Curve& curve : curves(model_, fit_, i, j))
+      if (alone_[i].determines(curve.rows) && other.determines(curve.rows))
+        pair.curves.push_back(std::move(curve));
+    if (!pair.curves.empty()) pairs_.push_back(std::move(pair));
+  }
+
+  const Model& model_;
+  const Solution& fit_;
+  std::vector<Alone> alone_, others_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace
+
+std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit) {
+  if (fit.linear.observations.size() < 2 || fit.linear.prior_rows.cols() == 0) return {};
+  return ProfileComparison(model, fit).checks();
+}
+
+}  // namespace slideway

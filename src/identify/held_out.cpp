@@ -1,0 +1,160 @@
+#include "slideway/identify/held_out.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/base/distribution.hpp"
+#include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/noise_model.hpp"
+
+namespace slideway {
+namespace {
+
+double trace_length(const Observation& observation) {
+  return observation.profile->setup.last_mm - observation.profile->setup.first_mm;
+}
+
+/// Whether the noise of one low band is that of the other: read in the same way, value by value.
+bool are_sisters(const Observation& a, const Observation& b, double tolerance) {
+  const Setup &s = a.profile->setup, &t = b.profile->setup;
+  const auto alike = [&](double of_a, double of_b) {
+    return std::abs(of_a / trace_length(a) - of_b / trace_length(b)) <=
+           tolerance * of_b / trace_length(b);
+  };
+  return s.kind == t.kind && s.quantity == t.quantity && s.base_mm == t.base_mm &&
+         alike(static_cast<double>(a.low_band.samples()),
+               static_cast<double>(b.low_band.samples())) &&
+         alike(static_cast<double>(a.values.size()), static_cast<double>(b.values.size()));
+}
+
+/// A profile that was not fitted, held against what the fit says of it.
+struct Predicted {
+  Eigen::MatrixXd free;     // nuisances, and directions the fit does not determine
+  Eigen::MatrixXd columns;  // by the directions it determines
+  Eigen::VectorXd error;
+  Noise noise;
+
+  Predicted(const Model& model, const Solution& fit, const Observation& observation) {
+    const Eigen::MatrixXd all = linear_columns(model, fit.estimate, observation);
+    error = observation.values - all.leftCols(model.amplitudes()) * fit.estimate.amplitudes;
+    columns = all * fit.uncertainty.basis;
+    const Eigen::Index m = observation.nuisances.cols(), d = fit.rank.null_space.cols();
+    free.resize(error.size(), m + d);
+    free << observation.nuisances, all * fit.rank.null_space;
+    set_noise(model, fit, observation);
+  }
+
+  [[nodiscard]] Eigen::MatrixXd free_basis() const {
+    Eigen::MatrixXd white = free;
+    noise.whiten(white);
+    return orthonormal(std::move(white));
+  }
+
+ private:
+  void set_noise(const Model& model, const Solution& fit, const Observation& observation) {
+    const std::vector<Noise> fitted = noise_of_each(fit.linear, model.gates);
+    const Noise* largest = nullptr;
+    for (std::size_t i = 0; i < fitted.size(); ++i)
+      if (are_sisters(observation, *fit.linear.observations[i], model.gates.same_place) &&
+          (!largest || fitted[i].long_run_deviation() > largest->long_run_deviation()))
+        largest = &fitted[i];
+    if (largest) {
+      noise = *largest;
+      return;
+    }
+    Linearisation alone;
+    alone.observations = {&observation};
+    alone.columns = {Eigen::MatrixXd(error.size(), 0)};
+    alone.residuals = {error};
+    alone.prior_rows.resize(0, 0);
+    noise = noise_beside(alone, model.gates).front();
+  }
+};
+
+/// A square and how many independent ones it is the sum of.
+struct Square {
+  double found = 0.0, count = 0.0;
+};
+
+/// zᵀ (I + B Σ Bᵀ)⁻¹ z of white z.
+double square_of(const Eigen::VectorXd& z, const Eigen::MatrixXd& B,
+                 const Eigen::MatrixXd& covariance) {
+  if (B.cols() == 0) return z.squaredNorm();
+  const Eigen::VectorXd products = B.transpose() * z;
+  const Eigen::MatrixXd information = covariance.inverse() + B.transpose() * B;
+  return z.squaredNorm() - products.dot(information.ldlt().solve(products));
+}
+
+/// Probability of a larger square under a noise whose size is an estimate (LackOfFit).
+/// @param more  relative variance of that size besides
+double tail(const Square& square, const Noise& noise, double more) {
+  constexpr double kMostSpread = 1.0;  // of ln(long-run variance)
+  if (square.count < 1.0) return 1.0;
+  const double spread = std::min(noise.log_long_run_variance(), kMostSpread);
+  const double mean = square.count * std::exp(0.5 * spread);
+  const double variance = 2.0 * mean * mean / square.count +
+                          mean * mean * (std::expm1(spread) + (noise.is_estimated() ? more : 0.0));
+  return gamma_tail(mean * mean / variance, square.found * mean / variance);
+}
+
+void set_largest(const Observation& observation, const Predicted& predicted,
+                 const Eigen::MatrixXd& covariance, HeldOutCheck& out) {
+  Eigen::MatrixXd white(predicted.error.size(), predicted.free.cols() + 1);
+  white << predicted.free, predicted.error;
+  predicted.noise.whiten(white);
+  const Eigen::Index m = predicted.free.cols();
+  Eigen::VectorXd error = predicted.error;
+  if (m > 0)
+    error -= predicted.free * least_squares(white.leftCols(m), white.rightCols(1)).values.col(0);
+  const Eigen::VectorXd variance =
+      ((predicted.columns * covariance).cwiseProduct(predicted.columns)).rowwise().sum().array() +
+      std::pow(predicted.noise.standard_deviation(), 2);
+  Eigen::Index at = 0;
+  error.cwiseAbs2().cwiseQuotient(variance).maxCoeff(&at);
+  const double size = error[at] / std::sqrt(static_cast<double>(observation.low_band.samples()) /
+                                            static_cast<double>(error.size()));
+  out.at_mm = observation.low_band.positions(observation.profile->positions)[std::size_t(at)];
+  if (observation.profile->setup.quantity == Quantity::height)
+    out.largest_um = size / kMicrometre;
+  else
+    out.largest_urad = size / kMicroradian;
+}
+
+HeldOutCheck check(const Model& model, const Solution& fit, const Observation& observation) {
+  const Predicted predicted(model, fit, observation);
+  const Eigen::MatrixXd covariance = fit.uncertainty.inflation * fit.uncertainty.covariance;
+  const Eigen::Index n = predicted.error.size(), r = predicted.columns.cols();
+  const Eigen::Index q = slow_cosine_count(n, model.gates);
+  Eigen::MatrixXd rows(n, r + 1 + q);
+  rows << predicted.columns, predicted.error, slow_cosines(n, q);
+  predicted.noise.whiten(rows);
+  const Eigen::MatrixXd free = predicted.free_basis();
+  rows -= free * (free.transpose() * rows).eval();
+  const Eigen::MatrixXd slow = orthonormal(rows.rightCols(q));
+  const auto columns = rows.leftCols(r);
+  const Eigen::VectorXd error = rows.col(r);
+  const Square all{square_of(error, columns, covariance), static_cast<double>(n - free.cols())};
+  const Square band{square_of(slow.transpose() * error, slow.transpose() * columns, covariance),
+                    static_cast<double>(slow.cols())};
+  HeldOutCheck out;
+  out.profile = observation.profile->name;
+  out.chi2 = all.found / std::max(all.count, 1.0);
+  const double extrapolation = std::pow(model.gates.noise_extrapolation, 2);
+  out.p_value = std::min(1.0, 2.0 * std::min(tail(all, predicted.noise, 0.0),
+                                             tail(band, predicted.noise, extrapolation)));
+  set_largest(observation, predicted, covariance, out);
+  if (out.p_value < model.gates.held_out_p) out.verdict = HeldOutVerdict::does_not_fit;
+  return out;
+}
+
+}  // namespace
+
+std::vector<HeldOutCheck> check_held_out(const Model& model, const Solution& fit) {
+  std::vector<HeldOutCheck> out;
+  for (const Observation& observation : model.observations)
+    if (observation.profile->role == Role::holdout) out.push_back(check(model, fit, observation));
+  return out;
+}
+
+}  // namespace slideway

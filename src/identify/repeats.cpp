@@ -1,0 +1,204 @@
+#include "repeats.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/identify/lack_of_fit.hpp"
+#include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/noise_model.hpp"
+
+namespace slideway {
+namespace {
+
+double extent(const Observation& observation) {
+  return observation.profile->setup.last_mm - observation.profile->setup.first_mm;
+}
+
+bool near(double a, double b, double tolerance) { return std::abs(a - b) <= tolerance; }
+
+bool near(const std::optional<double>& a, const std::optional<double>& b, double share) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return near(*a, *b, share * std::max(std::abs(*a), std::abs(*b)));
+}
+
+/// Whether two cuts are one, as far as the setups tell, lengths to a part of a station.
+bool is_one_cut(const Setup& s, const Setup& t, double length_mm) {
+  constexpr double kAsWritten = 1e-6;  // of a number that was typed in twice
+  return s.kind == t.kind && s.quantity == t.quantity && near(s.base_mm, t.base_mm, kAsWritten) &&
+         near(s.spindle_position_mm, t.spindle_position_mm, length_mm) &&
+         near(s.azimuth_deg, t.azimuth_deg, kAsWritten) && near(s.z_mm, t.z_mm, length_mm) &&
+         near(s.overhang_mm, t.overhang_mm, length_mm) &&
+         near(s.feed_mm_per_min, t.feed_mm_per_min, kAsWritten) &&
+         near(s.spindle_rpm, t.spindle_rpm, kAsWritten) && s.cut_direction == t.cut_direction &&
+         near(s.start_s, t.start_s, kAsWritten * std::max(1.0, std::abs(s.start_s)));
+}
+
+/// Whether two traces run along one line of the surface; where either does not say, they may.
+bool is_one_line(const std::optional<Line>& a, const std::optional<Line>& b, double length_mm) {
+  if (!a || !b) return true;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!near(a->from_mm[i], b->from_mm[i], length_mm) ||
+        !near(a->to_mm[i], b->to_mm[i], length_mm))
+      return false;
+  return true;
+}
+
+/// Stations of the low band, of a face from the spindle axis.
+std::vector<double> stations(const Observation& observation) {
+  const Setup& setup = observation.profile->setup;
+  std::vector<double> out = observation.low_band.positions(observation.profile->positions);
+  if (setup.kind == Kind::face)
+    for (double& each : out) each -= setup.center_mm;
+  return out;
+}
+
+void append_unit_columns(Eigen::MatrixXd& columns, const std::vector<Eigen::Index>& rows) {
+  const Eigen::Index known = columns.cols();
+  columns.conservativeResize(Eigen::NoChange, known + std::ssize(rows));
+  columns.rightCols(std::ssize(rows)).setZero();
+  for (std::size_t j = 0; j < rows.size(); ++j)
+    columns(rows[j], known + static_cast<Eigen::Index>(j)) = 1.0;
+}
+
+/// Mean of a group's residuals at the stations of its first profile, a trace of its own.
+struct CommonTrace {
+  Observation observation;
+  Linearisation linear;
+
+  CommonTrace(const Linearisation& all, const std::vector<std::size_t>& group, const Gates& gates)
+      : observation(*all.observations[group.front()]) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(observation.values.size()), count = sum;
+    for (const std::size_t i : group) {
+      const auto match = matched_values(observation, *all.observations[i], gates);
+      for (Eigen::Index row = 0; row < sum.size(); ++row)
+        if (match[row] >= 0) sum[row] += all.residuals[i][match[row]], ++count[row];
+    }
+    linear.observations = {&observation};
+    linear.columns = {all.columns[group.front()]};
+    linear.residuals = {sum.cwiseQuotient(count)};
+    linear.prior_rows.resize(0, all.prior_rows.cols());
+    linear.prior_residuals.resize(0);
+  }
+  CommonTrace(const CommonTrace&) = delete;
+  CommonTrace& operator=(const CommonTrace&) = delete;
+};
+
+/// Noise of the mean of a group: see check_repeats().
+Noise noise_of_mean(const Linearisation& all, const std::vector<std::size_t>& group,
+                    const CommonTrace& common, const Gates& gates) {
+  Noise out = noise_beside(common.linear, gates).front();
+  for (const std::size_t i : group) {
+    const auto deviation = deviation_from_repeats(all, i, gates);
+    if (!deviation) continue;
+    Noise noise = estimate_noise({&*deviation, 1}, Eigen::MatrixXd(0, 0), gates).front();
+    noise = noise.scaled(1.0 / static_cast<double>(group.size()));
+    if (noise.long_run_deviation() > out.long_run_deviation()) out = std::move(noise);
+  }
+  return out;
+}
+
+void set_common(const CommonTrace& common, const Gates& gates, PureErrorCheck& out) {
+  const Eigen::VectorXd& mean = common.linear.residuals.front();
+  const Eigen::MatrixXd slow =
+      orthonormal(slow_cosines(mean.size(), slow_cosine_count(mean.size(), gates)));
+  const double rms = (slow.transpose() * mean).norm() /
+                     std::sqrt(static_cast<double>(common.observation.low_band.samples()));
+  const bool height = common.observation.profile->setup.quantity == Quantity::height;
+  (height ? out.common_um : out.common_urad) = rms / (height ? kMicrometre : kMicroradian);
+}
+
+}  // namespace
+
+std::vector<Eigen::Index> matched_values(const Observation& a, const Observation& b,
+                                         const Gates& gates) {
+  const std::vector<double> of_a = stations(a), of_b = stations(b);
+  const double tolerance = gates.same_place * extent(a) / static_cast<double>(of_a.size());
+  std::vector<Eigen::Index> out(of_a.size(), -1);
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    while (j + 1 < of_b.size() && std::abs(of_b[j + 1] - of_a[i]) <= std::abs(of_b[j] - of_a[i]))
+      ++j;
+    if (near(of_a[i], of_b[j], tolerance)) out[i] = static_cast<Eigen::Index>(j);
+  }
+  return out;
+}
+
+bool are_repeats(const Observation& a, const Observation& b, const Gates& gates) {
+  if (&a == &b) return true;
+  const double station = gates.same_place * extent(a) / static_cast<double>(a.values.size());
+  if (a.profile->surface != b.profile->surface ||
+      !is_one_cut(a.profile->setup, b.profile->setup, station) ||
+      !is_one_line(a.profile->line, b.profile->line, station))
+    return false;
+  const auto match = matched_values(a, b, gates);
+  const auto shared = std::ranges::count_if(match, [](Eigen::Index j) { return j >= 0; });
+  return 2 * shared >= std::max(a.values.size(), b.values.size());
+}
+
+std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
+                                                    const Gates& gates) {
+  std::vector<std::vector<std::size_t>> out;
+  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+    const auto own = std::ranges::find_if(out, [&](const std::vector<std::size_t>& group) {
+      return are_repeats(*linear.observations[group.front()], *linear.observations[i], gates);
+    });
+    if (own != out.end())
+      own->push_back(i);
+    else
+      out.push_back({i});
+  }
+  std::erase_if(out, [](const std::vector<std::size_t>& group) { return group.size() < 2; });
+  return out;
+}
+
+std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear, std::size_t i,
+                                                    const Gates& gates) {
+  const Observation& observation = *linear.observations[i];
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(observation.values.size()), count = sum;
+  for (std::size_t j = 0; j < linear.observations.size(); ++j) {
+    if (!are_repeats(observation, *linear.observations[j], gates)) continue;
+    const auto match = matched_values(observation, *linear.observations[j], gates);
+    for (Eigen::Index row = 0; row < sum.size(); ++row)
+      if (match[row] >= 0) sum[row] += linear.residuals[j][match[row]], ++count[row];
+  }
+  std::vector<Eigen::Index> alone;
+  Eigen::VectorXd deviation = linear.residuals[i] - sum.cwiseQuotient(count);
+  for (Eigen::Index row = 0; row < count.size(); ++row) {
+    if (count[row] < 2.0)
+      alone.push_back(row);
+    else
+      deviation[row] *= std::sqrt(count[row] / (count[row] - 1.0));
+  }
+  if (2 * std::ssize(alone) > count.size()) return std::nullopt;
+  constexpr double kCopy = 1e-9;  // of the values: one file given twice is no repeat
+  if (deviation.norm() <= kCopy * observation.values.norm()) return std::nullopt;
+  Eigen::MatrixXd free = observation.nuisances;
+  append_unit_columns(free, alone);
+  Eigen::MatrixXd basis = orthonormal(std::move(free));
+  deviation -= basis * (basis.transpose() * deviation).eval();
+  return LinearProfile{std::move(basis), Eigen::MatrixXd(deviation.size(), 0), std::move(deviation),
+                       observation.profile->standard_uncertainty};
+}
+
+std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gates& gates) {
+  Gates finer = gates;
+  finer.values_per_cosine = gates.values_per_repeated_cosine;
+  std::vector<PureErrorCheck> out;
+  for (const std::vector<std::size_t>& group : repeat_groups(linear, gates)) {
+    const CommonTrace common(linear, group, gates);
+    const LackOfFit found =
+        lack_of_fit(common.linear, {noise_of_mean(linear, group, common, finer)}, finer);
+    PureErrorCheck check;
+    for (const std::size_t i : group)
+      check.profiles.push_back(linear.observations[i]->profile->name);
+    check.F = found.ratio;
+    check.p_value = found.p_value;
+    if (found.significant(gates)) check.verdict = RepeatFit::lack_of_fit;
+    set_common(common, finer, check);
+    out.push_back(std::move(check));
+  }
+  return out;
+}
+
+}  // namespace slideway

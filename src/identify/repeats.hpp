@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "slideway/identify/gates.hpp"
+#include "slideway/identify/noise.hpp"
+#include "slideway/identify/result.hpp"
+#include "slideway/identify/solve.hpp"
+
+/// Traces of one surface at one place.
+namespace slideway {
+
+/// For each low-band value of `a` the one of `b` at the same station, or -1.
+std::vector<Eigen::Index> matched_values(const Observation& a, const Observation& b,
+                                         const Gates& gates);
+
+/// Whether two profiles read one cut along one line: half of the stations of either are the other's
+/// too, within Gates::same_place.
+bool are_repeats(const Observation& a, const Observation& b, const Gates& gates);
+
+/// Fitted profiles that repeat one another, two or more in each group, by index, rising.
+std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
+                                                    const Gates& gates);
+
+/// Residual of a profile less the mean of its repeats at the same stations, of the size its noise
+/// has; nothing where no other profile repeats it. Stations that a repeat lacks are left free.
+std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear, std::size_t i,
+                                                    const Gates& gates);
+
+/// What the repeats of each group have in common and the model lacks.
+///
+/// The mean residual of a group has the noise of its own fine band, texture that repeats included,
+/// or that of the deviations from it if it is larger in the long run; its slow band is tested
+/// against that as lack_of_fit() does. F is the square found over the square expected.
+std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gates& gates);
+
+}  // namespace slideway

@@ -1,0 +1,250 @@
+#include "blunder.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "slideway/base/text.hpp"
+#include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/noise_model.hpp"
+
+namespace slideway {
+namespace {
+
+/// How a profile may have been meant.
+struct Hypothesis {
+  BlunderKind kind = BlunderKind::sign;
+  double factor = 1.0;  // of the values
+  std::optional<Setup> setup;
+};
+
+constexpr std::array<std::pair<BlunderKind, double>, 5> kFactors{{{BlunderKind::sign, -1.0},
+                                                                  {BlunderKind::inch, 25.4},
+                                                                  {BlunderKind::per_inch, 1 / 25.4},
+                                                                  {BlunderKind::metre, 1000.0},
+                                                                  {BlunderKind::per_metre, 1e-3}}};
+// Of the time of the cut: a start that was forgotten, or is one of another cut.
+constexpr std::array<double, 8> kShifts{-2.0, -1.0, -0.5, -0.25, 0.25, 0.5, 1.0, 2.0};
+
+std::vector<Hypothesis> hypotheses(const Setup& setup) {
+  std::vector<Hypothesis> out;
+  for (const auto& [kind, factor] : kFactors) out.push_back({kind, factor, {}});
+  if (!setup.cut_direction || !setup.feed_mm_per_min) return out;
+  Setup swapped = setup;
+  swapped.cut_direction =
+      *setup.cut_direction == CutDirection::inward ? CutDirection::outward : CutDirection::inward;
+  out.push_back({BlunderKind::cut_direction, 1.0, swapped});
+  const double length = setup.cut_radius_mm.value_or(setup.last_mm - setup.first_mm);
+  const double duration = kMinute * length / *setup.feed_mm_per_min;
+  for (const double share : kShifts) {
+    Setup shifted = setup;
+    shifted.start_s += share * duration;
+    out.push_back({BlunderKind::clock, 1.0, shifted});
+  }
+  return out;
+}
+
+/// What all profiles but one say of (amplitudes, shapes).
+struct Others {
+  Eigen::MatrixXd basis, null_space;
+  Eigen::VectorXd change;  // of the joint estimate
+
+  Others(const Linearisation& linear, const Compressed& all, std::size_t left_out,
+         double tolerance) {
+    const Eigen::Index k = linear.prior_rows.cols(), priors = linear.prior_rows.rows();
+    Eigen::MatrixXd rows(priors, k + 1);
+    rows << linear.prior_rows, linear.prior_residuals;
+    Eigen::VectorXd squares = linear.prior_rows.colwise().squaredNorm().transpose();
+    for (std::size_t i = 0; i < all.profiles.size(); ++i) {
+      if (i == left_out) continue;
+      Eigen::MatrixXd both(rows.rows() + all.profiles[i].free().rows(), k + 1);
+      both << rows, all.profiles[i].free();
+      rows = std::move(both);
+      squares += all.profiles[i].squares();
+    }
+    const Rank rank = analyse_rank(rows.leftCols(k), squares.cwiseSqrt(), tolerance);
+    basis = rank.basis;
+    null_space = rank.null_space;
+    change = basis * (basis.transpose() * (rows.leftCols(k).transpose() * rows.col(k)));
+  }
+};
+
+/// A profile as predicted by the others: white values and columns, compressed.
+class Prediction {
+ public:
+  /// @param amplitudes  (amplitudes, shapes): a model linear in them makes the predicted values
+  Prediction(const ProfileTriangle& triangle, const Others& others,
+             const Eigen::VectorXd& amplitudes, double values) {
+    if (others.basis.cols() == 0) return;  // they predict nothing
+    const auto rows = triangle.free();
+    const Eigen::Index k = rows.cols() - 1;
+    Eigen::MatrixXd known(rows.rows(), others.basis.cols() + 2);
+    known << rows.leftCols(k) * others.basis, rows.leftCols(k) * amplitudes, rows.col(k);
+    const Eigen::MatrixXd open = orthonormal(rows.leftCols(k) * others.null_space);
+    known -= open * (open.transpose() * known).eval();
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(known.leftCols(others.basis.cols()),
+                                                Eigen::ComputeThinU);
+    inside_ = svd.matrixU();
+    spread_ = svd.singularValues().cwiseAbs2();
+    predicted_ = known.col(known.cols() - 2);
+    values_ = known.col(known.cols() - 1);
+    count_ = values - static_cast<double>(triangle.levelling() + open.cols());
+  }
+
+  [[nodiscard]] Eigen::Index directions() const { return spread_.size(); }
+
+  /// Square of the disagreement in the directions that are predicted.
+  [[nodiscard]] double disagreement(double factor) const {
+    const Eigen::VectorXd inside = inside_.transpose() * error(factor);
+    return (inside.array().square() / (1.0 + spread_.array())).sum();
+  }
+
+  /// -2 ln of the likelihood, the noise's size at its best, and that size.
+  struct Best {
+    double cost = HUGE_VAL, size = 1.0;
+  };
+  [[nodiscard]] Best best(double factor, double sister_factor) const {
+    constexpr int kSteps = 400;
+    constexpr double kMost = 10.0;  // |ln s|
+    Best out;
+    for (int step = -kSteps; step <= kSteps; ++step) {
+      const double size = std::exp(kMost * step / kSteps);
+      const double at = cost(factor, size, sister_factor);
+      if (at < out.cost) out = {at, size};
+    }
+    return out;
+  }
+
+ private:
+  [[nodiscard]] Eigen::VectorXd error(double factor) const { return factor * values_ - predicted_; }
+
+  [[nodiscard]] double cost(double factor, double size, double sister_factor) const {
+    const Eigen::VectorXd e = error(factor), inside = inside_.transpose() * e;
+    const Eigen::ArrayXd variance = size * size + spread_.array();
+    const double unlike = std::log(size) / std::log(sister_factor);
+    return (count_ - static_cast<double>(spread_.size())) * 2.0 * std::log(size) +
+           variance.log().sum() + (e.squaredNorm() - inside.squaredNorm()) / (size * size) +
+           (inside.array().square() / variance).sum() - 2.0 * count_ * std::log(std::abs(factor)) +
+           unlike * unlike;
+  }
+
+  Eigen::MatrixXd inside_;  // orthonormal: what the others predict
+  Eigen::VectorXd spread_;  // variance of that prediction
+  Eigen::VectorXd predicted_, values_;
+  double count_ = 0.0;
+};
+
+class Finder {
+ public:
+  explicit Finder(const FittedModel& fitted)
+      : model_(fitted.model),
+        fit_(fitted.fit),
+        noise_(noise_of_each(fitted.fit.linear, fitted.model.gates)),
+        compressed_(compress(fitted.fit.linear, alike())) {}
+
+  [[nodiscard]] std::vector<Blunder> find() const {
+    std::vector<Blunder> out;
+    for (std::size_t i = 0; i < noise_.size(); ++i) try_profile(i, out);
+    std::ranges::stable_sort(out, {}, &Blunder::delta_bic);
+    if (noise_.size() > 2)  // two that disagree do not say which of them is wrong
+      std::erase_if(out, [&](const Blunder& each) {
+        return each.delta_bic > out.front().delta_bic + model_.gates.tie_bic;
+      });
+    return out;
+  }
+
+ private:
+  /// The noise of the profile most like this one: of its sisters the middle one in the long run.
+  [[nodiscard]] const Noise* sister(std::size_t i) const {
+    const auto key = [&](std::size_t j) {
+      const Setup& setup = fit_.linear.observations[j]->profile->setup;
+      return std::tuple(setup.kind, setup.quantity, setup.base_mm);
+    };
+    std::vector<const Noise*> sisters;
+    for (std::size_t j = 0; j < noise_.size(); ++j)
+      if (j != i && key(j) == key(i)) sisters.push_back(&noise_[j]);
+    if (sisters.empty()) return nullptr;
+    std::ranges::sort(sisters, {}, &Noise::long_run_deviation);
+    return sisters[(sisters.size() - 1) / 2];
+  }
+
+  /// Sisters weigh alike: one recorded in too large a unit would else outweigh all the others.
+  [[nodiscard]] std::vector<Noise> alike() const {
+    std::vector<Noise> out;
+    for (std::size_t i = 0; i < noise_.size(); ++i) {
+      const Noise* const other = sister(i);
+      const bool smaller = other && noise_[i].long_run_deviation() < other->long_run_deviation();
+      out.push_back(smaller ? *other : noise_[i]);
+    }
+    return out;
+  }
+
+  [[nodiscard]] Prediction prediction(std::size_t i, const Others& others, const Noise& noise,
+                                      const Setup* other_setup) const {
+    const Observation& observation = *fit_.linear.observations[i];
+    Eigen::VectorXd amplitudes = others.change;
+    amplitudes.head(model_.amplitudes()) += fit_.estimate.amplitudes;
+    const auto values = static_cast<double>(observation.values.size() - observation.left_out());
+    if (!other_setup)
+      return {{observation, noise, fit_.linear.columns[i], observation.values},
+              others,
+              amplitudes,
+              values};
+    Profile meant = *observation.profile;
+    meant.setup = *other_setup;
+    Observation other = observation;
+    other.profile = &meant;
+    return {{other, noise, linear_columns(model_, fit_.estimate, other), observation.values},
+            others,
+            amplitudes,
+            values};
+  }
+
+  void try_profile(std::size_t i, std::vector<Blunder>& out) const {
+    const Gates& gates = model_.gates;
+    const Noise* const of_sister = sister(i);
+    const Noise& noise = of_sister ? *of_sister : noise_[i];
+    const double factor = of_sister ? gates.sister_factor : kAnyFactor;
+    const Others others(fit_.linear, compressed_, i, gates.rank_tolerance);
+    const Prediction as_it_is = prediction(i, others, noise, nullptr);
+    if (as_it_is.directions() == 0) return;
+    const double before = as_it_is.best(1.0, factor).cost, square = as_it_is.disagreement(1.0);
+    const Observation& observation = *fit_.linear.observations[i];
+    for (const Hypothesis& each : hypotheses(observation.profile->setup)) {
+      const Prediction& meant = each.setup ? prediction(i, others, noise, &*each.setup) : as_it_is;
+      const auto [after, size] = meant.best(each.factor, factor);
+      if (after > before - gates.blunder_bic) continue;
+      const double left = meant.disagreement(each.factor) / square;
+      if (left > gates.blunder_left) continue;
+      if (std::abs(std::log(size)) > 2.0 * std::log(factor)) continue;
+      out.push_back({observation.profile->name, each.kind, after - before, left});
+    }
+  }
+
+  static constexpr double kAnyFactor = 1e3;  // between noises of unlike profiles
+
+  const Model& model_;
+  const Solution& fit_;
+  std::vector<Noise> noise_;
+  Compressed compressed_;
+};
+
+}  // namespace
+
+std::vector<Blunder> find_blunders(const FittedModel& fitted) {
+  if (fitted.fit.linear.observations.size() < 2 || fitted.fit.linear.prior_rows.cols() == 0)
+    return {};
+  return Finder(fitted).find();
+}
+
+std::string blunder_advice(const std::vector<Blunder>& blunders) {
+  std::vector<std::string> parts;
+  for (const Blunder& each : blunders)
+    parts.push_back("profile " + each.profile + ": " + std::string(text_of(each.what)));
+  return joined(parts, ", or ") +
+         "; correct it and run again: the profiles then agree (difference " + "in BIC " +
+         significant(-blunders.front().delta_bic, 2) + ")";
+}
+
+}  // namespace slideway

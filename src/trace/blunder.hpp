@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "slideway/identify/fit.hpp"
+#include "slideway/trace/trace.hpp"
+
+namespace slideway {
+
+/// Slips of the hand that would make one fitted profile agree with the others, most likely first;
+/// those within Gates::tie_bic of the first are its rivals. Empty: no profile disagrees, or none of
+/// these explains it.
+///
+/// Each profile is predicted from the fit of all others, its levelling free. Its values e = f y - C
+/// a have the covariance s² R + C Σ Cᵀ with Σ of the others' fit, the noise R of a profile read in
+/// the same way, and its size s free but for a normal prior on ln s (Gates::sister_factor). The
+/// likelihood of the values y as they were recorded, |f|ⁿ times that of e, is compared between
+/// "as it is", other factors f (sign, inch, metre) and other columns C (direction and start of the
+/// cut). A blunder takes away most of the disagreement, not only some of it.
+std::vector<Blunder> find_blunders(const FittedModel& fitted);
+
+/// What to do about them, in a sentence. REQUIRES one.
+std::string blunder_advice(const std::vector<Blunder>& blunders);
+
+}  // namespace slideway

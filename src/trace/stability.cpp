@@ -1,0 +1,125 @@
+#include "stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "slideway/base/parallel.hpp"
+#include "slideway/base/random.hpp"
+#include "slideway/identify/linear_algebra.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::size_t kMostProfiles = 8;     // that are left out in turn
+constexpr Eigen::Index kBlocks[] = {16, 8};  // of a profile
+constexpr int kDraws = 8;                    // of the noise
+constexpr std::uint64_t kStabilitySeed = 19790615;
+constexpr double kShown = 0.5;  // of the effect's square in one profile: the others show too little
+
+using Rows = std::vector<Eigen::Index>;
+
+/// The white columns of every candidate of a search, side by side.
+class Choice {
+ public:
+  explicit Choice(const SearchRound& round) : round_(round) {
+    const Whitened& data = round.data;
+    Eigen::Index count = 0;
+    for (const TestedCandidate& each : round.tested) {
+      first_.push_back(count);
+      count += each.refined.columns.cols();
+    }
+    first_.push_back(count);
+    columns_.resize(data.rows(), count);
+    for (std::size_t c = 0; c < round.tested.size(); ++c)
+      columns_.middleCols(first_[c], first_[c + 1] - first_[c]) = round.tested[c].refined.columns;
+    data.whiten(columns_);
+  }
+
+  /// Name of the candidate of least BIC in these rows of the data; kNothing: none pays.
+  [[nodiscard]] std::string in(const Eigen::VectorXd& residual, const Rows& rows) const {
+    const Eigen::MatrixXd basis = orthonormal(round_.data.basis()(rows, Eigen::all));
+    Eigen::MatrixXd columns = columns_(rows, Eigen::all);
+    columns -= basis * (basis.transpose() * columns).eval();
+    Eigen::VectorXd rest = residual(rows);
+    rest -= basis * (basis.transpose() * rest).eval();
+    const double log_count = std::log(static_cast<double>(rows.size()));
+    std::string best(kNothing);
+    double least = 0.0;
+    for (std::size_t c = 0; c < round_.tested.size(); ++c) {
+      const Refined& refined = round_.tested[c].refined;
+      if (refined.projection.rank == 0) continue;
+      const Eigen::MatrixXd own =
+          orthonormal(columns.middleCols(first_[c], first_[c + 1] - first_[c]));
+      const double bic =
+          static_cast<double>(refined.candidate->unknowns(refined.projection.rank)) * log_count +
+          refined.candidate->choice - (own.transpose() * rest).squaredNorm();
+      if (bic < least) least = bic, best = round_.tested[c].name();
+    }
+    return best;
+  }
+
+ private:
+  const SearchRound& round_;
+  Eigen::MatrixXd columns_;
+  std::vector<Eigen::Index> first_;
+};
+
+/// Rows of all profiles with the priors' below, those of a profile that `keeps` (profile, row of
+/// it).
+template <typename Keeps>
+Rows rows_where(const Whitened& data, Keeps&& keeps) {
+  Rows out;
+  for (std::size_t i = 0; i < data.observations(); ++i)
+    for (Eigen::Index k = 0; k < data.count(i); ++k)
+      if (keeps(i, k)) out.push_back(data.first_row(i) + k);
+  for (Eigen::Index row = data.values(); row < data.rows(); ++row) out.push_back(row);
+  return out;
+}
+
+std::vector<Rows> parts_of(const Whitened& data, const Eigen::VectorXd& shown) {
+  std::vector<Rows> out;
+  const std::size_t profiles = data.observations();
+  for (std::size_t i = 0; profiles > 1 && i < std::min(profiles, kMostProfiles); ++i) {
+    const double own = shown.segment(data.first_row(i), data.count(i)).squaredNorm();
+    if (own > kShown * shown.squaredNorm()) continue;
+    out.push_back(rows_where(data, [&](std::size_t p, Eigen::Index) { return p != i; }));
+  }
+  for (const Eigen::Index blocks : kBlocks)
+    for (Eigen::Index half = 0; half < 2; ++half)
+      out.push_back(rows_where(data, [&](std::size_t p, Eigen::Index k) {
+        return (k * blocks / std::max<Eigen::Index>(data.count(p), 1)) % 2 == half;
+      }));
+  return out;
+}
+
+}  // namespace
+
+Stability stability(const SearchRound& round, const TestedCandidate& effect) {
+  const Choice choice(round);
+  const Whitened& data = round.data;
+  const std::vector<Rows> parts = parts_of(data, effect.fitted);
+  const Rows all = rows_where(data, [](std::size_t, Eigen::Index) { return true; });
+  std::vector<std::string> chosen(parts.size() + kDraws);
+  parallel_for(chosen.size(), [&](std::size_t k) {
+    if (k < parts.size()) {
+      chosen[k] = choice.in(data.residual(), parts[k]);
+      return;
+    }
+    RandomStream random(kStabilitySeed + k - parts.size(), "stability");
+    Eigen::VectorXd drawn = effect.fitted;
+    for (double& value : drawn) value += random.normal();
+    chosen[k] = choice.in(drawn, all);
+  });
+  std::map<std::string, int> votes;
+  for (const std::string& name : chosen) ++votes[name];
+  Stability out;
+  out.share = static_cast<double>(votes[effect.name()]) / static_cast<double>(chosen.size());
+  votes.erase(effect.name());
+  if (!votes.empty())
+    out.other = std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; })->first;
+  return out;
+}
+
+}  // namespace slideway

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "search_round.hpp"
+
+namespace slideway {
+
+inline constexpr std::string_view kNothing = "nothing";  // no candidate pays
+
+/// How often resamples of the data choose the same effect among the candidates of one search.
+struct Stability {
+  double share = 1.0;  // of the resamples
+  std::string other;   // what the rest choose most often; or kNothing; "": none do
+};
+
+/// Resamples (each chooses the candidate of least BIC, at the shapes all data gave): each profile
+/// left out, alternate blocks of a sixteenth and an eighth of each profile left out, either half,
+/// and noise drawn anew on what the effect makes. A profile counts as left out only if it is not
+/// the only one that shows the effect.
+Stability stability(const SearchRound& round, const TestedCandidate& effect);
+
+}  // namespace slideway

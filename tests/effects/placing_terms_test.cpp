@@ -1,0 +1,137 @@
+// What depends on where a trace or a form lies: each effect against its formula's numbers, worked
+// out by hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "effects/heights.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace testing_support;
+
+// At X = ±R/2 two lobes have a quarter, three an eighth, odd ones with the sign of X.
+TEST(ChuckingLobes, ArePowersOfTheRadiusWithTheSymmetryOfTheirNumber) {
+  Case diameter{"", setup_of(Kind::face, Quantity::height, -10, 10), {-5.0, 0.0, 5.0, 10.0}};
+  const auto expect = [&](std::initializer_list<double> values, double near, double rim,
+                          double sign) {
+    const Eigen::VectorXd z = height_um("chucking_lobes", diameter, values);
+    EXPECT_NEAR(z[0], sign * near, 1e-15);
+    EXPECT_EQ(z[1], 0.0);
+    EXPECT_NEAR(z[2], near, 1e-15);
+    EXPECT_NEAR(z[3], rim, 1e-15);
+  };
+  expect({1, 0, 0, 0, 0, 0}, 0.25, 1.0, 1.0);
+  expect({0, 0, 1, 0, 0, 0}, 0.125, 1.0, -1.0);
+  expect({0, 0, 0, 0, 1, 0}, 0.0625, 1.0, 1.0);
+  diameter.setup.azimuth_deg = 30.0;  // cos 60° and sin 60°; cos 90° and sin 90°; cos 120°
+  expect({1, 0, 0, 0, 0, 0}, 0.125, 0.5, 1.0);
+  expect({0, 1, 0, 0, 0, 0}, std::sqrt(3.0) / 8.0, std::sqrt(3.0) / 2.0, 1.0);
+  expect({0, 0, 1, 0, 0, 0}, 0.0, 0.0, -1.0);
+  expect({0, 0, 0, 1, 0, 0}, 0.125, 1.0, -1.0);
+  expect({0, 0, 0, 0, 1, 0}, -0.03125, -0.5, 1.0);
+}
+
+// r^n cos nθ is harmonic: its mean over a circle is its value at the centre, 0.
+TEST(ChuckingLobes, VanishInTheMeanOverACircle) {
+  Case radius = face({7.0});
+  const Eigen::VectorXd all = Eigen::VectorXd::Ones(6);
+  double sum = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    radius.setup.azimuth_deg = 30.0 * i;
+    sum += signal(*make("chucking_lobes"), radius, all)[0];
+  }
+  EXPECT_NEAR(sum, 0.0, 1e-15);
+}
+
+TEST(ChuckingLobes, NeedThreeDirections) {
+  const auto effect = make("chucking_lobes");
+  const auto lacking = [&](const std::vector<double>& azimuths) {
+    std::vector<slideway::Setup> setups(azimuths.size(), all_cases()[2].setup);
+    std::vector<const slideway::Setup*> all;
+    for (std::size_t i = 0; i < setups.size(); ++i) {
+      setups[i].azimuth_deg = azimuths[i];
+      all.push_back(&setups[i]);
+    }
+    return effect->lacking_together(all);
+  };
+  EXPECT_EQ(lacking({0.0, 60.0, 120.0}).size(), 0U);
+  EXPECT_EQ(lacking({0.0, 60.0, 180.0}),  // a diameter looks both ways
+            std::vector<std::string>{"azimuth_deg of at least three traces in three directions"});
+}
+
+// At one width from its place a Gaussian has exp(-1/2) of its height and its largest slope, A/w
+// times that; a base from -w to w around the place sees no difference.
+TEST(LocalForm, IsAGaussianInHeightSlopeAndOverABase) {
+  const Case heights = {"", setup_of(Kind::slide, Quantity::height, 0, 600), {100.0, 110.0, 600.0}};
+  const Eigen::VectorXd z = height_um("local_form", heights, {2.0, 100.0, 10.0});
+  EXPECT_DOUBLE_EQ(z[0], 2.0);
+  EXPECT_NEAR(z[1], 2.0 * std::exp(-0.5), 1e-14);
+  EXPECT_EQ(z[2], 0.0);
+  Case slopes = {"", setup_of(Kind::slide, Quantity::slope, 0, 600), {100.0, 110.0}};
+  const Eigen::VectorXd bump = values({2.0, 100.0, 10.0});
+  const Eigen::VectorXd local = signal(*make("local_form"), slopes, bump);
+  EXPECT_EQ(local[0], 0.0);
+  EXPECT_NEAR(local[1], -2e-3 / 10.0 * std::exp(-0.5), 1e-17);
+  slopes.setup.base_mm = 20.0;
+  const Eigen::VectorXd bridge = signal(*make("local_form"), slopes, bump);
+  EXPECT_NEAR(bridge[0], 0.0, 1e-19);
+  EXPECT_NEAR(bridge[1], 2e-3 / 20.0 * (std::exp(-2.0) - 1.0), 1e-17);
+}
+
+TEST(LocalForm, OfTheWayStaysAtItsPlaceOfTheSlide) {
+  Case at_axis = face({5.0});
+  at_axis.setup.spindle_position_mm = 100.0;
+  EXPECT_DOUBLE_EQ(height_um("local_form", at_axis, {1.0, 105.0, 1.0})[0], 1.0);
+}
+
+// A cone Θ r read off the centre by X0 is Θ |X - X0|, so that Θ (|X - X0| - |X|) is added.
+TEST(Centring, IsAConeOffTheCentre) {
+  const Case diameter{"", setup_of(Kind::face, Quantity::height, -10, 10), {-5.0, 0.0, 0.2, 2.5}};
+  const double cone = 0.2;  // µm/mm
+  for (const double off : {0.5, -0.5}) {
+    const Eigen::VectorXd z = height_um("centring", diameter, {-cone * off, off});
+    for (Eigen::Index i = 0; i < z.size(); ++i) {
+      const double x = diameter.positions[static_cast<std::size_t>(i)];
+      EXPECT_NEAR(z[i], cone * (std::abs(x - off) - std::abs(x)), 1e-15);
+    }
+  }
+  EXPECT_FALSE(make("centring")->applies_to(face({0.0}).setup));
+}
+
+TEST(Centring, WithoutAnOffsetIsTheCentreStep) {
+  const Case diameter = all_cases()[2];
+  const std::vector<double> none{0.0};
+  EXPECT_EQ(columns(*make("centring"), diameter, none), columns(*make("centre_step"), diameter));
+}
+
+// 3, 4, 5: a cone of 200 µm/m at r = 4 mm read beside the diameter by 3 mm is that at 5 mm.
+TEST(Chord, IsTheConeFurtherOut) {
+  const Eigen::VectorXd z = height_um("chord", face({4.0, 0.0}), {200.0, 3.0});
+  EXPECT_NEAR(z[0], 0.2 * (5.0 - 4.0), 1e-15);
+  EXPECT_NEAR(z[1], 0.2 * 3.0, 1e-15);
+}
+
+TEST(Chord, IsTheNubOfATooHighTool) {
+  const Case profile = face(spaced(0, 10, 21));
+  const Eigen::VectorXd chord = height_um("chord", profile, {200.0, 0.5});
+  const Eigen::VectorXd nub = height_um("centre_height", profile, {0.2 * 0.5, 0.5});
+  EXPECT_LT((chord - nub).norm(), 1e-14 * nub.norm());
+}
+
+TEST(Hysteresis, ChangesSignWithTheDirection) {
+  Case cut = face({0.0, 5.0, 10.0});
+  cut.setup.cut_direction = CutDirection::outward;
+  const Eigen::VectorXd out = height_um("hysteresis", cut, {0.1, 0.2, 0.4});
+  EXPECT_NEAR(out[0], 0.1, 1e-16);
+  EXPECT_NEAR(out[1], 0.1 + 0.1 + 0.1, 1e-15);
+  EXPECT_NEAR(out[2], 0.7, 1e-15);
+  cut.setup.cut_direction = CutDirection::inward;
+  EXPECT_EQ(height_um("hysteresis", cut, {0.1, 0.2, 0.4}), -out);
+  const slideway::Setup inward = cut.setup;
+  EXPECT_EQ(make("hysteresis")->lacking_together({&inward, &inward}).size(), 1U);
+}
+
+}  // namespace
+}  // namespace slideway

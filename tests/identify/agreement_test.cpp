@@ -1,0 +1,127 @@
+#include "slideway/identify/agreement.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "identify/cases.hpp"
+#include "repeats.hpp"
+#include "slideway/identify/held_out.hpp"
+#include "slideway/identify/identify.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::size_t kReadings = 200;
+constexpr double kNoise = 1e-4;    // mm
+constexpr double kLength = 400.0;  // mm
+
+/// Heights of a slide with a bow of `bow` mm at the end, white noise, levelling free.
+Profile run(const std::string& name, double bow, unsigned seed, double step_mm = 0.0) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> noise(0.0, kNoise);
+  const std::vector<double> x = cases::spaced(0.0, kLength, kReadings);
+  std::vector<double> z;
+  for (const double at : x)
+    z.push_back(bow * std::pow(at / kLength, 2) + (at > 0.7 * kLength ? step_mm : 0.0) +
+                noise(engine));
+  return cases::profile(name, Kind::slide, x, z);
+}
+
+Problem straight() { return cases::problem(Lever::paper, 0, {cases::effect("straightness", 3)}); }
+
+std::vector<ProfileCheck> checks_of(const std::vector<Profile>& profiles) {
+  const FittedModel fitted = fit_declared(straight(), profiles);
+  return check_profiles(fitted.model, fitted.fit);
+}
+
+TEST(ProfileCheck, ComparesEveryPair) {
+  const auto checks = checks_of({run("a", 5e-3, 1), run("b", 5e-3, 2), run("c", 5e-3, 3)});
+  ASSERT_EQ(checks.size(), 3U);
+  EXPECT_THAT(checks[1].profiles, ::testing::ElementsAre("a", "c"));
+  EXPECT_EQ(checks[1].what, "straightness");
+  for (const ProfileCheck& check : checks) EXPECT_EQ(check.verdict, Consistency::consistent);
+}
+
+TEST(ProfileCheck, OneBowThatDiffersDisagreesWithBothOthers) {
+  // The sags differ by 0.5 µm; u of one from 200 values is about 0.03 µm.
+  const auto checks = checks_of({run("a", 5e-3, 1), run("b", 5e-3, 2), run("c", 7e-3, 3)});
+  ASSERT_EQ(checks.size(), 3U);
+  EXPECT_EQ(checks[0].verdict, Consistency::consistent);
+  EXPECT_EQ(checks[1].verdict, Consistency::inconsistent);
+  EXPECT_EQ(checks[2].verdict, Consistency::inconsistent);
+  EXPECT_GT(*checks[1].En, 1.0);
+  EXPECT_LT(*checks[1].p_value, 1e-3);
+}
+
+TEST(ProfileCheck, FalseAlarmsStayNearTheirShare) {
+  // 4.55 % of 100 reports: 11 or more have a probability of 0.5 %.
+  int alarms = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    const auto checks = checks_of(
+        {run("a", 5e-3, 3 * seed + 1), run("b", 5e-3, 3 * seed + 2), run("c", 5e-3, 3 * seed + 3)});
+    alarms += std::ranges::any_of(checks, [](const ProfileCheck& check) {
+      return check.verdict == Consistency::inconsistent;
+    });
+  }
+  EXPECT_LE(alarms, 10);
+}
+
+TEST(ProfileCheck, NothingIsComparedThatOneProfileCannotTell) {
+  EXPECT_TRUE(checks_of({run("a", 5e-3, 1)}).empty());
+}
+
+TEST(ProfileCheck, DisagreementIsNegative) {
+  Result result;
+  EXPECT_FALSE(is_negative(result));
+  result.crosscheck.profiles = {
+      {{"a", "b"}, "straightness", 1.2, Consistency::inconsistent, {}, {}}};
+  EXPECT_TRUE(is_negative(result));
+}
+
+std::vector<HeldOutCheck> held_out(Profile last) {
+  last.role = Role::holdout;
+  const std::vector<Profile> profiles{run("a", 5e-3, 1), run("b", 5e-3, 2), std::move(last)};
+  const FittedModel fitted = fit_declared(straight(), profiles);
+  return check_held_out(fitted.model, fitted.fit);
+}
+
+TEST(HeldOutCheck, FitsWhatItRepeats) {
+  const auto checks = held_out(run("c", 5e-3, 3));
+  ASSERT_EQ(checks.size(), 1U);
+  EXPECT_EQ(checks[0].verdict, HeldOutVerdict::fits);
+  EXPECT_NEAR(checks[0].chi2, 1.0, 0.4);  // of 198 degrees of freedom: four standard deviations
+}
+
+TEST(HeldOutCheck, DoesNotFitWhereItHasAStep) {
+  const auto checks = held_out(run("c", 5e-3, 3, 10.0 * kNoise));
+  ASSERT_EQ(checks.size(), 1U);
+  EXPECT_EQ(checks[0].verdict, HeldOutVerdict::does_not_fit);
+  EXPECT_NEAR(checks[0].at_mm, 0.7 * kLength, 0.05 * kLength);  // the levelled step peaks there
+  EXPECT_GT(std::abs(*checks[0].largest_um), 3.0 * kNoise / kMicrometre);
+}
+
+TEST(Repeats, AreToldByStationsNotByEqualDoubles) {
+  Profile a = run("a", 5e-3, 1), b = run("b", 5e-3, 2), c = run("c", 5e-3, 3);
+  for (double& at : b.positions) at += 8e-6;  // as the files of two mirrors differ
+  for (double& at : c.positions) at += 1.0;   // half a station
+  const std::vector<Profile> profiles{a, b, c};
+  const FittedModel fitted = fit_declared(straight(), profiles);
+  EXPECT_THAT(repeat_groups(fitted.fit.linear, Gates{}),
+              ::testing::ElementsAre(::testing::ElementsAre(0U, 1U)));
+}
+
+TEST(Repeats, WhatTheyShareAndTheModelLacksIsLackOfFit) {
+  const auto verdict = [](double step) {
+    const std::vector<Profile> profiles{run("a", 5e-3, 1, step), run("b", 5e-3, 2, step)};
+    const FittedModel fitted = fit_declared(straight(), profiles);
+    const auto checks = check_repeats(fitted.fit.linear, Gates{});
+    return checks.at(0).verdict;
+  };
+  EXPECT_EQ(verdict(0.0), RepeatFit::fits);
+  EXPECT_EQ(verdict(10.0 * kNoise), RepeatFit::lack_of_fit);
+}
+
+}  // namespace
+}  // namespace slideway

@@ -1,0 +1,95 @@
+// What the place of a trace on the workpiece decides: lobes between azimuths, a centre that is not
+// where center_mm says.
+
+#include <cmath>
+
+#include "slideway/base/units.hpp"
+#include "trace/faces.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace faces;  // NOLINT(google-build-using-namespace)
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr double kPlacedRadius = 10.0;
+
+/// Three traces over the diameter with a form added that depends on X and the azimuth.
+template <typename Form>
+std::vector<Profile> at_azimuths(Form&& form, std::uint64_t seed) {
+  std::vector<Profile> out = quarter_faces({}, 3, kBlunt, seed);
+  for (std::size_t c = 0; c < out.size(); ++c) {
+    Setup& setup = out[c].setup;
+    setup.azimuth_deg = 50.0 * static_cast<double>(c);
+    for (std::size_t i = 0; i < out[c].values.size(); ++i)
+      out[c].values[i] +=
+          form(out[c].positions[i] - setup.center_mm, setup.azimuth_deg * kPi / 180.0);
+  }
+  return out;
+}
+
+// Two jaws: 0.5 µm (r/R)² cos 2(θ - 20°), 50 times the noise.
+TEST(Placing, LobesBetweenAzimuthsAreNamed) {
+  constexpr double kSize = 0.5e-3, kTurned = 20.0 * kPi / 180.0;
+  const auto lobes = [](double x, double azimuth) {
+    return kSize * (x / kPlacedRadius) * (x / kPlacedRadius) * std::cos(2.0 * (azimuth - kTurned));
+  };
+  const Closed result = closed(problem_of(), at_azimuths(lobes, 5));
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ElementsAre("chucking_lobes"));
+  const TraceRound* round = round_of(result, "chucking_lobes");
+  ASSERT_NE(round, nullptr);
+  EXPECT_THAT(round->profiles, IsEmpty());
+  expect_within_4u(round->parameters, "chucking_lobes.cos2_um",
+                   kSize / kMicrometre * std::cos(2.0 * kTurned));
+  expect_within_4u(round->parameters, "chucking_lobes.sin2_um",
+                   kSize / kMicrometre * std::sin(2.0 * kTurned));
+}
+
+TEST(Placing, LobesNeedSeveralAzimuths) {
+  const Closed result = closed(problem_of({"chucking_lobes"}), quarter_faces({}, 3, kBlunt, 5));
+  ASSERT_EQ(result.not_testable.size(), 1U);
+  EXPECT_EQ(result.not_testable[0].effect, "chucking_lobes");
+  EXPECT_EQ(result.not_testable[0].needs,
+            "azimuth_deg of at least three traces in three directions");
+}
+
+/// Traces of a cone of 200 µrad that is off its centre.
+Closed off_centre(double off) {
+  const auto form = [=](double x, double /*azimuth*/) {
+    return 2e-4 * (std::abs(x - off) - std::abs(x));
+  };
+  return closed(problem_of({"centre_step", "centring", "traverse_datum", "linear_drift"}),
+                at_azimuths(form, 6));
+}
+
+TEST(Placing, ATraceFarOffTheCentreIsNamed) {
+  const Closed result = off_centre(0.4);
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ElementsAre("centring"));
+  const TraceRound* round = round_of(result, "centring");
+  ASSERT_NE(round, nullptr);
+  EXPECT_THAT(round->ambiguous_with, IsEmpty());
+  expect_within_4u(round->parameters, "centring.offset_mm", 0.4);
+  expect_within_4u(round->parameters, "centring.height_um", -0.2 * 0.4);
+}
+
+// 0.1 mm: lower on one side of the axis and higher on the other, as is a step of the
+// spindle.
+TEST(Placing, ATraceALittleOffTheCentreIsNoStepOfTheSpindleAlone) {
+  const Closed result = off_centre(0.1);
+  SCOPED_TRACE(story(result));
+  ASSERT_FALSE(result.rounds.empty());
+  const TraceRound& round = result.rounds[0];
+  std::vector<std::string> names = round.ambiguous_with;
+  names.push_back(round.accepted);
+  EXPECT_THAT(names, Contains("centring"));
+  EXPECT_THAT(names, Contains("centre_step"));
+  EXPECT_THAT(result.verdict, Not(TraceVerdict::explained));
+}
+
+}  // namespace
+}  // namespace slideway
