@@ -9,6 +9,7 @@
 #include "slideway/base/units.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
+#include "slideway/identify/subset_estimate.hpp"
 
 namespace slideway {
 namespace {
@@ -19,38 +20,22 @@ constexpr double kOutside = 1e-6;  // of a row: less along a null direction is r
 
 using Profiles = std::vector<std::size_t>;  // of the fitted ones
 
-/// What some profiles say of (amplitudes, shapes) by themselves, as a change of the joint estimate.
-struct Alone {
-  Eigen::MatrixXd rows;  // [columns, residual], white and compressed
-  Eigen::MatrixXd basis, null_space;
-  Eigen::VectorXd change;
+/// A side of a comparison, with what is known of its noise.
+struct Alone : SubsetEstimate {
   double freedom = 0.0;       // of the noise
   double log_variance = 0.0;  // of the noise's size
 
   Alone(const Linearisation& linear, const std::vector<Noise>& noise, const Compressed& all,
-        const Profiles& which, double tolerance) {
-    const Eigen::Index k = all.triangle.cols();
-    rows.resize(0, k + 1);
-    Eigen::VectorXd squares = Eigen::VectorXd::Zero(k);
+        const Profiles& which, double tolerance)
+      : SubsetEstimate(linear, all, which, tolerance) {
     double known = 0.0;
     for (const std::size_t i : which) {
-      append(all.profiles[i].free());
-      squares += all.profiles[i].squares();
       const double spread = noise[i].log_long_run_variance();
       log_variance += spread / static_cast<double>(which.size());
       freedom += spread > 0.0 ? 2.0 / spread : HUGE_VAL;
       known += noise[i].effective_values();
     }
-    append((Eigen::MatrixXd(linear.prior_rows.rows(), k + 1) << linear.prior_rows,
-            linear.prior_residuals)
-               .finished());
-    squares += linear.prior_rows.colwise().squaredNorm().transpose();
-    const Rank rank = analyse_rank(rows.leftCols(k), squares.cwiseSqrt(), tolerance);
-    basis = rank.basis;
-    null_space = rank.null_space;
-    change = basis * (basis.transpose() * (rows.leftCols(k).transpose() * rows.col(k)));
-    const bool estimated = std::isfinite(freedom);
-    if (estimated)
+    if (std::isfinite(freedom))
       freedom = std::max(1.0, std::min(freedom, known - static_cast<double>(basis.cols())));
   }
 
@@ -59,13 +44,6 @@ struct Alone {
     for (Eigen::Index d = 0; d < open.cols(); ++d)
       if (open.col(d).norm() > kOutside * curve.norm() * null_space.col(d).norm()) return false;
     return true;
-  }
-
- private:
-  void append(const Eigen::MatrixXd& more) {
-    Eigen::MatrixXd both(rows.rows() + more.rows(), rows.cols());
-    both << rows, more;
-    rows = std::move(both);
   }
 };
 

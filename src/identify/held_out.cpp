@@ -35,14 +35,16 @@ struct Predicted {
   Eigen::VectorXd error;
   Noise noise;
 
-  Predicted(const Model& model, const Solution& fit, const Observation& observation) {
+  /// @param fitted  noise_of_each() fitted profile
+  Predicted(const Model& model, const Solution& fit, const std::vector<Noise>& fitted,
+            const Observation& observation) {
     const Eigen::MatrixXd all = linear_columns(model, fit.estimate, observation);
     error = observation.values - all.leftCols(model.amplitudes()) * fit.estimate.amplitudes;
     columns = all * fit.uncertainty.basis;
     const Eigen::Index m = observation.nuisances.cols(), d = fit.rank.null_space.cols();
     free.resize(error.size(), m + d);
     free << observation.nuisances, all * fit.rank.null_space;
-    set_noise(model, fit, observation);
+    set_noise(model, fit, fitted, observation);
   }
 
   [[nodiscard]] Eigen::MatrixXd free_basis() const {
@@ -52,8 +54,8 @@ struct Predicted {
   }
 
  private:
-  void set_noise(const Model& model, const Solution& fit, const Observation& observation) {
-    const std::vector<Noise> fitted = noise_of_each(fit.linear, model.gates);
+  void set_noise(const Model& model, const Solution& fit, const std::vector<Noise>& fitted,
+                 const Observation& observation) {
     const Noise* largest = nullptr;
     for (std::size_t i = 0; i < fitted.size(); ++i)
       if (are_sisters(observation, *fit.linear.observations[i], model.gates.same_place) &&
@@ -121,8 +123,9 @@ void set_largest(const Observation& observation, const Predicted& predicted,
     out.largest_urad = size / kMicroradian;
 }
 
-HeldOutCheck check(const Model& model, const Solution& fit, const Observation& observation) {
-  const Predicted predicted(model, fit, observation);
+HeldOutCheck check(const Model& model, const Solution& fit, const std::vector<Noise>& fitted,
+                   const Observation& observation) {
+  const Predicted predicted(model, fit, fitted, observation);
   const Eigen::MatrixXd covariance = fit.uncertainty.inflation * fit.uncertainty.covariance;
   const Eigen::Index n = predicted.error.size(), r = predicted.columns.cols();
   const Eigen::Index q = slow_cosine_count(n, model.gates);
@@ -151,9 +154,14 @@ HeldOutCheck check(const Model& model, const Solution& fit, const Observation& o
 }  // namespace
 
 std::vector<HeldOutCheck> check_held_out(const Model& model, const Solution& fit) {
-  std::vector<HeldOutCheck> out;
+  std::vector<const Observation*> held_out;
   for (const Observation& observation : model.observations)
-    if (observation.profile->role == Role::holdout) out.push_back(check(model, fit, observation));
+    if (observation.profile->role == Role::holdout) held_out.push_back(&observation);
+  if (held_out.empty()) return {};
+  const std::vector<Noise> fitted = noise_of_each(fit.linear, model.gates);
+  std::vector<HeldOutCheck> out;
+  for (const Observation* observation : held_out)
+    out.push_back(check(model, fit, fitted, *observation));
   return out;
 }
 

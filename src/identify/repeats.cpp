@@ -61,6 +61,22 @@ void append_unit_columns(Eigen::MatrixXd& columns, const std::vector<Eigen::Inde
     columns(rows[j], known + static_cast<Eigen::Index>(j)) = 1.0;
 }
 
+/// Sum of the residuals of a group at the stations of one observation, and how many have each.
+struct StationSums {
+  Eigen::VectorXd sum, count;
+
+  StationSums(const Linearisation& all, const std::vector<std::size_t>& group,
+              const Observation& observation, const Gates& gates)
+      : sum(Eigen::VectorXd::Zero(observation.values.size())), count(sum) {
+    for (const std::size_t i : group) {
+      const auto match = matched_values(observation, *all.observations[i], gates);
+      for (Eigen::Index row = 0; row < sum.size(); ++row)
+        if (match[row] >= 0) sum[row] += all.residuals[i][match[row]], ++count[row];
+    }
+  }
+  [[nodiscard]] Eigen::VectorXd mean() const { return sum.cwiseQuotient(count); }
+};
+
 /// Mean of a group's residuals at the stations of its first profile, a trace of its own.
 struct CommonTrace {
   Observation observation;
@@ -68,15 +84,9 @@ struct CommonTrace {
 
   CommonTrace(const Linearisation& all, const std::vector<std::size_t>& group, const Gates& gates)
       : observation(*all.observations[group.front()]) {
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(observation.values.size()), count = sum;
-    for (const std::size_t i : group) {
-      const auto match = matched_values(observation, *all.observations[i], gates);
-      for (Eigen::Index row = 0; row < sum.size(); ++row)
-        if (match[row] >= 0) sum[row] += all.residuals[i][match[row]], ++count[row];
-    }
     linear.observations = {&observation};
     linear.columns = {all.columns[group.front()]};
-    linear.residuals = {sum.cwiseQuotient(count)};
+    linear.residuals = {StationSums(all, group, observation, gates).mean()};
     linear.prior_rows.resize(0, all.prior_rows.cols());
     linear.prior_residuals.resize(0);
   }
@@ -155,15 +165,13 @@ std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
 std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear, std::size_t i,
                                                     const Gates& gates) {
   const Observation& observation = *linear.observations[i];
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(observation.values.size()), count = sum;
-  for (std::size_t j = 0; j < linear.observations.size(); ++j) {
-    if (!are_repeats(observation, *linear.observations[j], gates)) continue;
-    const auto match = matched_values(observation, *linear.observations[j], gates);
-    for (Eigen::Index row = 0; row < sum.size(); ++row)
-      if (match[row] >= 0) sum[row] += linear.residuals[j][match[row]], ++count[row];
-  }
+  std::vector<std::size_t> group;
+  for (std::size_t j = 0; j < linear.observations.size(); ++j)
+    if (are_repeats(observation, *linear.observations[j], gates)) group.push_back(j);
+  const StationSums repeats(linear, group, observation, gates);
+  const Eigen::VectorXd& count = repeats.count;
   std::vector<Eigen::Index> alone;
-  Eigen::VectorXd deviation = linear.residuals[i] - sum.cwiseQuotient(count);
+  Eigen::VectorXd deviation = linear.residuals[i] - repeats.mean();
   for (Eigen::Index row = 0; row < count.size(); ++row) {
     if (count[row] < 2.0)
       alone.push_back(row);

@@ -227,7 +227,7 @@ std::vector<std::string> names_of(const TraceRound& round) {
 }
 
 std::string effect_title(const std::string& name) {
-  if (name == "unnamed") return "something without a name";
+  if (name == kUnnamedRival) return "something without a name";
   std::string title = name;
   std::replace(title.begin(), std::ranges::find(title, '['), '_', ' ');
   return title;

@@ -8,6 +8,7 @@
 #include "slideway/base/text.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
+#include "slideway/identify/subset_estimate.hpp"
 
 namespace slideway {
 namespace {
@@ -45,36 +46,11 @@ std::vector<Hypothesis> hypotheses(const Setup& setup) {
   return out;
 }
 
-/// What all profiles but one say of (amplitudes, shapes).
-struct Others {
-  Eigen::MatrixXd basis, null_space;
-  Eigen::VectorXd change;  // of the joint estimate
-
-  Others(const Linearisation& linear, const Compressed& all, std::size_t left_out,
-         double tolerance) {
-    const Eigen::Index k = linear.prior_rows.cols(), priors = linear.prior_rows.rows();
-    Eigen::MatrixXd rows(priors, k + 1);
-    rows << linear.prior_rows, linear.prior_residuals;
-    Eigen::VectorXd squares = linear.prior_rows.colwise().squaredNorm().transpose();
-    for (std::size_t i = 0; i < all.profiles.size(); ++i) {
-      if (i == left_out) continue;
-      Eigen::MatrixXd both(rows.rows() + all.profiles[i].free().rows(), k + 1);
-      both << rows, all.profiles[i].free();
-      rows = std::move(both);
-      squares += all.profiles[i].squares();
-    }
-    const Rank rank = analyse_rank(rows.leftCols(k), squares.cwiseSqrt(), tolerance);
-    basis = rank.basis;
-    null_space = rank.null_space;
-    change = basis * (basis.transpose() * (rows.leftCols(k).transpose() * rows.col(k)));
-  }
-};
-
 /// A profile as predicted by the others: white values and columns, compressed.
 class Prediction {
  public:
   /// @param amplitudes  (amplitudes, shapes): a model linear in them makes the predicted values
-  Prediction(const ProfileTriangle& triangle, const Others& others,
+  Prediction(const ProfileTriangle& triangle, const SubsetEstimate& others,
              const Eigen::VectorXd& amplitudes, double values) {
     if (others.basis.cols() == 0) return;  // they predict nothing
     const auto rows = triangle.free();
@@ -180,8 +156,8 @@ class Finder {
     return out;
   }
 
-  [[nodiscard]] Prediction prediction(std::size_t i, const Others& others, const Noise& noise,
-                                      const Setup* other_setup) const {
+  [[nodiscard]] Prediction prediction(std::size_t i, const SubsetEstimate& others,
+                                      const Noise& noise, const Setup* other_setup) const {
     const Observation& observation = *fit_.linear.observations[i];
     Eigen::VectorXd amplitudes = others.change;
     amplitudes.head(model_.amplitudes()) += fit_.estimate.amplitudes;
@@ -206,7 +182,10 @@ class Finder {
     const Noise* const of_sister = sister(i);
     const Noise& noise = of_sister ? *of_sister : noise_[i];
     const double factor = of_sister ? gates.sister_factor : kAnyFactor;
-    const Others others(fit_.linear, compressed_, i, gates.rank_tolerance);
+    std::vector<std::size_t> all_but_it;
+    for (std::size_t j = 0; j < noise_.size(); ++j)
+      if (j != i) all_but_it.push_back(j);
+    const SubsetEstimate others(fit_.linear, compressed_, all_but_it, gates.rank_tolerance);
     const Prediction as_it_is = prediction(i, others, noise, nullptr);
     if (as_it_is.directions() == 0) return;
     const double before = as_it_is.best(1.0, factor).cost, square = as_it_is.disagreement(1.0);

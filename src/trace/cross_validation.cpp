@@ -15,6 +15,7 @@ std::optional<double> prediction_error(const Linearisation& linear, Eigen::Index
   const Eigen::Index k = linear.columns.front().cols();
   Eigen::MatrixXd rows(n, m + k + 1);
   rows << observation.nuisances, linear.columns.front(), linear.residuals.front();
+  const std::vector<Eigen::Index> undescribed = left_out_values(observation);
   double square = 0.0;
   for (Eigen::Index fold = 0; fold < 2; ++fold) {
     std::vector<Eigen::Index> kept, left_out;
@@ -25,9 +26,9 @@ std::optional<double> prediction_error(const Linearisation& linear, Eigen::Index
     const Eigen::VectorXd fitted = least_squares(of.leftCols(m + k), of.rightCols(1)).values;
     const Eigen::MatrixXd gap = rows(left_out, Eigen::all);
     Eigen::VectorXd error = gap.rightCols(1) - gap.leftCols(m + k) * fitted;
-    for (const Eigen::Index loose : left_out_values(observation))
-      for (std::size_t row = 0; row < left_out.size(); ++row)
-        if (left_out[row] == loose) error[static_cast<Eigen::Index>(row)] = 0.0;
+    for (std::size_t row = 0; row < left_out.size(); ++row)
+      if (std::ranges::binary_search(undescribed, left_out[row]))
+        error[static_cast<Eigen::Index>(row)] = 0.0;
     square += error.squaredNorm();
   }
   return std::sqrt(square / static_cast<double>(observation.low_band.samples()));

@@ -35,6 +35,12 @@ std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::si
   return effects;
 }
 
+std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects,
+                                    const std::vector<std::size_t>& which) {
+  for (auto i = which.rbegin(); i != which.rend(); ++i) effects = all_but(std::move(effects), *i);
+  return effects;
+}
+
 ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
                              const FittedModel& declared, const Progress& progress)
     : declared_(declared), progress_(progress) {

@@ -31,13 +31,6 @@ std::vector<std::vector<std::size_t>> absences(std::size_t members) {
   return out;
 }
 
-Effects without(const Effects& effects, const std::vector<std::size_t>& absent) {
-  Effects out;
-  for (std::size_t i = 0; i < effects.size(); ++i)
-    if (std::ranges::find(absent, i) == absent.end()) out.push_back(effects[i]);
-  return out;
-}
-
 /// A polynomial of the carriage of a higher degree: an unnamed process of the slide is the same way
 /// in other words, and was its rival when it entered.
 bool only_carriage(const Effects& effects, const std::vector<std::size_t>& which) {
@@ -56,9 +49,11 @@ bool shows_slide_only(const Linearisation& linear) {
 
 Standing standing(ModelExtender& extender, const Effects& effects, const Gates& gates) {
   const Whitened& named = extender.search(effects).data;
+  const FittedModel& with = extender.extended(effects);
+  const std::vector<ProcessVariable> variables = process_variables(with.model, with.fit.linear);
   Standing out;
   for (const std::vector<std::size_t>& absent : absences(effects.size())) {
-    const FittedModel& fitted = extender.extended(without(effects, absent));
+    const FittedModel& fitted = extender.extended(all_but(effects, absent));
     const Linearisation& linear = fitted.fit.linear;
     const Whitened data(linear, named.noise(), named.undescribed());
     double gain = data.residual().squaredNorm() - named.residual().squaredNorm();
@@ -71,7 +66,7 @@ Standing standing(ModelExtender& extender, const Effects& effects, const Gates& 
       if (margin < out.margin) out = {margin, rival, absent};
     };
     const bool is_way = only_carriage(effects, absent);
-    for (const ProcessVariable& variable : process_variables(fitted.model, linear)) {
+    for (const ProcessVariable& variable : variables) {
       if (is_way && variable.symbol == kSlideSymbol) continue;
       hold_against(best_process(data, linear, variable).log_evidence + gates.process_margin,
                    "a process in " + variable.symbol);

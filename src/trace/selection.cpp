@@ -16,8 +16,6 @@ namespace {
 
 using Effects = std::vector<AcceptedEffect>;
 
-constexpr const char* kUnnamedRival = "unnamed";  // among `ambiguous_with`
-
 /// "" if the residuals, in the units of the report, fall; else why the effect does not help. Where
 /// there are heights and slopes, the mean of their relative squares counts.
 std::string worsens(const ModelResult& without, const ModelResult& with) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "advice.hpp"
 #include "blunder.hpp"
@@ -159,10 +158,7 @@ class Loop {
   /// What a process without a name would do in the place of the effects that are not sure.
   Widening widening_instead(const Selection& selection, const FittedModel& fitted,
                             const SearchRound& last) {
-    std::vector<AcceptedEffect> sure = selection.effects;
-    for (const std::size_t i : std::views::reverse(selection.unsure))
-      sure = all_but(std::move(sure), i);
-    const FittedModel& without = extender_.extended(sure);
+    const FittedModel& without = extender_.extended(all_but(selection.effects, selection.unsure));
     const Whitened data(without.fit.linear, last.data.noise(), last.data.undescribed());
     return widening(fitted.model, fitted.fit,
                     find_structure(without.model, data, without.fit.linear), last);

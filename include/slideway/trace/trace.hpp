@@ -23,6 +23,9 @@ struct TriedEffect {
   std::optional<std::string> refused;  // why it was not accepted; none: it was, or is a rival
 };
 
+/// Among the rivals of an effect: something without a name explains as much.
+inline constexpr const char* kUnnamedRival = "unnamed";
+
 /// One effect that entered the model.
 struct TraceRound {
   std::string accepted;
