@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <ranges>
 
 #include "slideway/base/distribution.hpp"
 #include "slideway/identify/identifiability.hpp"
@@ -41,6 +42,92 @@ struct SlowProducts {
   }
 };
 
+/// Mean and variance of the square that noise leaves in the slow band.
+struct Moments {
+  double mean = 0.0, variance = 0.0;
+
+  void operator+=(const Moments& other) { mean += other.mean, variance += other.variance; }
+};
+
+/// A memory that a pool of profiles may have.
+struct AllowedMemory {
+  double probability = 1.0;
+  Moments square;
+};
+
+/// Of one profile under one of the noises it may have.
+/// @param share  directions of the slow band that are this profile's
+Moments moments(const Noise& noise, const ExponentialMixture& covariance, double share,
+                Eigen::Index count, const Gates& gates) {
+  double mean = 0.0, square = 0.0;
+  for (Eigen::Index j = 1; j <= count; ++j) {
+    const double ratio = noise.power_ratio(covariance, 0.5 * static_cast<double>(j));
+    mean += ratio / static_cast<double>(count);
+    square += ratio * ratio / static_cast<double>(count);
+  }
+  const double below = noise.is_estimated() ? std::pow(gates.noise_extrapolation, 2) : 0.0;
+  const double own = share * mean;
+  return {own, 2.0 * share * square + own * own * (std::expm1(noise.log_size_variance()) + below)};
+}
+
+/// What each pool may leave, the least first.
+std::vector<std::vector<AllowedMemory>> allowed_memories(const std::vector<double>& shares,
+                                                         const std::vector<Eigen::Index>& counts,
+                                                         const std::vector<Noise>& noise,
+                                                         const Gates& gates) {
+  std::map<std::size_t, std::vector<AllowedMemory>> pools;
+  std::vector<std::vector<AllowedMemory>> out;
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    const auto of = [&](const ExponentialMixture& covariance) {
+      return moments(noise[i], covariance, shares[i], counts[i], gates);
+    };
+    if (!noise[i].is_estimated()) {
+      out.push_back({{1.0, of(noise[i].covariance())}});
+      continue;
+    }
+    std::vector<AllowedMemory>& pool = pools[noise[i].pool];
+    pool.resize(noise[i].alternatives.size());
+    for (std::size_t g = 0; g < pool.size(); ++g) {
+      pool[g].probability = noise[i].alternatives[g].probability;
+      pool[g].square += of(noise[i].alternatives[g].covariance);
+    }
+  }
+  for (auto& [pool, memories] : pools) out.push_back(std::move(memories));
+  for (std::vector<AllowedMemory>& memories : out)
+    std::ranges::sort(memories, {}, [](const AllowedMemory& each) { return each.square.mean; });
+  return out;
+}
+
+/// The mean over all noises that are allowed; pools are taken to be wrong together, for they are
+/// estimated beside the same model.
+LackOfFit judged(double found, const std::vector<double>& shares,
+                 const std::vector<Eigen::Index>& counts, const std::vector<Noise>& noise,
+                 const Gates& gates) {
+  const auto pools = allowed_memories(shares, counts, noise, gates);
+  std::vector<std::size_t> at(pools.size(), 0);
+  std::vector<double> until;
+  for (const auto& pool : pools) until.push_back(pool.front().probability);
+  LackOfFit out{0.0, 0.0};
+  double expected = 0.0;
+  for (double done = 0.0; done < 1.0;) {
+    const bool last =
+        std::ranges::all_of(std::views::iota(std::size_t{0}, pools.size()),
+                            [&](std::size_t k) { return at[k] + 1 == pools[k].size(); });
+    const double next = last ? 1.0 : std::ranges::min(until);
+    Moments sum;
+    for (std::size_t k = 0; k < pools.size(); ++k) sum += pools[k][at[k]].square;
+    const double scale = sum.mean / sum.variance;
+    out.p_value += (next - done) * gamma_tail(sum.mean * scale, found * scale);
+    expected += (next - done) * sum.mean;
+    done = next;
+    for (std::size_t k = 0; k < pools.size(); ++k)
+      if (until[k] <= done && at[k] + 1 < pools[k].size())
+        until[k] += pools[k][++at[k]].probability;
+  }
+  out.ratio = found / expected;
+  return out;
+}
+
 }  // namespace
 
 bool LackOfFit::significant(const Gates& gates) const {
@@ -61,8 +148,6 @@ LackOfFit lack_of_fit(const Linearisation& linear, const std::vector<Noise>& noi
   if (total == 0) return {};
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(total, total), inside(total, basis.cols());
   Eigen::VectorXd products(total);
-  double mean = 0.0, variance = 0.0;
-  std::map<std::size_t, double> by_memory;  // profiles of one pool are wrong about it together
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const SlowProducts slow(*linear.observations[i], noise[i], linear.columns[i],
                             linear.residuals[i], counts[i]);
@@ -80,19 +165,10 @@ LackOfFit lack_of_fit(const Linearisation& linear, const std::vector<Noise>& noi
                            .cwiseAbs2()
                            .cwiseQuotient(eigen.eigenvalues().tail(rank))
                            .sum();
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    const double share = static_cast<double>(rank * counts[i]) / static_cast<double>(total);
-    const double spread = std::min(noise[i].log_long_run_variance(), gates.noise_spread);
-    const double size_spread = std::min(noise[i].log_size_variance(), spread);
-    const double own = share * std::exp(0.5 * spread);
-    const double below = noise[i].is_estimated() ? std::pow(gates.noise_extrapolation, 2) : 0.0;
-    mean += own;
-    variance += own * own * (std::expm1(size_spread) + below);
-    by_memory[noise[i].pool] += own * std::sqrt(std::expm1(spread - size_spread));
-  }
-  for (const auto& [pool, common] : by_memory) variance += common * common;
-  variance += 2.0 * mean * mean / static_cast<double>(rank);
-  return {gamma_tail(mean * mean / variance, found * mean / variance), found / mean};
+  std::vector<double> shares;
+  for (const Eigen::Index count : counts)
+    shares.push_back(static_cast<double>(rank * count) / static_cast<double>(total));
+  return judged(found, shares, counts, noise, gates);
 }
 
 }  // namespace slideway

@@ -16,6 +16,7 @@ constexpr int kSlopes = 17;                // 1 (1/f noise) ... 3 (more than a r
 constexpr int kCoarse = 4;                 // finest steps of the first search
 constexpr double kLongestTexture = 0.125;  // of a trace
 constexpr double kPlausible = 6.0;         // of -2 ln probability: 5 % of the best
+constexpr double kAllowed = 14.0;          // of the same: 0.1 % of the best
 constexpr double kWorthNeighbours = 2.5;   // of the same: 30 % of the best
 constexpr double kMemoryOdds = 4.0;        // 1/f noise is the rule with instruments
 
@@ -109,8 +110,7 @@ PoolMemory::PoolMemory(std::vector<const LinearProfile*> profiles, const Eigen::
   Eigen::VectorXd start(std::ssize(profiles_));
   for (std::size_t i = 0; i < profiles_.size(); ++i) {
     const LinearProfile& profile = *profiles_[i];
-    values_ =
-        std::max(values_, static_cast<double>(std::max(profile.values, profile.residual.size())));
+    values_ = std::max(values_, profile.extent());
     const auto own = static_cast<double>(profile.residual.size() - profile.nuisances.cols());
     spare += own;
     start[static_cast<Eigen::Index>(i)] =
@@ -123,7 +123,7 @@ PoolMemory::PoolMemory(std::vector<const LinearProfile*> profiles, const Eigen::
                       })->second.cost;
   double sum = 0.0;
   for (auto& [place, sizes] : visited_) {
-    if (sizes.cost > best + kPlausible) continue;
+    if (sizes.cost > best + kAllowed) continue;
     const double probability = std::isfinite(best) ? std::exp(-0.5 * (sizes.cost - best)) : 1.0;
     allowed_.push_back({probability, memory_at(place, values_, gates_.longest_memory), sizes});
     sum += probability;

@@ -75,7 +75,7 @@ class Estimator {
             {each.probability, scaled(each.covariance, std::exp(2.0 * each.sizes.log_sizes[own]))});
       Noise& noise = noise_[pool[k]] = Noise(
           scaled(memory.best().covariance, std::exp(2.0 * memory.best().sizes.log_sizes[own])),
-          values_of(profile));
+          values_of(profile), profile.trace);
       noise.alternatives = std::move(alternatives);
       noise.pool = profile.pool;
       noise.freedom = memory.best().sizes.freedom[own];
@@ -124,11 +124,25 @@ class Estimator {
 
 }  // namespace
 
-Noise::Noise(const ExponentialMixture& covariance, Eigen::Index n)
+double LinearProfile::extent() const {
+  return trace.empty() ? static_cast<double>(values_of(*this)) : trace.back() + 1.0;
+}
+
+Noise::Noise(const ExponentialMixture& covariance, Eigen::Index n, std::vector<double> stations)
     : covariance_(covariance),
       values_(n),
+      stations_(std::move(stations)),
       factor_(covariance.is_white() ? nullptr
-                                    : std::make_shared<const MixtureFactor>(covariance, n)) {}
+                                    : std::make_shared<const MixtureFactor>(factored(covariance))) {}
+
+MixtureFactor Noise::factored(const ExponentialMixture& covariance) const {
+  return stations_.empty() ? MixtureFactor(covariance, values_)
+                           : MixtureFactor(covariance, stations_);
+}
+
+double Noise::extent() const {
+  return stations_.empty() ? static_cast<double>(values_) : stations_.back() + 1.0;
+}
 
 Noise Noise::white(double standard_deviation, Eigen::Index n) {
   return {white_covariance(standard_deviation), n};
@@ -138,7 +152,7 @@ Noise Noise::scaled(double factor) const {
   Noise out = *this;
   out.covariance_ = slideway::scaled(covariance_, factor);
   out.factor_ =
-      out.is_white() ? nullptr : std::make_shared<const MixtureFactor>(out.covariance_, values_);
+      out.is_white() ? nullptr : std::make_shared<const MixtureFactor>(factored(out.covariance_));
   for (Alternative& each : out.alternatives)
     each.covariance = slideway::scaled(each.covariance, factor);
   return out;
@@ -151,7 +165,12 @@ double Noise::standard_deviation() const {
 }
 
 double Noise::spectrum(const ExponentialMixture& covariance) const {
-  return covariance.spectrum(values_ > 1 ? 1.0 / static_cast<double>(values_) : 0.5);
+  return covariance.spectrum(values_ > 1 ? 1.0 / extent() : 0.5);
+}
+
+double Noise::power_ratio(const ExponentialMixture& other, double cycles) const {
+  const double frequency = cycles / extent();
+  return other.spectrum(frequency) / covariance_.spectrum(frequency);
 }
 
 double Noise::long_run_deviation() const { return std::sqrt(spectrum(covariance_)); }

@@ -209,15 +209,40 @@ std::vector<std::size_t> pools_of(const Linearisation& linear) {
   return out;
 }
 
+/// Stations of the low-band values in their median step, for the noise between two of them; empty
+/// if they are neighbours. Those closer than the median step count as neighbours.
+std::vector<double> stations_of(const Observation& observation) {
+  const std::vector<double> positions =
+      observation.low_band.positions(observation.profile->positions);
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < positions.size(); ++i)
+    steps.push_back(std::abs(positions[i] - positions[i - 1]));
+  if (steps.empty() || std::ranges::max(steps) <= (1.0 + kSameStep) * std::ranges::min(steps))
+    return {};
+  std::vector<double> sorted = steps;
+  std::ranges::nth_element(sorted, sorted.begin() + std::ssize(sorted) / 2);
+  const double median = sorted[sorted.size() / 2];
+  std::vector<double> out{0.0};
+  for (const double step : steps) out.push_back(out.back() + std::max(step / median, 1.0));
+  return out;
+}
+
 /// The rows of the values that are not left out.
 LinearProfile kept(LinearProfile profile, const Observation& observation) {
   profile.values = observation.values.size();
+  profile.trace = stations_of(observation);
+  profile.stations = profile.trace;
   if (observation.left_out() == 0) return profile;
   const std::vector<Eigen::Index> left_out = left_out_values(observation);
   std::vector<Eigen::Index> rows;
   for (Eigen::Index i = 0; i < profile.values; ++i)
     if (!std::ranges::binary_search(left_out, i)) rows.push_back(i);
-  profile.stations.assign(rows.begin(), rows.end());
+  if (profile.trace.empty())
+    profile.stations.assign(rows.begin(), rows.end());
+  else
+    std::ranges::transform(rows, profile.stations.begin(),
+                           [&](Eigen::Index row) { return profile.trace[row]; });
+  profile.stations.resize(rows.size());
   profile.nuisances = orthonormal(profile.nuisances(rows, Eigen::all));
   profile.columns = profile.columns(rows, Eigen::all).eval();
   profile.residual = profile.residual(rows).eval();

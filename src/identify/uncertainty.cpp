@@ -13,12 +13,12 @@ namespace {
 constexpr double kInfinite = 1e6;  // degrees of freedom: above it k is 2, and they are rounding
 
 /// Information of one profile on w under another noise, its nuisances eliminated.
-Eigen::MatrixXd information_under(const ExponentialMixture& noise, const Observation& observation,
+Eigen::MatrixXd information_under(const MixtureFactor& noise, const Observation& observation,
                                   const Eigen::MatrixXd& columns) {
   const Eigen::Index m = observation.nuisances.cols(), r = columns.cols();
   Eigen::MatrixXd rows(columns.rows(), m + r);
   rows << observation.nuisances, columns;
-  MixtureFactor(noise, rows.rows()).whiten(rows);
+  noise.whiten(rows);
   Eigen::MatrixXd gram = rows.transpose() * rows;
   if (m == 0) return gram;
   const Eigen::MatrixXd cross = gram.topRightCorner(m, r);
@@ -38,8 +38,8 @@ std::vector<Uncertainty::AllowedNoise> allowed_noises(const std::vector<std::siz
   parallel_for(count > 1 ? count : 0, [&](std::size_t g) {
     Eigen::MatrixXd total = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
     for (const std::size_t i : members)
-      total += information_under(noise[i].alternatives[g].covariance, *linear.observations[i],
-                                 linear.columns[i] * basis) -
+      total += information_under(noise[i].factored(noise[i].alternatives[g].covariance),
+                                 *linear.observations[i], linear.columns[i] * basis) -
                at_best.information[i];
     out[g] = {noise[members.front()].alternatives[g].probability,
               total.completeOrthogonalDecomposition().pseudoInverse()};

@@ -32,7 +32,7 @@ void colour(const Noise& noise, const std::vector<double>& shares, const Eigen::
   for (std::size_t g = 0; g < columns.size(); ++g) {
     if (columns[g].empty()) continue;
     Eigen::MatrixXd some = rows(Eigen::all, columns[g]);
-    MixtureFactor(noise.alternatives[g].covariance, rows.rows()).colour(some);
+    noise.factored(noise.alternatives[g].covariance).colour(some);
     rows(Eigen::all, columns[g]) = some;
   }
 }

@@ -8,10 +8,11 @@ namespace slideway {
 
 /// What the slow band of the profiles holds outside the model, against what noise leaves there.
 ///
-/// The square found in q slow directions is, under noise alone, near a gamma variable with the
-/// moments of Σ_i s_i χ²(q_i): s_i is lognormal, for the long-run variance of profile i's noise is
-/// estimated, its memory together with that of its pool, and measured in a faster band
-/// (Gates::noise_extrapolation).
+/// The square found in q slow directions is, under one noise, near a gamma variable with the
+/// moments of Σ_i s_i Σ_j ρ_ij χ²(1): ρ_ij is the density of that noise at cosine j over that of
+/// the most probable noise, and s_i the size of profile i, measured in a faster band
+/// (Gates::noise_extrapolation). The probability of a larger square is the mean over the noises
+/// that the residual allows.
 struct LackOfFit {
   double p_value = 1.0;
   double ratio = 1.0;  // square found over square expected

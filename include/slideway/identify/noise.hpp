@@ -23,7 +23,8 @@ class Noise {
 
   Noise() = default;
   /// Of a trace of n values; mm² or rad².
-  Noise(const ExponentialMixture& covariance, Eigen::Index n);
+  /// @param stations  of the values, rising, at least 1 apart; empty: neighbours
+  Noise(const ExponentialMixture& covariance, Eigen::Index n, std::vector<double> stations = {});
   /// White noise of a standard deviation, mm or rad.
   static Noise white(double standard_deviation, Eigen::Index n);
 
@@ -58,15 +59,23 @@ class Noise {
   /// Values of white noise that would say as much about smooth parameters.
   [[nodiscard]] double effective_values() const;
 
+  /// Spectral density under another covariance over that under this one, at so many cycles a trace.
+  [[nodiscard]] double power_ratio(const ExponentialMixture& other, double cycles) const;
+
+  /// Another covariance at the stations of this trace.
+  [[nodiscard]] MixtureFactor factored(const ExponentialMixture& covariance) const;
+
   /// Rows made independent with unit variance (whitening), and the inverse. In place.
   void whiten(Eigen::Ref<Eigen::MatrixXd> rows) const;
   void colour(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
  private:
+  [[nodiscard]] double extent() const;  // in stations
   [[nodiscard]] double spectrum(const ExponentialMixture& covariance) const;
 
   ExponentialMixture covariance_;
   Eigen::Index values_ = 0;
+  std::vector<double> stations_;
   std::shared_ptr<const MixtureFactor> factor_;
 };
 
@@ -79,7 +88,11 @@ struct LinearProfile {
   std::optional<double> declared;  // standard uncertainty of one value, mm or rad
   std::size_t pool = 0;            // profiles with the same one have their memory in common
   std::vector<double> stations;    // rising, at least 1 apart; empty: neighbours
-  Eigen::Index values = 0;         // of the whole trace, gaps included; 0: as many as there are
+  std::vector<double> trace;       // stations of the whole trace; empty: neighbours
+  Eigen::Index values = 0;         // of the whole trace; 0: as many as there are
+
+  /// Length of the whole trace in stations.
+  [[nodiscard]] double extent() const;
 };
 
 /// Estimates the noise of every profile by restricted likelihood (Patterson and Thompson 1971): the
