@@ -17,7 +17,7 @@ constexpr int kCoarse = 4;                 // finest steps of the first search
 constexpr double kLongestTexture = 0.125;  // of a trace
 constexpr double kPlausible = 6.0;         // of -2 ln probability: 5 % of the best
 constexpr double kAllowed = 14.0;          // of the same: 0.1 % of the best
-constexpr double kWorthNeighbours = 2.5;   // of the same: 30 % of the best
+constexpr double kWorthNeighbours = 4.0;   // of the same: 14 % of the best
 constexpr double kMemoryOdds = 4.0;        // 1/f noise is the rule with instruments
 
 double size_at(int index) { return std::pow(10.0, 0.125 * (index - 1) - 2.5); }

@@ -354,6 +354,7 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
     if (!fine[i] && !repeats[i]) whole.push_back(i);
   }
   if (!whole.empty()) from_whole_residuals(linear, whole, gates, out);
+  for (const std::size_t i : whole) out[i].pool += 2 * count;
   const Eigen::MatrixXd no_priors(0, 0);
   std::vector<Noise> found = estimate_noise(beside.profiles, no_priors, gates);
   for (std::size_t k = 0; k < found.size(); ++k) out[beside.which[k]] = std::move(found[k]);
@@ -380,6 +381,7 @@ std::vector<Noise> noise_of_each(const Linearisation& all, const Gates& gates) {
     own.prior_rows = all.prior_rows;
     own.prior_residuals = Eigen::VectorXd::Zero(all.prior_residuals.size());
     out.push_back(noise_beside(own, gates).front());
+    out.back().pool = i;
   }
   return out;
 }

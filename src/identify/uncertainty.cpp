@@ -34,8 +34,9 @@ std::vector<Uncertainty::AllowedNoise> allowed_noises(const std::vector<std::siz
                                                       const Eigen::MatrixXd& basis,
                                                       const Uncertainty& at_best) {
   const std::size_t count = noise[members.front()].alternatives.size();
+  if (count < 2 || basis.cols() == 0) return {};
   std::vector<Uncertainty::AllowedNoise> out(count);
-  parallel_for(count > 1 ? count : 0, [&](std::size_t g) {
+  parallel_for(count, [&](std::size_t g) {
     Eigen::MatrixXd total = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
     for (const std::size_t i : members)
       total += information_under(noise[i].factored(noise[i].alternatives[g].covariance),
@@ -44,7 +45,6 @@ std::vector<Uncertainty::AllowedNoise> allowed_noises(const std::vector<std::siz
     out[g] = {noise[members.front()].alternatives[g].probability,
               total.completeOrthogonalDecomposition().pseudoInverse()};
   });
-  if (count == 1) out.clear();
   return out;
 }
 

@@ -69,7 +69,8 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     TestedCandidate tested;
     tested.refined = refine(model, data, finding);
     tested.p_value = calibration.p_value(-tested.refined.delta_bic);
-    tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
+    if (tested.refined.candidate->term.profiles.empty())  // else the others lack their own share
+      tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
     tested.modulates = modulated_effect(model, fit.estimate.shapes, tested.refined);
     tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
     return tested;

@@ -85,7 +85,7 @@ class Selector {
       Effects more = out_.effects;
       more.push_back(accepted(round, *choice));
       std::string why = reason_against(more, more.size() - 1);
-      if (why.empty()) why = comes_and_goes(stability(round, *choice));
+      if (why.empty()) why = comes_and_goes(stability(round, *choice, gates_));
       if (!why.empty()) {
         ruled_out_.push_back(choice->name());
         out_.notes.push_back(choice->name() + " was refused: " + why);
@@ -251,7 +251,7 @@ class Selector {
       const TestedCandidate& own = *find_tested(round, effect, gates_);
       for (const TestedCandidate* rival : round.rivals(own, gates_))
         effect.round.ambiguous_with.push_back(rival->name());
-      const Stability found = stability(round, own);
+      const Stability found = stability(round, own, gates_);
       effect.round.stability = found.share;
       if (found.share >= gates_.stable_share || !effect.round.ambiguous_with.empty()) continue;
       effect.round.ambiguous_with.push_back(found.other == kNothing ? kUnnamedRival : found.other);

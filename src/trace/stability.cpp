@@ -37,27 +37,32 @@ class Choice {
     data.whiten(columns_);
   }
 
-  /// Name of the candidate of least BIC in these rows of the data; kNothing: none pays.
-  [[nodiscard]] std::string in(const Eigen::VectorXd& residual, const Rows& rows) const {
+  /// Name of the candidate of least BIC in these rows of the data, the effect's own if none is
+  /// better by more than a tie; kNothing: none pays. Gains are those of as many rows as all: a part
+  /// differs by what it shows, not by being small.
+  [[nodiscard]] std::string in(const Eigen::VectorXd& residual, const Rows& rows,
+                               const std::string& own_name, double tie) const {
     const Eigen::MatrixXd basis = orthonormal(round_.data.basis()(rows, Eigen::all));
     Eigen::MatrixXd columns = columns_(rows, Eigen::all);
     columns -= basis * (basis.transpose() * columns).eval();
     Eigen::VectorXd rest = residual(rows);
     rest -= basis * (basis.transpose() * rest).eval();
-    const double log_count = std::log(static_cast<double>(rows.size()));
+    const double count = static_cast<double>(residual.size());
+    const double log_count = std::log(count), to_all = count / static_cast<double>(rows.size());
     std::string best(kNothing);
-    double least = 0.0;
+    double least = 0.0, of_own = 0.0;
     for (std::size_t c = 0; c < round_.tested.size(); ++c) {
       const Refined& refined = round_.tested[c].refined;
-      if (refined.projection.rank == 0) continue;
+      if (!round_.tested[c].is_possible()) continue;
       const Eigen::MatrixXd own =
           orthonormal(columns.middleCols(first_[c], first_[c + 1] - first_[c]));
       const double bic =
           static_cast<double>(refined.candidate->unknowns(refined.projection.rank)) * log_count +
-          refined.candidate->choice - (own.transpose() * rest).squaredNorm();
+          refined.candidate->choice - to_all * (own.transpose() * rest).squaredNorm();
       if (bic < least) least = bic, best = round_.tested[c].name();
+      if (round_.tested[c].name() == own_name) of_own = std::min(of_own, bic);
     }
-    return best;
+    return of_own < 0.0 && of_own <= least + tie ? own_name : best;
   }
 
  private:
@@ -96,7 +101,7 @@ std::vector<Rows> parts_of(const Whitened& data, const Eigen::VectorXd& shown) {
 
 }  // namespace
 
-Stability stability(const SearchRound& round, const TestedCandidate& effect) {
+Stability stability(const SearchRound& round, const TestedCandidate& effect, const Gates& gates) {
   const Choice choice(round);
   const Whitened& data = round.data;
   const std::vector<Rows> parts = parts_of(data, effect.fitted);
@@ -104,13 +109,13 @@ Stability stability(const SearchRound& round, const TestedCandidate& effect) {
   std::vector<std::string> chosen(parts.size() + kDraws);
   parallel_for(chosen.size(), [&](std::size_t k) {
     if (k < parts.size()) {
-      chosen[k] = choice.in(data.residual(), parts[k]);
+      chosen[k] = choice.in(data.residual(), parts[k], effect.name(), gates.tie_bic);
       return;
     }
     RandomStream random(kStabilitySeed + k - parts.size(), "stability");
     Eigen::VectorXd drawn = effect.fitted;
     for (double& value : drawn) value += random.normal();
-    chosen[k] = choice.in(drawn, all);
+    chosen[k] = choice.in(drawn, all, effect.name(), gates.tie_bic);
   });
   std::map<std::string, int> votes;
   for (const std::string& name : chosen) ++votes[name];

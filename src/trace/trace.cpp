@@ -67,20 +67,32 @@ class Loop {
 
  private:
   /// Whether an effect of all profiles leaves less of the residual than the blunder that leaves
-  /// least: the sign of a drift, too, turns with the direction of the cut.
+  /// least, or leaves no profile that disagrees: the sign of a drift, too, turns with the direction
+  /// of the cut.
   bool explained_by_an_effect(const std::vector<Blunder>& blunders) {
     const SearchRound& round = extender_.search({});
     const double square = round.data.residual().squaredNorm();
     const auto noise = static_cast<double>(round.data.values());
     const double least = std::ranges::min(blunders, {}, &Blunder::left).left;
-    return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
+    const TestedCandidate* best = nullptr;
+    for (const TestedCandidate& each : round.tested) {
       const Candidate& candidate = *each.refined.candidate;
       if (!candidate.term.profiles.empty() || candidate.term.effect->is_carriage() ||
           !each.refused(problem_.trace.gates).empty())
-        return false;
+        continue;
       const double rest = std::max(square - each.refined.projection.gain - noise, 0.0);
-      return rest < problem_.trace.gates.blunder_rival * least * (square - noise);
-    });
+      if (rest < problem_.trace.gates.blunder_rival * least * (square - noise)) return true;
+      if (!best || each.refined.projection.gain > best->refined.projection.gain) best = &each;
+    }
+    return best && all_agree_beside(*best);
+  }
+
+  bool all_agree_beside(const TestedCandidate& effect) {
+    const FittedModel& fitted =
+        extender_.extended({{effect.refined.candidate, effect.refined.shape, {}}});
+    return !lack_of_fit(fitted.fit.linear, fitted.fit.noise, problem_.trace.gates)
+                .significant(problem_.trace.gates) &&
+           find_blunders(fitted).empty();
   }
 
   /// The residuals of the rounds as if the effects had been added one after the other: some have

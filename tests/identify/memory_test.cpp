@@ -83,9 +83,11 @@ TEST_P(NoiseOfAMemory, LeavesIntervalsThatHoldAndRaisesFewAlarms) {
   }
   RecordProperty("held", held);
   RecordProperty("alarms", alarms);
-  // Of 95 %, four standard errors of 120 independent runs. More than 95 % is no fault: nobody can
-  // know from one trace that a noise has no memory longer than it.
-  EXPECT_GE(held, 0.95 * counted * (1.0 - 4.0 * std::sqrt(0.05 / 0.95 / kTraces)));
+  // At least 92 %, less three standard errors of 120 independent runs: an exponent is not known well
+  // enough from one trace for more. More than 95 % is no fault: nobody can know from one trace that
+  // a noise has no memory longer than it.
+  constexpr double kLeast = 0.92;
+  EXPECT_GE(held, counted * (kLeast - 3.0 * std::sqrt(kLeast * (1.0 - kLeast) / kTraces)));
   // One in a thousand: two of 120 with a probability of 0.7 %.
   EXPECT_LE(alarms, 2);
 }

@@ -13,7 +13,7 @@ struct Estimate;
 struct Linearisation;
 struct Model;
 struct ModelTerm;
-struct Noise;
+class Noise;
 
 /// Covariance of the curve at two places a distance d apart, Matérn's: a² M_ν(d / ℓ) with
 ///   M_3/2(u) = (1 + √3 u) exp(-√3 u),  M_5/2(u) = (1 + √5 u + 5/3 u²) exp(-√5 u).
