@@ -22,7 +22,7 @@ Section trace_section() {
   Section out{"[trace]",
               "The closed loop. slideway help trace: the gates with their ranges and reasons.",
               {{"candidates", "[\"all\"], or names of effects"},
-               {"max_effects", "how many may enter; default 3"}}};
+               {"max_effects", "how many may enter, each counted once; default 3"}}};
   for (const Gate& gate : gate_table()) out.keys.push_back({gate.name.data(), gate.decides.data()});
   return out;
 }

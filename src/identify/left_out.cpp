@@ -32,6 +32,13 @@ struct Radii {
       if (std::abs(radius[i] - centre) <= reach) out.push_back(static_cast<Eigen::Index>(i));
     return out;
   }
+
+  /// None where that would be most of the trace: then its positions are wrong, not its centre.
+  [[nodiscard]] ValueIndices at_axis(double reach) const {
+    ValueIndices out = within(0.0, reach);
+    if (2 * out.size() > radius.size()) out.clear();
+    return out;
+  }
 };
 
 /// Radius out to which a nose cuts the curve visibly lower than it is; 0 if that is no matter of
@@ -55,7 +62,7 @@ double lost_radius(const Radii& radii, const Observation& observation, const Gat
 ValueIndices values_at_axis(const Observation& observation, const Machine& machine) {
   if (observation.profile->setup.kind != Kind::face) return {};
   const Radii radii(observation, machine);
-  return radii.within(0.0, radii.width);
+  return radii.at_axis(radii.width);
 }
 
 ValueIndices undescribed_values(const Model& model, const Observation& observation,
@@ -63,8 +70,8 @@ ValueIndices undescribed_values(const Model& model, const Observation& observati
   const Setup& setup = observation.profile->setup;
   if (setup.kind != Kind::face) return {};
   const Radii radii(observation, model.machine);
-  return radii.within(
-      0.0, std::max(radii.width, lost_radius(radii, observation, model.gates, curve, noise)));
+  return radii.at_axis(
+      std::max(radii.width, lost_radius(radii, observation, model.gates, curve, noise)));
 }
 
 ValueIndices values_beside_steps(const Model& model, const Estimate& estimate,

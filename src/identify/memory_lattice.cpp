@@ -18,7 +18,7 @@ constexpr double kLongestTexture = 0.125;  // of a trace
 constexpr double kPlausible = 6.0;         // of -2 ln probability: 5 % of the best
 constexpr double kAllowed = 14.0;          // of the same: 0.1 % of the best
 constexpr double kWorthNeighbours = 4.0;   // of the same: 14 % of the best
-constexpr double kMemoryOdds = 4.0;        // 1/f noise is the rule with instruments
+constexpr double kMemoryOdds = 1.0;        // no kind of memory is known to be the rule
 
 double size_at(int index) { return std::pow(10.0, 0.125 * (index - 1) - 2.5); }
 double length_at(int index) { return std::exp2(0.25 * index); }

@@ -120,20 +120,27 @@ std::unique_ptr<Effect> made(const Section& section, const std::string& name,
   }
 }
 
-/// The options of an effect with one size in all its profiles, or one for each of them
-/// (scope = "profile") that can see it.
+/// The options of an effect with one size in all its profiles, or one for each of them that can see
+/// it: with scope = "profile", and where the effect is of one profile each.
 std::vector<EffectOptions> by_scope(const Section& section, const Effect& effect,
                                     const EffectOptions& options, const Problem& problem) {
-  if (section.one_of("scope", "all profile").value_or("all") == "all") return {options};
   std::vector<EffectOptions> out;
+  std::vector<const Setup*> setups;
   for (const ProfileEntry& entry : problem.profiles) {
     const std::string& name = entry.profile.name;
+    const Setup& setup = entry.profile.setup;
     const bool named = options.profiles.empty() || std::ranges::count(options.profiles, name) > 0;
-    if (!named || !effect.applies_to(entry.profile.setup)) continue;
+    if (!named || !effect.applies_to(setup)) continue;
+    setups.push_back(&setup);
     out.push_back(options);
     out.back().profiles = {name};
   }
-  return out;
+  const bool of_one = !setups.empty() && !effect.lacking_together(setups).empty() &&
+                      std::ranges::all_of(setups, [&](const Setup* setup) {
+                        return effect.lacking_together({setup}).empty();
+                      });
+  const std::string scope = section.one_of("scope", "all profile").value_or("all");
+  return scope == "profile" || of_one ? out : std::vector{options};
 }
 
 std::string read_effect_name(const Section& section) {

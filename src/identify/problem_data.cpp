@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "copies.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/problem_tree.hpp"
@@ -85,6 +86,7 @@ std::vector<Profile> read_profiles(const Problem& problem, const GivenTraces& gi
       throw UsageError(problem.path.string() + ": " + error.what());
     }
   }
+  hold_out_copies(profiles);
   return profiles;
 }
 

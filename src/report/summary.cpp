@@ -106,6 +106,9 @@ void say_verdict(const Analysis& analysis, Summary& out) {
     case TraceVerdict::nothing_missing:
       return say(Alarm::good, "Nothing missing", "the model explains the profiles down to noise");
     case TraceVerdict::explained:
+      if (trace.rounds.front().accepted == kInstrument)
+        return say(Alarm::warn, "Instrument",
+                   "surfaces share a residual: the instrument's error, not the slide's");
       return say(
           Alarm::good, "Explained",
           (few ? names + " was" : "what is named below was") + " missing and is in the model now");

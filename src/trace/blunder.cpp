@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "slideway/base/text.hpp"
+#include "slideway/identify/left_out.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
 #include "slideway/identify/subset_estimate.hpp"
@@ -16,8 +17,8 @@ namespace {
 /// How a profile may have been meant.
 struct Hypothesis {
   BlunderKind kind = BlunderKind::sign;
-  double factor = 1.0;  // of the values
-  std::optional<Setup> setup;
+  double factor = 1.0;             // of the values
+  std::optional<Profile> profile;  // with other positions or another setup; none: as it is
 };
 
 constexpr std::array<std::pair<BlunderKind, double>, 5> kFactors{{{BlunderKind::sign, -1.0},
@@ -25,23 +26,62 @@ constexpr std::array<std::pair<BlunderKind, double>, 5> kFactors{{{BlunderKind::
                                                                   {BlunderKind::per_inch, 1 / 25.4},
                                                                   {BlunderKind::metre, 1000.0},
                                                                   {BlunderKind::per_metre, 1e-3}}};
+constexpr std::array<std::pair<BlunderKind, double>, 4> kPositionFactors{
+    {{BlunderKind::position_inch, 25.4},
+     {BlunderKind::position_per_inch, 1 / 25.4},
+     {BlunderKind::position_metre, 1000.0},
+     {BlunderKind::position_per_metre, 1e-3}}};
 // Of the time of the cut: a start that was forgotten, or is one of another cut.
 constexpr std::array<double, 8> kShifts{-2.0, -1.0, -0.5, -0.25, 0.25, 0.5, 1.0, 2.0};
 
-std::vector<Hypothesis> hypotheses(const Setup& setup) {
+double length_of(const Profile& profile) { return profile.setup.last_mm - profile.setup.first_mm; }
+
+/// A profile with its positions in another unit; a centre in the trace and a radius of the
+/// cut that was taken from it go with them.
+Profile rescaled(Profile profile, double factor) {
+  Setup& setup = profile.setup;
+  const double radius = std::max(setup.last_mm - setup.center_mm, setup.center_mm - setup.first_mm);
+  if (setup.cut_radius_mm == radius) *setup.cut_radius_mm *= factor;
+  if (setup.first_mm <= setup.center_mm && setup.center_mm <= setup.last_mm)
+    setup.center_mm *= factor;
+  setup.first_mm *= factor;
+  setup.last_mm *= factor;
+  for (double& each : profile.positions) each *= factor;
+  return profile;
+}
+
+/// Another unit of the positions that makes a trace about as long as one of the others, where it is
+/// as long as none.
+std::optional<Hypothesis> other_position_unit(const Profile& profile,
+                                              const std::vector<double>& other_lengths) {
+  const auto is_as_long = [&](double factor) {
+    return std::ranges::any_of(other_lengths, [&](double length) {
+      return std::abs(std::log(length / (factor * length_of(profile)))) < 0.5 * std::log(25.4);
+    });
+  };
+  if (is_as_long(1.0)) return std::nullopt;
+  for (const auto& [kind, factor] : kPositionFactors)
+    if (is_as_long(factor)) return Hypothesis{kind, 1.0, rescaled(profile, factor)};
+  return std::nullopt;
+}
+
+std::vector<Hypothesis> hypotheses(const Profile& profile,
+                                   const std::vector<double>& other_lengths) {
+  const Setup& setup = profile.setup;
   std::vector<Hypothesis> out;
   for (const auto& [kind, factor] : kFactors) out.push_back({kind, factor, {}});
+  if (auto other = other_position_unit(profile, other_lengths)) out.push_back(*std::move(other));
   if (!setup.cut_direction || !setup.feed_mm_per_min) return out;
-  Setup swapped = setup;
-  swapped.cut_direction =
+  Profile other = profile;
+  other.setup.cut_direction =
       *setup.cut_direction == CutDirection::inward ? CutDirection::outward : CutDirection::inward;
-  out.push_back({BlunderKind::cut_direction, 1.0, swapped});
-  const double length = setup.cut_radius_mm.value_or(setup.last_mm - setup.first_mm);
+  out.push_back({BlunderKind::cut_direction, 1.0, other});
+  other.setup.cut_direction = setup.cut_direction;
+  const double length = setup.cut_radius_mm.value_or(length_of(profile));
   const double duration = kMinute * length / *setup.feed_mm_per_min;
   for (const double share : kShifts) {
-    Setup shifted = setup;
-    shifted.start_s += share * duration;
-    out.push_back({BlunderKind::clock, 1.0, shifted});
+    other.setup.start_s = setup.start_s + share * duration;
+    out.push_back({BlunderKind::clock, 1.0, other});
   }
   return out;
 }
@@ -156,25 +196,40 @@ class Finder {
     return out;
   }
 
-  [[nodiscard]] Prediction prediction(std::size_t i, const SubsetEstimate& others,
-                                      const Noise& noise, const Setup* other_setup) const {
-    const Observation& observation = *fit_.linear.observations[i];
+  /// Lengths of the other traces, mm.
+  [[nodiscard]] std::vector<double> other_lengths(std::size_t i) const {
+    std::vector<double> out;
+    for (std::size_t j = 0; j < noise_.size(); ++j)
+      if (j != i) out.push_back(length_of(*fit_.linear.observations[j]->profile));
+    return out;
+  }
+
+  /// A profile's values as all its hypotheses are held against: where another unit is one of them,
+  /// what lies at the spindle axis is left out by the positions in that unit.
+  [[nodiscard]] Observation recorded(std::size_t i, const std::vector<Hypothesis>& list) const {
+    Observation out = *fit_.linear.observations[i];
+    const Profile& own = *out.profile;
+    const auto rescaled = std::ranges::find_if(list, [&](const Hypothesis& each) {
+      return each.profile && each.profile->positions != own.positions;
+    });
+    if (rescaled == list.end()) return out;
+    out.profile = &*rescaled->profile;
+    out.nuisances.conservativeResize(Eigen::NoChange, std::ssize(out.nuisance_names));
+    leave_out(out, out.low_band.hollow());
+    leave_out(out, values_at_axis(out, model_.machine));
+    out.profile = &own;
+    return out;
+  }
+
+  [[nodiscard]] Prediction prediction(const Observation& observation, const SubsetEstimate& others,
+                                      const Noise& noise) const {
     Eigen::VectorXd amplitudes = others.change;
     amplitudes.head(model_.amplitudes()) += fit_.estimate.amplitudes;
-    const auto values = static_cast<double>(observation.values.size() - observation.left_out());
-    if (!other_setup)
-      return {{observation, noise, fit_.linear.columns[i], observation.values},
-              others,
-              amplitudes,
-              values};
-    Profile meant = *observation.profile;
-    meant.setup = *other_setup;
-    Observation other = observation;
-    other.profile = &meant;
-    return {{other, noise, linear_columns(model_, fit_.estimate, other), observation.values},
+    return {{observation, noise, linear_columns(model_, fit_.estimate, observation),
+             observation.values},
             others,
             amplitudes,
-            values};
+            static_cast<double>(observation.values.size() - observation.left_out())};
   }
 
   void try_profile(std::size_t i, std::vector<Blunder>& out) const {
@@ -186,18 +241,21 @@ class Finder {
     for (std::size_t j = 0; j < noise_.size(); ++j)
       if (j != i) all_but_it.push_back(j);
     const SubsetEstimate others(fit_.linear, compressed_, all_but_it, gates.rank_tolerance);
-    const Prediction as_it_is = prediction(i, others, noise, nullptr);
+    const Profile& profile = *fit_.linear.observations[i]->profile;
+    const std::vector<Hypothesis> list = hypotheses(profile, other_lengths(i));
+    Observation observation = recorded(i, list);
+    const Prediction as_it_is = prediction(observation, others, noise);
     if (as_it_is.directions() == 0) return;
     const double before = as_it_is.best(1.0, factor).cost, square = as_it_is.disagreement(1.0);
-    const Observation& observation = *fit_.linear.observations[i];
-    for (const Hypothesis& each : hypotheses(observation.profile->setup)) {
-      const Prediction& meant = each.setup ? prediction(i, others, noise, &*each.setup) : as_it_is;
+    for (const Hypothesis& each : list) {
+      if (each.profile) observation.profile = &*each.profile;
+      const Prediction& meant = each.profile ? prediction(observation, others, noise) : as_it_is;
       const auto [after, size] = meant.best(each.factor, factor);
       if (after > before - gates.blunder_bic) continue;
       const double left = meant.disagreement(each.factor) / square;
       if (left > gates.blunder_left) continue;
       if (std::abs(std::log(size)) > 2.0 * std::log(factor)) continue;
-      out.push_back({observation.profile->name, each.kind, after - before, left});
+      out.push_back({profile.name, each.kind, after - before, left});
     }
   }
 

@@ -16,7 +16,8 @@ namespace slideway {
 /// the same way, and its size s free but for a normal prior on ln s (Gates::sister_factor). The
 /// likelihood of the values y as they were recorded, |f|ⁿ times that of e, is compared between
 /// "as it is", other factors f (sign, inch, metre) and other columns C (direction and start of the
-/// cut). A blunder takes away most of the disagreement, not only some of it.
+/// cut; positions in another unit, where that makes the trace about as long as the others). A
+/// blunder takes away most of the disagreement, not only some of it.
 std::vector<Blunder> find_blunders(const FittedModel& fitted);
 
 /// What to do about them, in a sentence. REQUIRES one.

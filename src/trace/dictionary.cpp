@@ -1,9 +1,11 @@
 #include "dictionary.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <tuple>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/parallel.hpp"
@@ -95,7 +97,8 @@ class Viewer {
 };
 
 /// What the problem lacks for an effect to be looked for, or nothing.
-std::string needs(const Model& model, const ModelTerm& term) {
+/// @return  and whether it is nothing but that the effect acts in one profile only
+std::pair<std::string, bool> needs(const Model& model, const ModelTerm& term) {
   std::vector<const Setup*> shown;
   std::vector<std::string> keys;
   for (const Observation& observation : model.observations) {
@@ -105,9 +108,12 @@ std::string needs(const Model& model, const ModelTerm& term) {
     for (const std::string& key : term.effect->lacking(setup))
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
   }
-  if (!keys.empty()) return joined(keys);
-  if (shown.empty()) return "a reading that shows it";
-  return joined(term.effect->lacking_together(shown));
+  if (!keys.empty()) return {joined(keys), false};
+  if (shown.empty()) return {"a reading that shows it", false};
+  const auto alone = [&](const Setup* setup) {
+    return term.effect->lacking_together({setup}).empty();
+  };
+  return {joined(term.effect->lacking_together(shown)), std::ranges::all_of(shown, alone)};
 }
 
 void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
@@ -128,8 +134,9 @@ void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
 
 /// The hypotheses about an effect: it is missing, or it needs more terms than the one declared of
 /// that name. None where the problem declares several of it.
+/// @param apart  those that can only be of one profile each
 void add_hypotheses(const Model& model, const Problem& problem, const std::string& name,
-                    const Viewer& viewer, Dictionary& out) {
+                    const Viewer& viewer, Dictionary& out, std::vector<Candidate>& apart) {
   const auto of_name = [&](const DeclaredEffect& effect) { return effect.name == name; };
   const auto declared = std::ranges::find_if(problem.effects, of_name);
   const bool any = declared != problem.effects.end();
@@ -147,18 +154,28 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
     candidate.options = options;
     candidate.options.above.reset();
     candidate.raises_degree = any;
+    bool one_profile = false;
     try {
       candidate.term.effect = make_effect(name, options, model.machine, model.range);
-      missing = needs(model, candidate.term);
+      std::tie(missing, one_profile) = needs(model, candidate.term);
     } catch (const UsageError& error) {  // the machine lacks what the effect needs
       missing = error.what();
     }
-    if (!missing.empty()) continue;
+    if (!missing.empty() && !one_profile) continue;
     lay_out(model, viewer, candidate);
-    out.candidates.push_back(std::move(candidate));
+    (missing.empty() ? out.candidates : apart).push_back(std::move(candidate));
     added = true;
   }
   if (!added && !missing.empty()) out.not_testable.push_back({name, missing});
+}
+
+/// Whether sampling folds a column of a candidate of one profile onto another, or onto what is free
+/// in the trace.
+bool is_folded(const Model& model, const Candidate& candidate) {
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(model.gates.rank_tolerance);
+  qr.compute(levelled(*fitted_observations(model)[*candidate.only], candidate.columns_of(0, 1)));
+  return qr.rank() < candidate.amplitudes();
 }
 
 /// The same effect in each profile alone, where several show it: a step in one cut, a warm-up that
@@ -233,9 +250,12 @@ void lay_out(const Model& model, Eigen::Index prior_rows, Candidate& candidate) 
 Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows) {
   Dictionary out;
   const Viewer viewer(model, prior_rows);
+  std::vector<Candidate> apart, alone;
   for (const std::string& name : problem.trace.candidates)
-    add_hypotheses(model, problem, name, viewer, out);
-  std::vector<Candidate> alone;
+    add_hypotheses(model, problem, name, viewer, out, apart);
+  for (const Candidate& each : apart)
+    std::ranges::move(in_one_profile(model, each), std::back_inserter(alone));
+  std::erase_if(alone, [&](const Candidate& each) { return is_folded(model, each); });
   for (const Candidate& whole : out.candidates) {
     std::ranges::move(in_one_profile(model, whole), std::back_inserter(alone));
     for (Candidate& each : on_one_surface(model, whole)) {

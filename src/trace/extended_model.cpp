@@ -11,11 +11,12 @@ bool has_more_values(const Observation& observation, std::size_t most) {
 
 /// Whether an effect of the model leaves a candidate nothing to say: it is the same effect and acts
 /// in all profiles, or in one of the candidate's. In all profiles, the candidate may still be the
-/// better name for what others hold.
+/// better name for what others hold; in one, it may have a freer form.
 bool says_the_same(const Candidate& in_model, const Candidate& candidate) {
   const std::vector<std::string>&p = in_model.term.profiles, &q = candidate.term.profiles;
-  return in_model.effect_name() == candidate.effect_name() &&
-         (p.empty() || std::ranges::find_first_of(p, q) != p.end());
+  if (in_model.effect_name() != candidate.effect_name()) return false;
+  if (p.empty()) return q.empty() || candidate.amplitudes() <= in_model.amplitudes();
+  return std::ranges::find_first_of(p, q) != p.end();
 }
 
 Model with(Model model, const std::vector<AcceptedEffect>& effects) {

@@ -147,6 +147,7 @@ const TestedCandidate* SearchRound::choice(const Gates& gates,
     if (!each->refused(gates).empty() || std::ranges::count(excluded, each->name()) > 0) continue;
     const auto stands_before = [&](const TestedCandidate& better) {
       return std::ranges::count(excluded, better.name()) == 0 &&
+             better.refined.candidate->effect_name() != each->refined.candidate->effect_name() &&
              better.refined.delta_bic < each->refined.delta_bic - gates.tie_bic &&
              alike(better, *each, gates);
     };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "fit_numbers.hpp"
 #include "naming.hpp"
@@ -78,7 +79,7 @@ class Selector {
   }
 
   void grow() {
-    while (std::ssize(out_.effects) < problem_.trace.max_effects) {
+    while (distinct_effects(out_.effects) < problem_.trace.max_effects) {
       const SearchRound& round = extender_.search(out_.effects);
       const TestedCandidate* choice = round.choice(gates_, ruled_out_);
       if (!choice) return;
@@ -310,6 +311,12 @@ const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffec
   };
   const auto found = std::ranges::find_if(round.tested, is_it);
   return found == round.tested.end() ? nullptr : &*found;
+}
+
+int distinct_effects(const std::vector<AcceptedEffect>& effects) {
+  std::set<std::string> names;
+  for (const AcceptedEffect& effect : effects) names.insert(effect.round.accepted);
+  return static_cast<int>(names.size());
 }
 
 Selection nothing_selected(ModelExtender& extender, const Gates& gates) {

@@ -28,6 +28,9 @@ Selection select_effects(const Problem& problem, ModelExtender& extender, const 
 /// The declared model as it is: what is left of it, and no effect.
 Selection nothing_selected(ModelExtender& extender, const Gates& gates);
 
+/// How many effects a set has, of one with a size per cut one.
+int distinct_effects(const std::vector<AcceptedEffect>& effects);
+
 /// The candidate of a search that is this effect and passes, or null.
 const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,
                                    const Gates& gates);

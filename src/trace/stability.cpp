@@ -117,11 +117,18 @@ Stability stability(const SearchRound& round, const TestedCandidate& effect, con
     for (double& value : drawn) value += random.normal();
     chosen[k] = choice.in(drawn, all, effect.name(), gates.tie_bic);
   });
-  std::map<std::string, int> votes;
-  for (const std::string& name : chosen) ++votes[name];
+  const auto is_it = [&](const std::string& name) {
+    return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
+      return each.name() == name &&
+             each.refined.candidate->effect_name() == effect.refined.candidate->effect_name();
+    });
+  };
   Stability out;
-  out.share = static_cast<double>(votes[effect.name()]) / static_cast<double>(chosen.size());
-  votes.erase(effect.name());
+  out.share = static_cast<double>(std::ranges::count_if(chosen, is_it)) /
+              static_cast<double>(chosen.size());
+  std::map<std::string, int> votes;
+  for (const std::string& name : chosen)
+    if (!is_it(name)) ++votes[name];
   if (!votes.empty())
     out.other = std::ranges::max_element(votes, {}, [](const auto& v) { return v.second; })->first;
   return out;

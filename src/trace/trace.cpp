@@ -8,6 +8,7 @@
 #include "cross_validation.hpp"
 #include "detection.hpp"
 #include "fit_numbers.hpp"
+#include "instrument.hpp"
 #include "loop.hpp"
 #include "outcome.hpp"
 #include "selection.hpp"
@@ -45,6 +46,8 @@ class Loop {
     report_effects(selection, out);
     report_rest(selection, closed);
     report_limits(selection, out);
+    out.instrument = shared_residuals(extender_.base());
+    name_instrument(out);
     const std::string other_cause =
         form_of_another_cause(out,
                               check_squareness(extender_.base().model, problem_.runout,
@@ -53,7 +56,8 @@ class Loop {
     if (!other_cause.empty()) out.advice.insert(out.advice.begin(), other_cause);
     if (!out.blunders.empty()) out.advice.insert(out.advice.begin(), blunder_advice(out.blunders));
     out.verdict = verdict(out, !other_cause.empty());
-    if (other_cause.empty() && out.blunders.empty())
+    if (other_cause.empty() && out.blunders.empty() &&
+        out.rounds.size() == selection.effects.size())
       out.fragile = smallest_change(problem_, extender_, selection, gates);
     out.cross_validation =
         cross_validate(extender_.base().fit, extender_.extended(selection.effects).fit, gates);
@@ -153,7 +157,7 @@ class Loop {
     out.refused = tried(last, gates, nullptr, extender_.summary({}).rms_um);
     for (TriedEffect& effect : out.refused)
       if (!effect.refused)
-        effect.refused = std::ssize(selection.effects) >= problem_.trace.max_effects
+        effect.refused = distinct_effects(selection.effects) >= problem_.trace.max_effects
                              ? "max_effects effects are in the model"
                              : "beside the others it does not help";
     out.lack_of_fit_p = selection.lack_of_fit.p_value;

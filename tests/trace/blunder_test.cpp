@@ -63,6 +63,37 @@ INSTANTIATE_TEST_SUITE_P(Factors, BlunderOf,
                                            std::pair{1000.0, BlunderKind::per_metre},
                                            std::pair{1e-3, BlunderKind::metre}));
 
+class PositionUnit : public ::testing::TestWithParam<std::pair<double, BlunderKind>> {};
+
+TEST_P(PositionUnit, OfOneCutIsNamedWithItsCut) {
+  const auto [factor, kind] = GetParam();
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    Profile wrong = cut("b", 3 * seed + 1);
+    for (double& each : wrong.positions) each *= factor;
+    wrong = cases::face("b", 8.0, wrong.positions, wrong.values);
+    const auto blunders = found({cut("a", 3 * seed), wrong, cut("c", 3 * seed + 2)});
+    ASSERT_EQ(blunders.size(), 1U) << "seed " << seed;
+    EXPECT_EQ(blunders[0].profile, "b");
+    EXPECT_EQ(blunders[0].what, kind);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Factors, PositionUnit,
+                         ::testing::Values(std::pair{1e-3, BlunderKind::position_metre},
+                                           std::pair{1000.0, BlunderKind::position_per_metre},
+                                           std::pair{1 / 25.4, BlunderKind::position_inch},
+                                           std::pair{25.4, BlunderKind::position_per_inch}));
+
+TEST(Blunder, AShortTraceIsInNoOtherUnit) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    Profile part = cut("b", 3 * seed + 1);
+    part.positions.resize(40);
+    part.values.resize(40);
+    part = cases::face("b", 8.0, part.positions, part.values);
+    EXPECT_TRUE(found({cut("a", 3 * seed), part, cut("c", 3 * seed + 2)}).empty()) << seed;
+  }
+}
+
 TEST(Blunder, OfTwoCutsEitherMayHaveTheWrongSign) {
   const auto blunders = found({cut("a", 1), cut("b", 2, -1.0)});
   ASSERT_EQ(blunders.size(), 2U);

@@ -95,6 +95,7 @@ inline std::string story(const TraceResult& result) {
   for (const TriedEffect& tried : result.refused)
     out += "\n  refused " + tried.effect + " dBIC " + std::to_string(tried.delta_bic) + ": " +
            tried.refused.value_or("");
+  for (const auto& [effect, reason] : result.left) out += "\n  left " + effect + ": " + reason;
   for (const auto& [effect, same] : result.not_separable)
     out += "\n  not separable " + effect + ": " + same;
   for (const std::string& text : result.advice) out += "\n  advice " + text;

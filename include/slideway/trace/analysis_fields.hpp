@@ -94,6 +94,16 @@ inline constexpr auto kRecord<Fragile> =
            field("verdict", &Fragile::verdict));
 
 template <>
+inline constexpr auto kRecord<SharedResidual> = record(
+    "SharedResidual", "What traces of different surfaces by one instrument have in common.",
+    field("profiles", &SharedResidual::profiles),
+    field("correlation", &SharedResidual::correlation, "of their residuals"),
+    field("rms_um", &SharedResidual::rms_um, "of what they share"),
+    field("rms_urad", &SharedResidual::rms_urad),
+    field("p_value", &SharedResidual::p_value, "of as much by chance"),
+    field("significant", &SharedResidual::significant, "then it is the instrument's error"));
+
+template <>
 inline constexpr auto kRecord<TraceResult> = record(
     "Trace", "The closed loop.", field("verdict", &TraceResult::verdict),
     field("gates", &TraceResult::gates, "the limits that were used"),
@@ -101,6 +111,7 @@ inline constexpr auto kRecord<TraceResult> = record(
     field("rounds", &TraceResult::rounds), field("unnamed", &TraceResult::unnamed),
     field("cross_validation", &TraceResult::cross_validation, "of a single profile"),
     field("gain", &TraceResult::gain, "of the accepted effects, by cross_validation"),
+    field("instrument", &TraceResult::instrument, "pairs of one instrument and two surfaces"),
     field("blunders", &TraceResult::blunders, "rivals, most likely first; then no effect is named"),
     field("advice", &TraceResult::advice), field("not_testable", &TraceResult::not_testable),
     field("not_separable", &TraceResult::not_separable),

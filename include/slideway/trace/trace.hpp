@@ -25,6 +25,7 @@ struct TriedEffect {
 
 /// Among the rivals of an effect: something without a name explains as much.
 inline constexpr const char* kUnnamedRival = "unnamed";
+inline constexpr const char* kInstrument = "instrument";  // accepted: its error, not the slide's
 
 /// One effect that entered the model.
 struct TraceRound {
@@ -55,21 +56,47 @@ template <>
 inline constexpr std::array<std::string_view, 2> kTexts<Gain>{"prediction", "interpolation"};
 
 /// A slip of the hand that would make one profile agree with the others.
-enum class BlunderKind { sign, inch, per_inch, metre, per_metre, cut_direction, clock };
+enum class BlunderKind {
+  sign,
+  inch,
+  per_inch,
+  metre,
+  per_metre,
+  position_inch,
+  position_per_inch,
+  position_metre,
+  position_per_metre,
+  cut_direction,
+  clock
+};
 template <>
-inline constexpr std::array<std::string_view, 7> kTexts<BlunderKind>{"wrong sign",
-                                                                     "values 25.4 times too small",
-                                                                     "values 25.4 times too large",
-                                                                     "values 1000 times too small",
-                                                                     "values 1000 times too large",
-                                                                     "wrong cut_direction",
-                                                                     "wrong start_s"};
+inline constexpr std::array<std::string_view, 11> kTexts<BlunderKind>{
+    "wrong sign",
+    "values 25.4 times too small",
+    "values 25.4 times too large",
+    "values 1000 times too small",
+    "values 1000 times too large",
+    "positions 25.4 times too small",
+    "positions 25.4 times too large",
+    "positions 1000 times too small",
+    "positions 1000 times too large",
+    "wrong cut_direction",
+    "wrong start_s"};
 
 struct Blunder {
   std::string profile;
   BlunderKind what = BlunderKind::sign;
   double delta_bic = 0.0;  // against the profile as it is
   double left = 0.0;       // share of the square of the disagreement that it leaves
+};
+
+/// What traces of different surfaces, read by one instrument, have in common.
+struct SharedResidual {
+  std::vector<std::string> profiles;       // two, of different surfaces
+  double correlation = 0.0;                // of their residuals
+  std::optional<double> rms_um, rms_urad;  // of what they share
+  double p_value = 1.0;                    // of as much by chance
+  bool significant = false;                // then it is the instrument's error
 };
 
 /// What is left and has no name.
@@ -142,6 +169,7 @@ struct TraceResult {
   std::optional<Unnamed> unnamed;
   std::vector<BlockPrediction> cross_validation;  // of a single profile, shortest gaps first
   std::optional<Gain> gain;                       // of the accepted effects, by those
+  std::vector<SharedResidual> instrument;         // pairs of one instrument and two surfaces
   std::vector<Blunder> blunders;  // rivals, most likely first; effects are then not looked for
   std::vector<std::string> advice;
   std::vector<NotTestable> not_testable;

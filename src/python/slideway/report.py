@@ -598,12 +598,28 @@ class BlockPrediction:
 
 
 @dataclass(frozen=True)
+class SharedResidual:
+    """What traces of different surfaces by one instrument have in common."""
+
+    profiles: list[str]
+    correlation: float
+    """of their residuals"""
+    rms_um: float | None
+    """of what they share"""
+    rms_urad: float | None
+    p_value: float
+    """of as much by chance"""
+    significant: bool
+    """then it is the instrument's error"""
+
+
+@dataclass(frozen=True)
 class Blunder:
     """A slip of the hand that would make one profile agree with the others."""
 
     profile: str
     what: Literal[
-        "wrong sign", "values 25.4 times too small", "values 25.4 times too large", "values 1000 times too small", "values 1000 times too large", "wrong cut_direction", "wrong start_s"
+        "wrong sign", "values 25.4 times too small", "values 25.4 times too large", "values 1000 times too small", "values 1000 times too large", "positions 25.4 times too small", "positions 25.4 times too large", "positions 1000 times too small", "positions 1000 times too large", "wrong cut_direction", "wrong start_s"
     ]
     delta_bic: float
     """against the profile as it is"""
@@ -669,6 +685,8 @@ class Trace:
     """of a single profile"""
     gain: Literal["prediction", "interpolation"] | None
     """of the accepted effects, by cross_validation"""
+    instrument: list[SharedResidual]
+    """pairs of one instrument and two surfaces"""
     blunders: list[Blunder]
     """rivals, most likely first; then no effect is named"""
     advice: list[str]

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "slideway/identify/fit.hpp"
+#include "slideway/trace/trace.hpp"
+
+namespace slideway {
+
+/// For every two fitted readings along the slide, of different declared surfaces and by one
+/// instrument: what their residuals share at the same positions.
+///
+/// Both residuals are put on one grid over their common travel. With a_j, b_j their cosine
+/// coefficients beyond those the model takes, n_k of them in octave k, and r_k their correlation
+/// there, the statistic is the gain in log likelihood of a common part in every octave,
+///   T = Σ_k max(0, sign r_k) · (-n_k/2) ln(1 - r_k²).
+/// Under the null hypothesis the coefficients are independent, with one variance in an octave: the
+/// distribution of T, whatever the spectra, is drawn from normal numbers. The gate `significance`
+/// is shared by all pairs.
+std::vector<SharedResidual> shared_residuals(const FittedModel& fitted);
+
+/// Names what is significant among out.instrument: a round `instrument`, and the rival of every
+/// accepted effect that acts in such a profile.
+void name_instrument(TraceResult& out);
+
+}  // namespace slideway

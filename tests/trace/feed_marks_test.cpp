@@ -1,0 +1,72 @@
+// Sampled coarser than the feed, the grooves fold to lines whose phase differs from cut to cut.
+
+#include <array>
+
+#include "slideway/base/units.hpp"
+#include "trace/faces.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace faces;  // NOLINT(google-build-using-namespace)
+using ::testing::Each;
+using ::testing::Eq;
+using ::testing::SizeIs;
+
+/// Radii of three cuts read at one place in 44 µm: 18, 30 and 18 µm a turn, grooves of 0.3 to 0.8
+/// µm, noise of 20 nm. Where each cut began is not known to a groove.
+std::vector<Profile> coarsely_read(std::uint64_t seed) {
+  struct Design {
+    double feed, radius;
+    bool inward;
+  };
+  constexpr std::array<Design, 3> kDesigns{
+      {{2.0, 20.0031, true}, {3.3, 20.0173, true}, {2.0, 20.0, false}}};
+  const turning::Carriage carriage{{0.0, 0.0, 2e-7, -6e-9}, {}, turning::kFaceSquareness};
+  std::vector<Profile> out;
+  for (const Design& design : kDesigns) {
+    turning::Cut cut;
+    cut.radius_mm = design.radius;
+    cut.feed_mm_per_min = design.feed;
+    cut.spindle_rpm = 110.0;
+    cut.inward = design.inward;
+    cut.nose_radius_mm = 0.15;
+    const turning::Face face(
+        cut, [&](const turning::ToolPoint& p) { return turning::one_lever(carriage, p); });
+    turning::Stylus stylus;
+    stylus.noise = {.white = 2e-5};
+    Profile& profile = out.emplace_back();
+    profile.name = "cut" + std::to_string(out.size());
+    profile.free_tilt = false;
+    for (int i = 0; i < 450; ++i) profile.positions.push_back(0.1 + 0.0437 * i);
+    RandomStream random(seed, profile.name);
+    profile.values = turning::trace(face, profile.positions, stylus, random);
+    Setup& setup = profile.setup;
+    setup.feed_mm_per_min = design.feed;
+    setup.spindle_rpm = cut.spindle_rpm;
+    setup.cut_direction = design.inward ? CutDirection::inward : CutDirection::outward;
+    setup.cut_radius_mm = 20.0;
+    setup.traverse_mm_per_s = 0.5;
+    setup.first_mm = profile.positions.front();
+    setup.last_mm = profile.positions.back();
+  }
+  return out;
+}
+
+TEST(FeedMarks, OfEachCutAreNamedWhereSamplingFoldsThem) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Problem problem = problem_of();
+    problem.low_band.level = 1;
+    const Closed result = closed(problem, coarsely_read(seed));
+    SCOPED_TRACE(story(result));
+    EXPECT_EQ(result.verdict, TraceVerdict::explained);
+    std::vector<std::string> names;
+    for (const TraceRound& round : result.rounds) names.push_back(round.accepted);
+    EXPECT_THAT(names, SizeIs(3));
+    EXPECT_THAT(names, Each(Eq("feed_marks")));
+    expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
+  }
+}
+
+}  // namespace
+}  // namespace slideway
