@@ -67,6 +67,11 @@ std::span<const Gate> gate_table() {
       Gate{"values_for_memory", &Gates::values_for_memory, "low-band values", 10.0, 200.0,
            "With fewer values beyond the free parameters noise is taken as white.",
            "with 40 values an autocorrelation has a standard uncertainty of 0.16"},
+      Gate{
+          "memory_odds", &Gates::memory_odds, "", 0.1, 100.0,
+          "How many times as probable as none a long memory of the noise is before the data speak.",
+          "4: intervals under 1/f noise then hold (tests/identify/memory_test.cpp); at 1 nine in "
+          "ten"},
       Gate{"longest_memory", &Gates::longest_memory, "trace lengths", 1.0, 100.0,
            "Longest memory of the noise.",
            "at 4 a slope is within 5 % of its uncertainty under a random walk"},

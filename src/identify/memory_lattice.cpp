@@ -18,19 +18,18 @@ constexpr double kLongestTexture = 0.125;  // of a trace
 constexpr double kPlausible = 6.0;         // of -2 ln probability: 5 % of the best
 constexpr double kAllowed = 14.0;          // of the same: 0.1 % of the best
 constexpr double kWorthNeighbours = 4.0;   // of the same: 14 % of the best
-constexpr double kMemoryOdds = 1.0;        // no kind of memory is known to be the rule
 
 double size_at(int index) { return std::pow(10.0, 0.125 * (index - 1) - 2.5); }
 double length_at(int index) { return std::exp2(0.25 * index); }
 double slope_at(int index) { return 1.0 + 0.125 * index; }
 
 /// -2 ln of the prior: a texture of any kind is as probable as none, a long memory of any kind is
-/// kMemoryOdds times as probable as none.
-double prior_cost(const MemoryPlace& place) {
+/// Gates::memory_odds times as probable as none.
+double prior_cost(const MemoryPlace& place, double memory_odds) {
   const auto coarse = [](int count) { return static_cast<double>((count - 1) / kCoarse + 1); };
   double places = 1.0;
   if (place.texture > 0) places *= coarse(kSizes) * coarse(kLengths);
-  if (place.memory > 0) places *= coarse(kSizes) * coarse(kSlopes) / kMemoryOdds;
+  if (place.memory > 0) places *= coarse(kSizes) * coarse(kSlopes) / memory_odds;
   return 2.0 * std::log(places);
 }
 
@@ -136,7 +135,7 @@ FittedSizes PoolMemory::evaluate(const MemoryPlace& place, const Eigen::VectorXd
   std::vector<ProfileInformation> information;
   for (const LinearProfile* profile : profiles_) information.emplace_back(*profile, covariance);
   FittedSizes out = fit_sizes(information, rest_, gates_.noise_likeness, from);
-  out.cost += prior_cost(place);
+  out.cost += prior_cost(place, gates_.memory_odds);
   return out;
 }
 

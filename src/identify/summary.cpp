@@ -6,7 +6,7 @@
 #include "residual.hpp"
 #include "slideway/identify/budget.hpp"
 #include "slideway/identify/straightness.hpp"
-#include "slideway/signal/autoregression.hpp"
+#include "slideway/signal/correlation.hpp"
 
 namespace slideway {
 namespace {

@@ -27,24 +27,27 @@ Eigen::MatrixXd information_under(const MixtureFactor& noise, const Observation&
              gram.topLeftCorner(m, m).completeOrthogonalDecomposition().solve(cross);
 }
 
-/// The covariance of w under each noise that the residuals of one pool allow.
-std::vector<Uncertainty::AllowedNoise> allowed_noises(const std::vector<std::size_t>& members,
-                                                      const std::vector<Noise>& noise,
-                                                      const Linearisation& linear,
-                                                      const Eigen::MatrixXd& basis,
-                                                      const Uncertainty& at_best) {
+/// What the mean over the noises that the residuals of one pool allow adds to the covariance of w
+/// under the most probable one.
+Eigen::MatrixXd spread_of_noises(const std::vector<std::size_t>& members,
+                                 const std::vector<Noise>& noise, const Linearisation& linear,
+                                 const Uncertainty& at_best) {
+  const Eigen::Index r = at_best.basis.cols();
   const std::size_t count = noise[members.front()].alternatives.size();
-  if (count < 2 || basis.cols() == 0) return {};
-  std::vector<Uncertainty::AllowedNoise> out(count);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(r, r);
+  if (count < 2 || r == 0) return out;
+  std::vector<Eigen::MatrixXd> under(count);
   parallel_for(count, [&](std::size_t g) {
-    Eigen::MatrixXd total = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());
+    Eigen::MatrixXd total = Eigen::MatrixXd::Identity(r, r);
     for (const std::size_t i : members)
       total += information_under(noise[i].factored(noise[i].alternatives[g].covariance),
-                                 *linear.observations[i], linear.columns[i] * basis) -
+                                 *linear.observations[i], linear.columns[i] * at_best.basis) -
                at_best.information[i];
-    out[g] = {noise[members.front()].alternatives[g].probability,
-              total.completeOrthogonalDecomposition().pseudoInverse()};
+    under[g] = total.completeOrthogonalDecomposition().pseudoInverse();
   });
+  for (std::size_t g = 0; g < count; ++g)
+    out += noise[members.front()].alternatives[g].probability *
+           (under[g] - Eigen::MatrixXd::Identity(r, r));
   return out;
 }
 
@@ -60,18 +63,6 @@ std::vector<std::vector<std::size_t>> pools_of(const std::vector<Noise>& noise) 
   return out;
 }
 
-/// Variance of ln(variance of c w) over the noises of a pool.
-double log_spread(const std::vector<Uncertainty::AllowedNoise>& allowed,
-                  const Eigen::RowVectorXd& c) {
-  double mean = 0.0, square = 0.0;
-  for (const auto& [probability, covariance] : allowed) {
-    const double value = std::log((c * covariance * c.transpose()).value());
-    mean += probability * value;
-    square += probability * value * value;
-  }
-  return std::max(square - mean * mean, 0.0);
-}
-
 }  // namespace
 
 Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
@@ -80,7 +71,6 @@ Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
   Spread spread{std::sqrt(std::max(inflation * variance, 0.0)), std::nullopt};
   if (!(variance > 0.0)) return spread;
   double spread_of_log = 0.0;
-  for (const std::vector<AllowedNoise>& pool : allowed) spread_of_log += log_spread(pool, c);
   for (std::size_t i = 0; i < size_freedom.size(); ++i) {
     if (size_freedom[i] == 0.0) continue;
     const double share = (c * information[i] * c.transpose()).value() / variance;
@@ -116,11 +106,8 @@ Uncertainty assess(const Linearisation& linear, const Compressed& compressed,
         pools.size() > 1 ? noise[i].log_long_run_variance() : noise[i].log_size_variance();
     out.covariance += 2.0 * own * (information - information * information);
   }
-  for (const std::vector<std::size_t>& members : pools) {
-    out.allowed.push_back(allowed_noises(members, noise, linear, basis, out));
-    for (const auto& [probability, covariance] : out.allowed.back())
-      out.covariance += probability * (covariance - Eigen::MatrixXd::Identity(r, r));
-  }
+  for (const std::vector<std::size_t>& members : pools)
+    out.covariance += spread_of_noises(members, noise, linear, out);
   const Eigen::MatrixXd of_columns = basis * out.covariance * basis.transpose();
   for (const ProfileTriangle& profile : compressed.profiles)
     out.nuisance_covariances.emplace_back(inflation * profile.levelling_covariance(of_columns));

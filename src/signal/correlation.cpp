@@ -318,4 +318,14 @@ double correlation_p_value(double r, double n) {
   return rest > 0.0 ? beta_share(0.5 * (n - 2.0), 0.5, std::min(rest, 1.0)) : 0.0;
 }
 
+double ljung_box_p_value(std::span<const double> series, int lags, int fitted) {
+  const auto n = static_cast<double>(series.size());
+  const std::vector<double> r = autocorrelation(series, lags);
+  double sum = 0.0;
+  for (int k = 1; k <= lags && k < std::ssize(series); ++k)
+    sum += r[static_cast<std::size_t>(k)] * r[static_cast<std::size_t>(k)] / (n - k);
+  const double freedom = std::max(lags - fitted, 1);
+  return chi_squared_tail(freedom, n * (n + 2.0) * sum);
+}
+
 }  // namespace slideway

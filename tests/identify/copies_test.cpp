@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 /// A form of 5 µm with a texture of 50 nm, as an instrument with so much noise reads it, in mm.
-Profile reading(const std::string& name, double noise_mm, unsigned seed) {
+Profile second_reading(const std::string& name, double noise_mm, unsigned seed) {
   std::mt19937_64 of_texture(1), of_noise(seed);
   std::normal_distribution<double> texture(0.0, 5e-5), noise(0.0, noise_mm);
   const std::vector<double> x = cases::spaced(1.0, 50.0, 400);
@@ -49,7 +49,7 @@ void expect_copy(std::vector<Profile> profiles) {
 }
 
 TEST(Copies, AreHeldOutHoweverTheyAreLevelledAndRounded) {
-  const Profile exact = reading("a", 1e-5, 2), rounded = rounded_to(exact, 1e-6);
+  const Profile exact = second_reading("a", 1e-5, 2), rounded = rounded_to(exact, 1e-6);
   expect_copy({exact, levelled_again(exact, "b", 0.0, 0.0)});
   expect_copy({exact, levelled_again(exact, "b", 3e-3, -2e-5)});
   expect_copy({rounded, levelled_again(rounded, "b", 3e-3, -2e-5)});
@@ -64,8 +64,8 @@ TEST(Copies, SecondReadingsAreNone) {
   // Noise of five digits; of a fifth and a hundredth of a digit that the texture has five of.
   for (const auto& [noise, digit] :
        {std::pair{1e-5, 2e-6}, std::pair{2e-6, 1e-5}, std::pair{1e-7, 1e-5}}) {
-    std::vector<Profile> profiles{rounded_to(reading("a", noise, 2), digit),
-                                  rounded_to(reading("b", noise, 3), digit)};
+    std::vector<Profile> profiles{rounded_to(second_reading("a", noise, 2), digit),
+                                  rounded_to(second_reading("b", noise, 3), digit)};
     hold_out_copies(profiles);
     EXPECT_EQ(profiles[1].role, Role::fit) << noise << " " << digit;
     EXPECT_THAT(profiles[1].notes, IsEmpty());

@@ -127,8 +127,8 @@ inline ModelResult sample_fit() {
   fit.correlations = {{"straightness.b2", "straightness.b3", -0.97}};
   fit.identifiability = sample_identifiability();
   fit.noise = {
-      {"feed2", NoiseScaling::refuted, 2, 0.012, std::nullopt, 0.31, 140.0, 0.42},
-      {sample_inputs()[1].name, NoiseScaling::declared, 0, std::nullopt, 1.5, 0.0, 20.0, 0.5}};
+      {"feed2", NoiseScaling::refuted, true, 4.5, 0.012, std::nullopt, 0.31, 140.0, 0.42},
+      {sample_inputs()[1].name, NoiseScaling::declared, false, std::nullopt, std::nullopt, 1.5, 0.0, 20.0, 0.5}};
   fit.contributions = {{"squareness", "feed2", 0.4, std::nullopt, 0.9},
                        {"straightness", sample_inputs()[1].name, std::nullopt, 1.25, 0.1}};
   fit.residuals = {{"feed2", Role::fit, 0.1, 0.45, {}, {}},
@@ -136,7 +136,7 @@ inline ModelResult sample_fit() {
   fit.chi_square = 131.0;
   fit.degrees_of_freedom = 133.0;
   fit.neglected_um = 1.25e-9;
-  fit.notes = {"uncertainties hold for correlated residuals: AR(2) noise, whitened before the fit"};
+  fit.notes = {"uncertainties hold for correlated residuals: the noise is whitened before the fit"};
   return fit;
 }
 

@@ -106,8 +106,10 @@ TEST(NoiseBeside, IsTheInstrumentsBesideFeedMarksAndAStrongLine) {
       for (const Noise& noise : noise_beside(declared.fit.linear, declared.model.gates)) {
         const double found = noise.standard_deviation() / std::sqrt(32.0);
         EXPECT_GT(found, 0.7 * kLowBandNoise) << name << ' ' << seed;  // some 100 free values
-        // What the nose makes of the line stays.
-        EXPECT_LT(found, (hidden.tool ? 2.5 : 1.3) * kLowBandNoise) << name << ' ' << seed;
+        // A texture and a long memory differ in the slow band, which is left free: the size of one
+        // value about the mean of the trace is known to a half. What the nose makes of the line
+        // stays.
+        EXPECT_LT(found, (hidden.tool ? 2.5 : 1.5) * kLowBandNoise) << name << ' ' << seed;
       }
     }
 }

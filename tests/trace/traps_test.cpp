@@ -87,7 +87,8 @@ void expect_bias_removed(const Hidden& hidden, const std::string& parameter, dou
   const FittedParameter* after = find(result.final.parameters, parameter);
   ASSERT_TRUE(before && after);
   const double bias = std::abs(*before->value - truth);
-  EXPECT_LT(2.0 * *after->standard_uncertainty, 0.1 * bias);
+  // U allows for every memory of the noise that the cuts do not exclude.
+  EXPECT_LT(2.0 * *after->standard_uncertainty, 0.25 * bias);
   EXPECT_LT(std::abs(*after->value - truth), 0.1 * bias);
 }
 

@@ -35,6 +35,7 @@ struct Gates {
   double slow_cosines = 16.0;
   double values_per_cosine = 10.0;
   double values_for_memory = 40.0;
+  double memory_odds = 4.0;
   double longest_memory = 4.0;
   double noise_likeness = 0.5;
   double unlike_noise = 4.0;

@@ -26,20 +26,13 @@ struct Spread {
 /// s_i the part of the long-run variance of profile i's noise that the profiles do not share. The
 /// second part makes it the mean over the noises; the third allows for weights that come from the
 /// same data (Kenward and Roger 1997, for columns slow against the noise; Meier 1953 for a weighted
-/// mean). All is multiplied by the
-/// inflation for structure the model lacks (FitNoise). Degrees of freedom by Satterthwaite's
-/// formula (GUM G.4.1) from how the variance differs between the noises the residual allows, and
-/// from the degrees of freedom of each noise's size.
+/// mean). All is multiplied by the inflation for structure the model lacks (FitNoise). Degrees of
+/// freedom by Satterthwaite's formula (GUM G.4.1) from those of each noise's size.
 struct Uncertainty {
   Eigen::MatrixXd basis;                     // (A + S) by r
   Eigen::MatrixXd covariance;                // r by r, of w, before the inflation
   double inflation = 1.0;                    // of all variances
   std::vector<Eigen::MatrixXd> information;  // G_i, r by r, per fitted observation
-  struct AllowedNoise {                      // of one pool of profiles
-    double probability = 0.0;
-    Eigen::MatrixXd covariance;  // r by r, of w under this noise
-  };
-  std::vector<std::vector<AllowedNoise>> allowed;  // per pool
   std::vector<double> size_freedom;                // per fitted observation; 0: its size is known
   std::vector<Eigen::MatrixXd> nuisance_covariances;  // levelling, per fitted observation
 

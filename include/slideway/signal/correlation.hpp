@@ -51,4 +51,7 @@ double effective_observations(std::span<const double> x, std::span<const double>
 /// n - 2 degrees of freedom.
 double correlation_p_value(double r, double n);
 
+/// Ljung-Box p-value of a series for whiteness over `lags` lags, `fitted` parameters subtracted.
+double ljung_box_p_value(std::span<const double> series, int lags, int fitted);
+
 }  // namespace slideway

@@ -344,8 +344,10 @@ class Noise:
 
     profile: str
     scaling: Literal["declared", "estimated", "estimated: the declared uncertainty is too small"]
-    order: int
-    """p of AR(p)"""
+    correlated: bool
+    """texture or long memory, not white"""
+    unlike_sisters: float | None
+    """size over that of the profiles it shares its memory with, where it differs"""
     standard_deviation_um: float | None
     """of one low-band value"""
     standard_deviation_urad: float | None
