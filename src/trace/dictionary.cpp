@@ -161,6 +161,21 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
   if (!added && !missing.empty()) out.not_testable.push_back({name, missing});
 }
 
+/// An effect that is looked for with the options the problem gives it.
+void add_own(const Model& model, const Problem& problem, const DeclaredEffect& own,
+             const Viewer& viewer, Dictionary& out) {
+  if (std::ranges::count(problem.effects, own.name, &DeclaredEffect::name) > 0) return;
+  Candidate candidate;
+  candidate.term.name = term_name(own.name, own.options.profiles);
+  candidate.term.profiles = own.options.profiles;
+  candidate.options = own.options;
+  candidate.term.effect = make_effect(own.name, own.options, model.machine, model.range);
+  const std::string missing = needs(model, candidate.term);
+  if (!missing.empty()) return out.not_testable.push_back({candidate.term.name, missing});
+  lay_out(model, viewer, candidate);
+  out.candidates.push_back(std::move(candidate));
+}
+
 /// The same effect in each profile alone, where several show it: a step in one cut, a warm-up that
 /// has faded in the next.
 std::vector<Candidate> in_one_profile(const Model& model, const Candidate& whole) {
@@ -235,6 +250,7 @@ Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::In
   const Viewer viewer(model, prior_rows);
   for (const std::string& name : problem.trace.candidates)
     add_hypotheses(model, problem, name, viewer, out);
+  for (const DeclaredEffect& own : problem.trace.own) add_own(model, problem, own, viewer, out);
   std::vector<Candidate> alone;
   for (const Candidate& whole : out.candidates) {
     std::ranges::move(in_one_profile(model, whole), std::back_inserter(alone));
