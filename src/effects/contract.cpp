@@ -8,7 +8,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kClose = 1e-5;  // a derivative to a central difference, whose truncation is 1e-8
+constexpr double kClose = 1e-4;  // a derivative to a central difference with its truncation
 
 struct Case {
   std::string name;
@@ -173,7 +173,7 @@ class ContractTest {
     require(slope.allFinite(), "a derivative by " + parameter_of(s).name + " is not finite");
     const double size = here.cwiseAbs().maxCoeff(), largest = slope.cwiseAbs().maxCoeff();
     if (effect_.shapes()[s].stepwise || size == 0.0 || largest == 0.0) return;
-    const double step = std::min(1e-4 * std::abs(shape[s]), 1e-4 * size / largest);
+    const double step = std::min(1e-5 * std::abs(shape[s]), 1e-4 * size / largest);
     std::vector<double> plus = shape, minus = shape;
     plus[s] += step;
     minus[s] -= step;

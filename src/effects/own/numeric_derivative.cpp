@@ -8,9 +8,10 @@
 namespace slideway {
 namespace {
 
-constexpr int kHalvings = 8;
+constexpr int kHalvings = 14;
 constexpr double kGoodEnough = 1e-11;  // of the largest derivative: rounding is next
-constexpr double kWorse = 2.0;         // times the best error: rounding has taken over
+constexpr double kSmall = 1e-6;        // of the largest derivative: the step resolves f
+constexpr double kWorse = 2.0;         // times the best error, once small: rounding has taken over
 constexpr double kLeastRoom = 0.05;    // of the step; nearer to an end differences are one-sided
 
 }  // namespace
@@ -43,8 +44,9 @@ NumericDerivative numeric_derivative(const std::function<Eigen::MatrixXd(double)
       next.push_back(std::move(value));
       factor *= shrink;
     }
-    if (best.error <= kGoodEnough * best.value.cwiseAbs().maxCoeff()) break;
-    if (least > kWorse * best.error) break;
+    const double largest = best.value.cwiseAbs().maxCoeff();
+    if (best.error <= kGoodEnough * largest) break;
+    if (best.error <= kSmall * largest && least > kWorse * best.error) break;
     row = std::move(next);
   }
   return best;
