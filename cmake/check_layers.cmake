@@ -11,9 +11,9 @@ set(ROOMS base format machine signal profile effects identify trace report batch
 set(MAX_LINES 400)
 # A library and the rooms whose sources (never public headers) may include it.
 set(LIBRARIES "ceres/" "nlohmann/" "toml\\+\\+/" "pugixml\\.hpp" "zip\\.h" "pybind11/" "mpi\\.h"
-    "boost/math/" "fast_float/")
+    "boost/math/" "fast_float/" "muParser")
 set(OWNERS "identify trace" "report batch cli" "identify" "format" "format" "python" "batch"
-    "base signal" "format")
+    "base signal" "format" "effects")
 
 # Strings that are a key of the report or a plain word and not the effect of that name: file:name.
 set(NOT_AN_EFFECT

@@ -40,7 +40,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
-    "g++, cmake, libceres-dev, libeigen3-dev, libpugixml-dev, libssl-dev, libtomlplusplus-dev, libzip-dev, pkg-config")
+    "g++, cmake, libceres-dev, libeigen3-dev, libmuparser-dev, libpugixml-dev, libssl-dev, libtomlplusplus-dev, libzip-dev, pkg-config")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "slideway finds out from profilometer traces of a face-turned workpiece, or from
 readings taken along the slide, which straightness and squareness errors the

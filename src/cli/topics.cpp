@@ -22,6 +22,7 @@ Section trace_section() {
   Section out{"[trace]",
               "The closed loop. slideway help trace: the gates with their ranges and reasons.",
               {{"candidates", "[\"all\"], or names of effects"},
+               {"candidate", "[[trace.candidate]], as [[effect]]: looked for, not declared"},
                {"max_effects", "how many may enter, each counted once; default 3"}}};
   for (const Gate& gate : gate_table()) out.keys.push_back({gate.name.data(), gate.decides.data()});
   return out;
@@ -34,7 +35,11 @@ const std::vector<Section>& sections() {
        "which effects to look for. An unknown key, a missing unit or a wrong type is refused with "
        "file, line, key and what is accepted. Paths are relative to the problem file; "
        "${SLIDEWAY_DATA} in a path is --data DIR or the environment variable.",
-       {{"title", "a line for the report"}}},
+       {{"title", "a line for the report"},
+        {"effects",
+         "[\"our-lathes.toml\"]: files of [[effect]] tables, each a formula with cause, source and "
+         "typical size, that problems share. Their effects are looked for, and can be declared by "
+         "name"}}},
       {"[machine]",
        "The lathe.",
        {{"lever",
@@ -108,7 +113,9 @@ const std::vector<Section>& sections() {
         {"role", R"("fit", or "holdout": never fitted, only predicted)"}}},
       {"[[effect]]",
        "One effect of the declared model: slideway effects lists them all.",
-       {{"name", "of the catalogue"},
+       {{"name",
+         "of the catalogue, of a file of `effects`, of a channel, or \"formula\" or \"channel\", "
+         "below"},
         {"body", "a carriage's name, where more than one moves along the axis"},
         {"degree", "of a polynomial"},
         {"form", "of a straightness: \"polynomial\", or \"curve\": smooth, kinks allowed"},
@@ -121,6 +128,22 @@ const std::vector<Section>& sections() {
          "\"profile\": once for each profile that sees it, with all parameters of its own, "
          "step[feed2].height_um, step[feed8].height_um; default \"all\""},
         {"priors", "what is known of its parameters, below"}}},
+      {"[[effect]] name = \"formula\"",
+       "An effect of your own; keys of any effect besides. Under [[trace.candidate]] it is looked "
+       "for, under [[truth.effect]] simulated.",
+       {{"as", "its name in the report"},
+        {"formula",
+         "um of a height, urad of a slope, of r x X z R (mm), theta (rad), t m (s), k (turns), s "
+         "(m), feed (mm/min), rpm, pi and its parameters"},
+        {"parameters",
+         "[{ name = \"a\", unit = \"um\" }, { name = \"tau\", unit = \"s\", lower = 1, upper = 600 "
+         "}]: what enters linearly is a size in um or urad, all else needs lower and upper"},
+        {"standard_name", "text: the term of a standard"},
+        {"cause", "text: what makes it"},
+        {"source", "text: who says so"},
+        {"typical", "text: its ordinary size"},
+        {"confounded_with", "text: what looks like it"},
+        {"separated_by", "text: what tells the two apart"}}},
       {"priors = [{ ... }]",
        "A normal prior on one parameter of an [[effect]].",
        {{"parameter", "its name in the effect: \"b2\""},
@@ -132,6 +155,28 @@ const std::vector<Section>& sections() {
         {"p_um", "p of Eq. (21)"},
         {"diameter_mm", "L of Eq. (21)"},
         {"standard_uncertainty_um", "of r + p"}}},
+      {"[[channel]]",
+       "A log beside the profiles: a temperature, a power, a pressure. The loop asks of each "
+       "whether "
+       "it, or what follows it slowly, explains what is left; as an effect it has the channel's "
+       "name.",
+       {{"name", "a name of its own"},
+        {"file", "as of a profile"},
+        {"time_column", "header name or number; default 1"},
+        {"time_unit", "s min h; m mm um nm inch where the clock is x"},
+        {"value_column", "header name or number; default 2"},
+        {"value_unit", "text: for the report"},
+        {"clock",
+         "\"t\" cutting time, start_s included; \"m\" measuring time; \"x\" slide coordinate; "
+         "default t"}}},
+      {"[[effect]] name = \"channel\"",
+       "h = a q: a logged quantity as cause; keys of any effect besides.",
+       {{"channel", "name of a [[channel]]"},
+        {"as", "its name in the report; default the channel's"},
+        {"lag_s",
+         "the height follows so much later, or \"free\"; default free without tau_s, else 0"},
+        {"tau_s", "first-order lag: tau dy/dt = q - y, or \"free\"; default none"},
+        {"from", "\"log\": q as it is; \"start\": its change since the cut began; default log"}}},
       trace_section(),
       {"[truth]",
        "What `simulate` makes the profiles from.",

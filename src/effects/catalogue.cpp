@@ -57,6 +57,10 @@ const std::vector<std::string>& effect_names() {
 std::unique_ptr<Effect> make_effect(const std::string& name, const EffectOptions& options,
                                     const Machine& machine, const TravelRange& range) {
   const std::vector<std::string>& names = effect_names();
+  if (options.own) {
+    Request{name, options, machine, range}.accept_only({});
+    return options.own(machine, range);
+  }
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
     throw UsageError("no effect '" + name + "'" + did_you_mean(name, names) + "; there are " +

@@ -54,6 +54,12 @@ std::vector<EffectOptions> Effect::hypotheses(const EffectOptions* declared) con
   return {EffectOptions{}};
 }
 
+std::string Effect::fault(const Stations& /*stations*/) const { return ""; }
+
+double Effect::noise_share(const Stations& /*stations*/, std::span<const double> /*shape*/) const {
+  return 0.0;
+}
+
 std::vector<std::string> Effect::lacking_of_machine(const TravelRange& /*range*/) const {
   return {};
 }

@@ -136,6 +136,32 @@ void explain_noise(const Solution& fit, ModelResult& out) {
   }
 }
 
+/// Errors in variables: noise of a measured cause makes its amplitude too small, by its share of
+/// the square in the profile that shows the cause best.
+void explain_noise_of_causes(const Model& model, const Solution& fit, ModelResult& out) {
+  constexpr double kMatters = 0.1;  // of U
+  for (const ModelTerm& term : model.terms) {
+    std::optional<double> share;
+    for (const Observation* observation : fit.linear.observations) {
+      const Profile& profile = *observation->profile;
+      if (!term.acts_on(profile)) continue;
+      std::vector<double> positions = observation->low_band.positions(profile.positions);
+      std::ranges::sort(positions);
+      const double here = term.effect->noise_share({positions, profile.setup, model.machine},
+                                                   shapes_of(term, fit.estimate.shapes));
+      share = std::min(share.value_or(here), here);
+    }
+    const std::string name = term.name + "." + term.effect->parameters().front().name;
+    const FittedParameter* size = out.find(name);
+    if (!share || !size || !size->value || !size->expanded_uncertainty) continue;
+    const double bias = *share * std::abs(*size->value);
+    if (bias > kMatters * *size->expanded_uncertainty)
+      out.notes.push_back(name + " is too small by " + significant(bias, 2) + " " + size->unit +
+                          " (" + significant(100.0 * *share, 2) +
+                          " %), because what was logged is noisy; U does not hold that");
+  }
+}
+
 }  // namespace
 
 void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
@@ -144,6 +170,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   explain_scaling(fit, out);
   explain_other_form(model, fit, out);
   explain_noise(fit, out);
+  explain_noise_of_causes(model, fit, out);
   check_plausibility(model, fit, out);
   for (const Observation& observation : model.observations) {
     if (observation.low_band.resampled())

@@ -167,6 +167,28 @@ void require_metadata(const ModelTerm& term, const Profile& profile) {
                      profile.name + "'");
 }
 
+/// Of a profile that lacks metadata, or that does not show the effect, nothing is known.
+void require_columns(const Model& model, const ModelTerm& term, const Profile& profile) {
+  if (!term.acts_on(profile) || !term.effect->lacking(profile.setup).empty()) return;
+  const std::string fault = term.effect->fault(profile.stations(model.machine));
+  if (!fault.empty())
+    throw UsageError("profile '" + profile.name + "': effect '" + term.name + "': " + fault);
+}
+
+/// Refuses declared effects and candidates that are not finite on a profile.
+void require_columns(const Model& model, const std::vector<DeclaredEffect>& candidates) {
+  std::vector<ModelTerm> terms = model.terms;
+  for (const DeclaredEffect& own : candidates) {
+    ModelTerm& term = terms.emplace_back();
+    term.name = own.name;
+    term.effect = make_effect(own.name, own.options, model.machine, model.range);
+    term.profiles = own.options.profiles;
+  }
+  for (const ModelTerm& term : terms)
+    for (const Observation& observation : model.observations)
+      require_columns(model, term, *observation.profile);
+}
+
 }  // namespace
 
 Eigen::Index Model::amplitudes() const {
@@ -241,6 +263,7 @@ Model build_model(const Problem& problem, const std::vector<Profile>& profiles,
     }
   }
   for (const DeclaredEffect& declared : problem.effects) append_term(model, declared, model.range);
+  require_columns(model, problem.trace.own);
   return model;
 }
 

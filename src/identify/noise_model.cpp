@@ -4,88 +4,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <numeric>
 
+#include "outstanding_line.hpp"
 #include "repeats.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/linear_algebra.hpp"
-#include "slideway/signal/spectrum.hpp"
-#include "slideway/signal/view.hpp"
 
 namespace slideway {
 namespace {
 
-constexpr Eigen::Index kLeastSpare = 6;   // values beyond what is free, else the whole residual
-constexpr double kRounding = 1e-13;       // of the values: no noise, only rounding
-constexpr double kSameStep = 0.1;         // relative; values as far apart have the same memory
-constexpr Eigen::Index kNeighbours = 15;  // on either side, for the level of a spectrum
+constexpr Eigen::Index kLeastSpare = 6;  // values beyond what is free, else the whole residual
+constexpr double kRounding = 1e-13;      // of the values: no noise, only rounding
+constexpr double kSameStep = 0.1;        // relative; values as far apart have the same memory
 
 double rms(const Eigen::VectorXd& values) {
   return std::sqrt(values.squaredNorm() /
                    static_cast<double>(std::max<Eigen::Index>(values.size(), 1)));
-}
-
-Eigen::MatrixXd line(Eigen::Index n, double cycles_per_value) {
-  Eigen::MatrixXd out(n, 2);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double angle = 2.0 * kPi * cycles_per_value * static_cast<double>(i);
-    out.row(i) << std::cos(angle), std::sin(angle);
-  }
-  return out;
-}
-
-/// Spectral power of the values, of each half of a diameter by itself: what the cut has laid down
-/// runs there and back. Of one half if `middle` is 0.
-double power(const Eigen::VectorXd& values, Eigen::Index middle, double cycles_per_value) {
-  const std::complex<double> turn = std::polar(1.0, -2.0 * kPi * cycles_per_value);
-  std::complex<double> phase = 1.0, far = 0.0, near = 0.0;
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    (i < middle ? far : near) += values[i] * phase;
-    phase *= turn;
-  }
-  return std::norm(far) + std::norm(near);
-}
-
-/// Frequency near `frequency` where the power is largest, to a thousandth of a cycle a profile.
-double sharpened(const Eigen::VectorXd& values, Eigen::Index middle, double frequency) {
-  const auto n = static_cast<double>(values.size());
-  for (double step = 0.1; step > 5e-4; step /= 10.0) {
-    const double centre = frequency;
-    double largest = -1.0;
-    for (int i = -10; i <= 10; ++i) {
-      const double f = centre + i * step / n, size = power(values, middle, f);
-      if (size > largest) largest = size, frequency = f;
-    }
-  }
-  return frequency;
-}
-
-/// Frequency (cycles per value) of a line that stands out of the spectrum around it, or 0. The
-/// spectrum of smooth noise over its local level is exponential; the level is the median of the
-/// neighbours over ln 2.
-/// @param middle  first value of the near half of a diameter, or 0
-double outstanding_line(const Eigen::VectorXd& values, Eigen::Index middle, double false_line) {
-  const Eigen::Index n = values.size(), count = (n - 1) / 2;
-  if (count < 4 * kNeighbours) return 0.0;
-  const std::vector<double> from_mean = power_spectrum(view(values));
-  const Eigen::Map<const Eigen::VectorXd> spectrum(from_mean.data() + 1, count);
-  double best = std::log(static_cast<double>(count) / false_line);
-  Eigen::Index peak = -1;
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const Eigen::Index first =
-        std::clamp<Eigen::Index>(k - kNeighbours, 0, count - 2 * kNeighbours - 1);
-    std::vector<double> around(spectrum.data() + first,
-                               spectrum.data() + first + 2 * kNeighbours + 1);
-    std::nth_element(around.begin(), around.begin() + kNeighbours, around.end());
-    const double level = around[kNeighbours] / std::log(2.0);
-    if (spectrum[k] > best * level) best = spectrum[k] / level, peak = k;
-  }
-  if (peak < 0) return 0.0;
-  return sharpened(values, middle, static_cast<double>(peak + 1) / static_cast<double>(n));
 }
 
 /// First low-band value of the near half of a diameter; 0 where there is no far one.
@@ -95,16 +33,6 @@ Eigen::Index near_half(const Observation& observation) {
   const std::vector<double> positions =
       observation.low_band.positions(observation.profile->positions);
   return std::ranges::lower_bound(positions, setup.center_mm) - positions.begin();
-}
-
-/// The line, each half of a diameter with a phase of its own.
-Eigen::MatrixXd line_on(Eigen::Index values, Eigen::Index middle, double cycles_per_value) {
-  Eigen::MatrixXd out = line(values, cycles_per_value);
-  if (middle == 0) return out;
-  out.conservativeResize(Eigen::NoChange, 4);
-  out.rightCols(2) = out.leftCols(2);
-  out.topRightCorner(middle, 2).setZero();
-  return out;
 }
 
 void append(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {

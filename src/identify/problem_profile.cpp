@@ -19,23 +19,28 @@ constexpr std::string_view kKeys =
 
 constexpr double kFullTurn = 360.0;
 
-std::filesystem::path data_directory(const Section& section, const ProblemRules& rules) {
+std::filesystem::path data_directory(const Section& section, std::string_view key,
+                                     const ProblemRules& rules) {
   if (!rules.data_dir)
-    section.fail("file",
+    section.fail(key,
                  "needs the directory ${SLIDEWAY_DATA}, which is not set; accepted: --data DIR or "
                  "the environment variable SLIDEWAY_DATA");
   return std::filesystem::absolute(*rules.data_dir);
 }
 
-std::filesystem::path resolved(const Section& section, std::string file,
+}  // namespace
+
+std::filesystem::path resolved(const Section& section, std::string_view key, std::string file,
                                const ProblemRules& rules) {
   constexpr std::string_view kVariable = "${SLIDEWAY_DATA}";
   if (const std::size_t at = file.find(kVariable); at != std::string::npos)
-    file.replace(at, kVariable.size(), data_directory(section, rules).string());
+    file.replace(at, kVariable.size(), data_directory(section, key, rules).string());
   else if (file.find("${") != std::string::npos)
-    section.fail("file", "unknown variable in '" + file + "'; accepted: ${SLIDEWAY_DATA}");
+    section.fail(key, "unknown variable in '" + file + "'; accepted: ${SLIDEWAY_DATA}");
   return rules.base / file;
 }
+
+namespace {
 
 std::string checked_name(const Section& section) {
   std::string name = section.required("name", section.text("name"), "a name of its own");
@@ -84,7 +89,7 @@ void read_source(const Section& section, const ProblemRules& rules, ProfileEntry
   ProfileSource& source = entry.source;
   if (rules.file_is_needed || section.has("file")) {
     entry.profile.file = section.required("file", section.text("file"), "path of a data file");
-    source.path = resolved(section, entry.profile.file, rules);
+    source.path = resolved(section, "file", entry.profile.file, rules);
   }
   source.request = read_request(section);
   source.window = section.range("window");

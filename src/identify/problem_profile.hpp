@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "problem_section.hpp"
 #include "slideway/identify/problem.hpp"
@@ -24,6 +26,10 @@ struct ProblemRules {
   bool file_is_needed = true;
   bool effect_is_needed = true;
 };
+
+/// The path a key of a section gives.
+std::filesystem::path resolved(const Section& section, std::string_view key, std::string file,
+                               const ProblemRules& rules);
 
 /// One [[profile]]. @throws UsageError
 ProfileEntry read_profile_entry(const Section& section, const ProfileDefaults& defaults,

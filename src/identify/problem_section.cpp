@@ -232,6 +232,17 @@ std::optional<std::vector<std::string>> Section::some_of(
   return result;
 }
 
+std::vector<std::string> Section::texts(std::string_view key) const {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return {};
+  const auto* array = std::get_if<TomlValue::Array>(&entry->value.data);
+  std::vector<std::string> result;
+  for (const TomlValue& element : array ? *array : TomlValue::Array{})
+    if (const auto* text = std::get_if<std::string>(&element.data)) result.push_back(*text);
+  if (!array || result.size() != array->size()) fail(key, "must be a list of texts, [\"...\"]");
+  return result;
+}
+
 std::optional<Section> Section::table(std::string_view key) const {
   const TomlEntry* entry = find(key);
   if (entry == nullptr) return std::nullopt;

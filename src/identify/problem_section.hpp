@@ -64,6 +64,8 @@ class Section {
   /// A list of such texts.
   [[nodiscard]] std::optional<std::vector<std::string>> some_of(
       std::string_view key, std::span<const std::string> accepted) const;
+  /// A list of texts of any kind; empty if not there.
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
   [[nodiscard]] std::optional<Section> table(std::string_view key) const;
   [[nodiscard]] std::vector<Section> tables(std::string_view key) const;  // empty if not there
 

@@ -54,6 +54,10 @@ toml::table parsed(const std::filesystem::path& path) {
   }
 }
 
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
 void point_to_simulation(toml::table& table, const ProfileEntry& entry, const std::string& file) {
   const bool slope = entry.profile.setup.quantity == Quantity::slope;
   const std::string value_unit = slope ? "urad" : "um";
@@ -99,6 +103,14 @@ std::string simulated_problem_text(const Problem& problem, const std::vector<std
   for (std::size_t i = 0; i < files.size(); ++i)
     if (toml::table* table = profiles->get(i)->as_table())
       point_to_simulation(*table, problem.profiles[i], files[i]);
+  if (toml::array* paths = root["effects"].as_array())
+    for (std::size_t i = 0; i < paths->size(); ++i)
+      if (const auto* path = paths->get(i)->as_string())
+        paths->replace(paths->cbegin() + static_cast<std::ptrdiff_t>(i), file_name(path->get()));
+  if (toml::array* channels = root["channel"].as_array())
+    for (toml::node& node : *channels)
+      if (toml::table* table = node.as_table())
+        table->insert_or_assign("file", file_name((*table)["file"].value_or("")));
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text << root << '\n';

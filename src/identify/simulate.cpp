@@ -80,6 +80,9 @@ void add_effect(const Model& model, const ModelTerm& term,
   const std::vector<double> shape(inner.data() + amplitudes.size(), inner.data() + inner.size());
   for (Profile& profile : profiles) {
     const Eigen::VectorXd signal = effect_signal(model, term, profile, amplitudes, shape);
+    if (!signal.allFinite())
+      throw UsageError("truth: effect '" + term.name + "' is not finite on profile '" +
+                       profile.name + "'");
     for (std::size_t i = 0; i < profile.values.size(); ++i) profile.values[i] += signal[i];
   }
 }
@@ -122,6 +125,22 @@ void keep_inputs(const Problem& problem, const std::filesystem::path& directory)
   for (const ProfileEntry& entry : problem.profiles)
     for (const ProfileEntry& written : problem.profiles)
       refuse_if_same(entry.source.path, directory / (written.profile.name + ".csv"));
+  for (const std::filesystem::path& path : problem.beside)
+    refuse_if_same(path, directory / path.filename());
+}
+
+/// The files a problem names beside its profiles, put beside the simulated ones.
+void copy_beside(const Problem& problem, const std::filesystem::path& directory) {
+  std::vector<std::string> taken{"problem.toml"};
+  for (const ProfileEntry& entry : problem.profiles) taken.push_back(entry.profile.name + ".csv");
+  for (const std::filesystem::path& path : problem.beside) {
+    const std::string name = path.filename().string();
+    if (std::ranges::count(taken, name) > 0)
+      throw UsageError(path.string() + ": another file that is written has its name; accepted: "
+                       "files with names of their own");
+    taken.push_back(name);
+    write_file(directory / name, std::string(FileBytes(path).text()));
+  }
 }
 
 }  // namespace
@@ -149,6 +168,7 @@ void write_simulation(const Problem& problem, const std::filesystem::path& direc
   keep_inputs(problem, directory);
   const std::vector<Profile> profiles = simulate(problem);
   make_directory(directory);
+  copy_beside(problem, directory);
   std::vector<std::string> files;
   for (const Profile& profile : profiles) {
     const bool slope = profile.setup.quantity == Quantity::slope;

@@ -4,9 +4,13 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <cmath>
+#include <memory>
+#include <tuple>
 #include <variant>
 
 #include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/effects/formula.hpp"
 #include "slideway/identify/problem_tree.hpp"
 #include "slideway/identify/ranking.hpp"
 #include "slideway/identify/simulate.hpp"
@@ -79,9 +83,59 @@ void let_interrupt(const std::string& /*stage*/, double /*done*/) {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
 
+/// A Python function, called and let go with the interpreter's lock.
+class LockedFunction {
+ public:
+  explicit LockedFunction(py::function function)
+      : function_(new py::function(std::move(function)), [](py::function* own) {
+          const py::gil_scoped_acquire lock;
+          delete own;
+        }) {}
+
+  std::vector<double> operator()(const std::map<std::string, std::vector<double>>& variables,
+                                 const std::map<std::string, double>& parameters) const {
+    const py::gil_scoped_acquire lock;
+    py::dict arguments;
+    for (const auto& [name, values] : variables) arguments[name.c_str()] = array(values);
+    for (const auto& [name, value] : parameters) arguments[name.c_str()] = value;
+    return numbers(py::cast<Column>((*function_)(**arguments)), "the function");
+  }
+
+ private:
+  std::shared_ptr<py::function> function_;
+};
+
+/// (name, function, variables, [(parameter, unit, lower, upper)], cause, source, typical)
+using GivenEffect = std::tuple<
+    std::string, py::function, std::vector<std::string>,
+    std::vector<std::tuple<std::string, std::string, std::optional<double>, std::optional<double>>>,
+    std::string, std::string, std::string>;
+
+std::vector<DeclaredEffect> made(const std::vector<GivenEffect>& effects) {
+  std::vector<DeclaredEffect> out;
+  for (const auto& [name, function, variables, parameters, cause, source, typical] : effects) {
+    Formula formula{.name = name, .text = "a function of " + joined(variables)};
+    for (const auto& [parameter, unit, lower, upper] : parameters)
+      formula.parameters.push_back({parameter, unit, lower, upper});
+    formula.cause = cause;
+    formula.source = source;
+    formula.typical = typical;
+    formula.function = LockedFunction(function);
+    formula.variables = variables;
+    try {
+      out.push_back({name, {.own = formula_effect(formula)}, {}});
+    } catch (const UsageError& error) {
+      throw UsageError("effect '" + name + "': " + error.what());
+    }
+  }
+  return out;
+}
+
 py::tuple analysed(const py::object& problem,
                    const std::map<std::string, std::pair<Column, Column>>& profiles,
-                   const Directory& data, bool ranks_only, bool closes_loop) {
+                   const Directory& data, bool ranks_only, bool closes_loop,
+                   const std::vector<GivenEffect>& effects) {
+  const std::vector<DeclaredEffect> own = made(effects);
   const GivenProblem given(problem, data);
   GivenTraces traces;
   for (const auto& [name, columns] : profiles)
@@ -90,7 +144,9 @@ py::tuple analysed(const py::object& problem,
   std::string json, report;
   {
     const py::gil_scoped_release unlocked;
-    const Problem read = given.read();
+    Problem read = given.read();
+    read.own_effects.insert(read.own_effects.end(), own.begin(), own.end());
+    read.trace.own.insert(read.trace.own.end(), own.begin(), own.end());
     const Analysis analysis = analyse(
         read, read_profiles(read, traces),
         {ranks_only ? Scope::rank : Scope::identify, closes_loop, true, true}, let_interrupt);
@@ -201,7 +257,7 @@ PYBIND11_MODULE(_slideway, module) {
   register_error<DataError>(module, "DataError",
                             "Numbers or a data file cannot be used: what is wrong, and where.");
   module.def("analyse", &analysed, py::arg("problem"), py::arg("profiles"), py::arg("data"),
-             py::arg("ranks_only"), py::arg("closes_loop"));
+             py::arg("ranks_only"), py::arg("closes_loop"), py::arg("effects"));
   module.def("simulate", &simulated, py::arg("problem"), py::arg("seed"), py::arg("data"));
   module.def("rank_columns", &ranked, py::arg("signal"), py::arg("candidates"), py::arg("wavelet"),
              py::arg("level"), py::arg("boundary"));

@@ -245,6 +245,8 @@ OptionsSummary options_of(const Problem& problem) {
           {declared.name + "." + prior.parameter, prior.value, prior.standard_uncertainty});
   out.runout = problem.runout;
   out.candidates = problem.trace.candidates;
+  for (const DeclaredEffect& own : problem.trace.own)
+    out.candidates.push_back(term_name(own.name, own.options.profiles));
   out.max_effects = problem.trace.max_effects;
   out.significance = problem.trace.gates.significance;
   return out;

@@ -178,6 +178,21 @@ bool is_folded(const Model& model, const Candidate& candidate) {
   return qr.rank() < candidate.amplitudes();
 }
 
+/// An effect that is looked for with the options the problem gives it.
+void add_own(const Model& model, const Problem& problem, const DeclaredEffect& own,
+             const Viewer& viewer, Dictionary& out) {
+  if (std::ranges::count(problem.effects, own.name, &DeclaredEffect::name) > 0) return;
+  Candidate candidate;
+  candidate.term.name = term_name(own.name, own.options.profiles);
+  candidate.term.profiles = own.options.profiles;
+  candidate.options = own.options;
+  candidate.term.effect = make_effect(own.name, own.options, model.machine, model.range);
+  const std::string missing = needs(model, candidate.term).first;
+  if (!missing.empty()) return out.not_testable.push_back({candidate.term.name, missing});
+  lay_out(model, viewer, candidate);
+  out.candidates.push_back(std::move(candidate));
+}
+
 /// The same effect in each profile alone, where several show it: a step in one cut, a warm-up that
 /// has faded in the next.
 std::vector<Candidate> in_one_profile(const Model& model, const Candidate& whole) {
@@ -256,6 +271,7 @@ Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::In
   for (const Candidate& each : apart)
     std::ranges::move(in_one_profile(model, each), std::back_inserter(alone));
   std::erase_if(alone, [&](const Candidate& each) { return is_folded(model, each); });
+  for (const DeclaredEffect& own : problem.trace.own) add_own(model, problem, own, viewer, out);
   for (const Candidate& whole : out.candidates) {
     std::ranges::move(in_one_profile(model, whole), std::back_inserter(alone));
     for (Candidate& each : on_one_surface(model, whole)) {

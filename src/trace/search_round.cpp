@@ -54,6 +54,16 @@ std::string implausible(const Refined& refined) {
   return "";
 }
 
+bool is_measured(const TestedCandidate& tested) {
+  return tested.refined.candidate->term.effect->description().measured;
+}
+
+/// Neither measured nor of the carriages, which a measured cause outranks.
+bool ranks_below(const TestedCandidate& each, const TestedCandidate& measured) {
+  return is_measured(measured) && !is_measured(each) &&
+         !each.refined.candidate->term.effect->is_carriage();
+}
+
 /// Whether two parts of the residual are one and the same rather than each its own.
 bool alike(const TestedCandidate& a, const TestedCandidate& b, const Gates& gates) {
   return std::abs(a.fitted.dot(b.fitted)) > gates.alike * a.fitted.norm() * b.fitted.norm();
@@ -151,13 +161,28 @@ const TestedCandidate* SearchRound::choice(const Gates& gates,
              better.refined.delta_bic < each->refined.delta_bic - gates.tie_bic &&
              alike(better, *each, gates);
     };
-    if (std::none_of(tested.begin(), each, stands_before)) return &*each;
+    if (std::none_of(tested.begin(), each, stands_before)) {
+      const TestedCandidate* measured = measured_instead(*each, gates, excluded);
+      return measured ? measured : &*each;
+    }
   }
   return nullptr;
 }
 
-std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& chosen,
-                                                        const Gates& gates) const {
+const TestedCandidate* SearchRound::measured_instead(
+    const TestedCandidate& choice, const Gates& gates,
+    const std::vector<std::string>& excluded) const {
+  if (is_measured(choice) || choice.refined.candidate->term.effect->is_carriage()) return nullptr;
+  const auto at = std::ranges::find_if(tested, [&](const TestedCandidate& each) {
+    return is_measured(each) && each.refused(gates).empty() &&
+           each.refined.delta_bic <= choice.refined.delta_bic + gates.tie_bic &&
+           std::ranges::count(excluded, each.name()) == 0 && alike(each, choice, gates);
+  });
+  return at == tested.end() ? nullptr : &*at;
+}
+
+std::vector<const TestedCandidate*> SearchRound::as_good_as(const TestedCandidate& chosen,
+                                                            const Gates& gates) const {
   std::vector<const TestedCandidate*> out;
   const auto is_same_effect = [](const TestedCandidate& a, const TestedCandidate& b) {
     return a.refined.candidate->effect_name() == b.refined.candidate->effect_name();
@@ -177,6 +202,20 @@ std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& c
         alike(each, chosen, gates))
       out.push_back(&each);
   }
+  return out;
+}
+
+std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& chosen,
+                                                        const Gates& gates) const {
+  std::vector<const TestedCandidate*> out = as_good_as(chosen, gates);
+  std::erase_if(out, [&](const auto* each) { return ranks_below(*each, chosen); });
+  return out;
+}
+
+std::vector<const TestedCandidate*> SearchRound::outranked(const TestedCandidate& chosen,
+                                                           const Gates& gates) const {
+  std::vector<const TestedCandidate*> out = as_good_as(chosen, gates);
+  std::erase_if(out, [&](const auto* each) { return !ranks_below(*each, chosen); });
   return out;
 }
 

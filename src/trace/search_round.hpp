@@ -32,11 +32,26 @@ struct SearchRound {
   [[nodiscard]] const TestedCandidate* choice(const Gates& gates,
                                               const std::vector<std::string>& excluded = {}) const;
 
+  /// The measured cause that explains what `choice`, which is none, would be accepted for, within
+  /// tie_bic of it: it has a reason of its own. Null: none.
+  [[nodiscard]] const TestedCandidate* measured_instead(
+      const TestedCandidate& choice, const Gates& gates,
+      const std::vector<std::string>& excluded = {}) const;
+
   /// Other effects that take the same part of the residual, within tie_bic of `chosen`: those that
   /// pass, and those too uncertain to pass that need no more unknowns. Where the chosen one is a
-  /// carriage's polynomial, which comes near every smooth effect, all that are possible.
+  /// carriage's polynomial, which comes near every smooth effect, all that are possible; where it
+  /// is a measured cause, not what is neither measured nor a carriage's.
   [[nodiscard]] std::vector<const TestedCandidate*> rivals(const TestedCandidate& chosen,
                                                            const Gates& gates) const;
+
+  /// Where `chosen` is a measured cause: what would be its rivals were it none.
+  [[nodiscard]] std::vector<const TestedCandidate*> outranked(const TestedCandidate& chosen,
+                                                              const Gates& gates) const;
+
+ private:
+  [[nodiscard]] std::vector<const TestedCandidate*> as_good_as(const TestedCandidate& chosen,
+                                                               const Gates& gates) const;
 };
 
 /// @param calibration  null distribution of the search; made here if it is not there yet

@@ -252,13 +252,27 @@ class Selector {
       const TestedCandidate& own = *find_tested(round, effect, gates_);
       for (const TestedCandidate* rival : round.rivals(own, gates_))
         effect.round.ambiguous_with.push_back(rival->name());
+      const bool outranks = note_outranked(round, own);
       const Stability found = stability(round, own, gates_);
       effect.round.stability = found.share;
-      if (found.share >= gates_.stable_share || !effect.round.ambiguous_with.empty()) continue;
+      if (found.share >= gates_.stable_share || !effect.round.ambiguous_with.empty() || outranks)
+        continue;
       effect.round.ambiguous_with.push_back(found.other == kNothing ? kUnnamedRival : found.other);
       out_.notes.push_back(effect.name() + ": only " + significant(100.0 * found.share, 2) +
                            " % of the resamples choose it; the others most often " + found.other);
     }
+  }
+
+  /// By how much what nobody measured explains less, or more, than a measured cause. @return true
+  /// if there is any such effect
+  bool note_outranked(const SearchRound& round, const TestedCandidate& own) {
+    const std::vector<const TestedCandidate*> outranked = round.outranked(own, gates_);
+    for (const TestedCandidate* each : outranked)
+      out_.notes.push_back(own.name() + " was measured and " + each->name() +
+                           " was not: it stands, though the other explains as much; difference "
+                           "in BIC " +
+                           significant(each->refined.delta_bic - own.refined.delta_bic, 2));
+    return !outranked.empty();
   }
 
   /// Names what nothing without a name explains as well.

@@ -82,5 +82,74 @@ TEST_F(Effects, GivesOneEntryAsJson) {
   EXPECT_THAT(parameters, testing::ElementsAre("amplitude_um", "time_constant_s"));
 }
 
+const std::string kOwn = R"([[effect]]
+name = "formula"
+as = "coolant"
+formula = "a * (1 - exp(-max(t - t0, 0) / tau))"
+parameters = [{ name = "a", unit = "um" }, { name = "t0", unit = "s", lower = 0, upper = 300 },
+  { name = "tau", unit = "s", lower = 1, upper = 600 }]
+cause = "coolant switched on"
+source = "trials"
+typical = "0.2 to 1 um"
+)";
+
+TEST_F(Effects, OfAFileAreCheckedAndPrintedWithCauseSourceAndSize) {
+  folder_.file("our-lathes.toml", kOwn);
+  const ProgramRun done = run({"effects", "our-lathes.toml"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(done.out, testing::StartsWith("coolant\n"));
+  for (const char* text :
+       {"coolant switched on", "trials", "0.2 to 1 um", "a (µm), t0 (s), tau (s)"})
+    EXPECT_THAT(done.out, HasSubstr(text));
+}
+
+TEST_F(Effects, OfAFileThatBreakTheContractAreRefused) {
+  std::string pole = kOwn;
+  pole.replace(pole.find("max(t - t0, 0)"), 14, "1 / (t - t0)");
+  folder_.file("our-lathes.toml", pole);
+  const ProgramRun refused = run({"effects", "our-lathes.toml"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, testing::AllOf(HasSubstr("our-lathes.toml: coolant: on a face"),
+                                          HasSubstr("of its formula")));
+  EXPECT_EQ(run({"effects", "none.toml"}).exit_code, 2);
+}
+
+// A line of slope 1 in r that time makes and a cone makes: on one cut the two are one column.
+TEST_F(Effects, OfAProblemSayWhatItsProfilesCannotTellApart) {
+  std::string face = "x_mm,z_um\n";
+  for (int i = 0; i < 400; ++i)
+    face += std::to_string(0.025 * i) + "," + std::to_string((i * 37 % 11) * 0.001) + "\n";
+  folder_.file("face.csv", face);
+  folder_.file("problem.toml", R"([machine]
+lever = "paper"
+[[profile]]
+name = "one"
+file = "face.csv"
+position_unit = "mm"
+value_unit = "um"
+feed_mm_per_min = 2
+cut_direction = "inward"
+free = ["offset"]
+[[effect]]
+name = "squareness"
+[[trace.candidate]]
+name = "formula"
+as = "rise"
+formula = "a * t"
+parameters = [{ name = "a", unit = "um/s" }]
+)");
+  const ProgramRun done = run({"effects", "--problem", "problem.toml", "--json", "-"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const json effects = json::parse(done.out)["effects"];
+  EXPECT_EQ(effects.size(), kEffects.size() + 1);
+  std::map<std::string, double> shares;
+  for (const json& each : effects.back()["design"]["lookalikes"])
+    shares[each["effect"]] = each["share"];
+  EXPECT_NEAR(shares["squareness"], 1.0, 1e-6);
+  EXPECT_NEAR(shares["linear_drift"], 1.0, 1e-6);
+  EXPECT_THAT(run({"effects", "rise", "--problem", "problem.toml"}).out,
+              HasSubstr("here looks like:"));
+}
+
 }  // namespace
 }  // namespace slideway

@@ -86,6 +86,10 @@ const std::map<std::string, std::string> kTooMany{
     {"[low_band]", "[low_band]\nzzz = 1\n" + kGood},
     {"[[profile]]", kProfile + "zzz = 1\n" + kEffect},
     {"[[effect]]", kGood + "zzz = 1\n"},
+    {"[[effect]] name = \"formula\"",
+     kGood + "[[effect]]\nname = \"formula\"\nas = \"b\"\nzzz = 1\n"},
+    {"[[channel]]", "[[channel]]\nzzz = 1\n" + kGood},
+    {"[[effect]] name = \"channel\"", kGood + "[[effect]]\nname = \"channel\"\nzzz = 1\n"},
     {"priors = [{ ... }]", kGood + "priors = [{ zzz = 1 }]\n"},
     {"[runout]", kGood + "[runout]\nzzz = 1\n"},
     {"[trace]", kGood + "[trace]\nzzz = 1\n"},
@@ -99,8 +103,13 @@ TEST_F(Help, ListsTheKeysOfTheProblemFileThatTheReaderAccepts) {
     if (line.starts_with("    ") && line[4] != ' ')
       documented[section].insert(line.substr(4, line.find(' ', 4) - 4));
   }
-  for (const char* table : {"machine", "low_band", "profile", "effect", "runout", "trace", "truth"})
+  for (const char* table :
+       {"machine", "low_band", "profile", "channel", "effect", "runout", "trace", "truth"})
     documented[""].insert(table);
+  const std::set<std::string> of_any = documented["[[effect]]"];
+  for (const char* kind : {"formula", "channel"})
+    documented[std::string("[[effect]] name = \"") + kind + "\""].insert(of_any.begin(),
+                                                                         of_any.end());
   for (const auto& [heading, problem] : kTooMany) {
     write_file(path("problem.toml"), problem);
     const std::string why = run({"fit", "problem.toml"}).err;

@@ -7,6 +7,7 @@
 
 #include "effects/effect_cases.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/effects/contract.hpp"
 
 namespace slideway {
 namespace {
@@ -328,6 +329,11 @@ TEST_P(EffectContract, IsSteepestAtTheCentreWhereItSaysSo) {
   Eigen::Index steepest = -1;
   change.maxCoeff(&steepest);
   EXPECT_LE(steepest, 1);
+}
+
+// The same in the library, for effects of a user's own.
+TEST_P(EffectContract, IsKeptAsTheProgramChecksIt) {
+  EXPECT_THAT(contract_faults(*effect_), ::testing::IsEmpty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Catalogue, EffectContract, ::testing::ValuesIn(effect_names()),

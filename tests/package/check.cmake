@@ -45,6 +45,14 @@ file(READ ${SOURCE}/tests/package/consumer/CMakeLists.txt shown)
 string(REGEX REPLACE "^.*\n\n" "" shown "${shown}")
 expect_in(${SOURCE}/README.md "\n```cmake\n${shown}```\n")
 
+run(${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE}/tests/package/own_effect -B ${OUT}/own_effect
+    -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${OUT}/prefix)
+run(${CMAKE_COMMAND} --build ${OUT}/own_effect)
+run(${OUT}/own_effect/own_effect ${problem})
+if(NOT out MATCHES "^rack_teeth.amplitude_um = (0\\.4[89]|0\\.5[01]?)")
+  message(FATAL_ERROR "own_effect: 0.5 µm of rack_teeth became ${out}")
+endif()
+
 run(${OUT}/prefix/bin/slideway --version)
 if(NOT out STREQUAL "slideway ${VERSION}\n")
   message(FATAL_ERROR "--version: ${out}")

@@ -11,7 +11,7 @@ namespace slideway {
 /// Names of all effects, the carriage's own first, in the order of the registration list.
 const std::vector<std::string>& effect_names();
 
-/// Makes an effect of the catalogue.
+/// Makes an effect of the catalogue, or the user's own that the options make.
 /// @throws UsageError  a name that is not in it (with the nearest one that is), an option the
 /// effect
 ///                     does not take or needs and lacks, a body that is not there or moves along

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -63,6 +64,9 @@ struct Description {
   /// Grows without bound, or bends sharply, towards the spindle axis, where the nose of a tool
   /// cannot follow it.
   bool steep_at_centre = false;
+  /// Its form is that of a measured cause, not of a law with free shapes: where both fit, it
+  /// outranks what is no error of the carriages.
+  bool measured = false;
 };
 
 /// One shape parameter: which of the parameters it is, and where to look for it.
@@ -102,6 +106,12 @@ struct Knots {
   Eigen::VectorXd positions_mm;  // slide coordinates, evenly spaced, rising; one for each amplitude
 };
 
+class Effect;
+
+/// Makes an effect that is not in the catalogue: a user's own.
+using EffectFactory =
+    std::function<std::unique_ptr<Effect>(const Machine& machine, const TravelRange& range)>;
+
 /// What the problem file says of a declared effect, besides its name.
 struct EffectOptions {
   std::optional<std::string> body = std::nullopt;
@@ -113,6 +123,7 @@ struct EffectOptions {
   std::vector<std::string> profiles = {};
   std::optional<Form> form = std::nullopt;             // of a straightness: a polynomial
   std::optional<double> resolution_mm = std::nullopt;  // of a curve: between its knots
+  EffectFactory own = {};  // makes an effect that is not in the catalogue; empty: it is
 };
 
 /// Rates between which a line of an effect lies, in cycles over one profile: the resolution of the
@@ -120,8 +131,6 @@ struct EffectOptions {
 struct LineBand {
   double low = 0.0, high = 0.0;
 };
-
-class Effect;
 
 /// A direction in parameter space that the data do not determine, as one of its effects sees it.
 struct UndeterminedPart {
@@ -216,6 +225,15 @@ class Effect {
   /// declared, and none where it is; an effect with a degree has one for each degree to be tried.
   /// @param declared  the options it is declared with, or null
   [[nodiscard]] virtual std::vector<EffectOptions> hypotheses(const EffectOptions* declared) const;
+
+  /// Why its columns cannot be used on a profile, with the place; "": they can. REQUIRES as
+  /// search_range().
+  [[nodiscard]] virtual std::string fault(const Stations& stations) const;
+
+  /// Share of the square of its columns over a profile, their mean taken out, that is noise of a
+  /// measured cause: an estimated amplitude is too small by it. REQUIRES as columns().
+  [[nodiscard]] virtual double noise_share(const Stations& stations,
+                                           std::span<const double> shape) const;
 
   /// Keys of [machine] the effect cannot do without and the problem does not give.
   [[nodiscard]] virtual std::vector<std::string> lacking_of_machine(const TravelRange& range) const;

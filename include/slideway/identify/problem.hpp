@@ -37,7 +37,8 @@ struct Runout {
 };
 
 struct TraceOptions {
-  std::vector<std::string> candidates;  // effect names; "all" is written out
+  std::vector<std::string> candidates;  // of the catalogue; "all" is written out
+  std::vector<DeclaredEffect> own;      // besides: the user's own, and those with options
   int max_effects = 3;
   Gates gates;
 };
@@ -74,6 +75,8 @@ struct Problem {
   LowBandOptions low_band;    // of profiles without one of their own
   std::vector<ProfileEntry> profiles;
   std::vector<DeclaredEffect> effects;
+  std::vector<DeclaredEffect> own_effects;  // all that are not of the catalogue, by their names
+  std::vector<std::filesystem::path> beside;  // files it names that hold no profile
   std::optional<Runout> runout;
   TraceOptions trace;
   std::optional<Truth> truth;
@@ -101,6 +104,11 @@ Problem read_profiles_of_problem(
 /// Reads all profiles of a problem, in order, and tells which part of their bytes has been read.
 /// @throws DataError, UsageError
 std::vector<Profile> read_profiles(const Problem& problem, const ReadProgress& progress = {});
+
+/// The effects of a file that problems share (`effects = ["our-lathes.toml"]`): [[effect]] tables,
+/// each a formula with cause, source and typical size.
+/// @throws UsageError  as read_problem()
+std::vector<DeclaredEffect> read_effect_file(const std::filesystem::path& path);
 
 /// What was assumed because the problem file leaves it out, with what the profiles say.
 /// REQUIRES one profile per entry.

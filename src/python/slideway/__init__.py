@@ -11,9 +11,10 @@ the numbers `DataError`; both are `ValueError`. Results are those of the program
 
 from __future__ import annotations
 
+import inspect
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +30,7 @@ __all__ = [
     "ColumnRanking",
     "DataError",
     "Decomposition",
+    "Effect",
     "Report",
     "SimulatedProfile",
     "UsageError",
@@ -86,6 +88,58 @@ class SimulatedProfile:
     """shape (n,), in ``unit``"""
 
 
+Bounds = tuple[str, float, float]
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An effect of one's own: a function of arrays, looked for by the loop.
+
+    >>> Effect(lambda t, a, tau: a * (1 - np.exp(-t / tau)), {"a": "um", "tau": ("s", 1, 600)})
+
+    Arguments that are no parameters are variables: arrays of shape (n,) of r, x, X, z, R (mm), theta
+    (rad), t, m (s), k (turns), s (m), feed (mm/min), rpm. It returns shape (n,), um of a height; it
+    must give the same for the same arguments.
+    """
+
+    function: Callable[..., ArrayLike]
+    parameters: Mapping[str, str | Bounds]
+    """unit of what enters linearly, "um" or "urad", alone or by another; (unit, lower, upper) of
+    all else"""
+    cause: str = ""
+    source: str = ""
+    typical: str = ""
+
+
+def _effect(name: str, effect: Effect) -> tuple[
+    str,
+    Callable[..., ArrayLike],
+    list[str],
+    list[tuple[str, str, float | None, float | None]],
+    str,
+    str,
+    str,
+]:
+    arguments = list(inspect.signature(effect.function).parameters)
+    missing = [each for each in effect.parameters if each not in arguments]
+    if missing:
+        raise UsageError(f"effect {name!r}: the function has no argument {missing[0]!r}")
+    parameters: list[tuple[str, str, float | None, float | None]] = []
+    for each, about in effect.parameters.items():
+        unit, lower, upper = (about, None, None) if isinstance(about, str) else about
+        parameters.append((each, unit, lower, upper))
+    variables = [each for each in arguments if each not in effect.parameters]
+    return (
+        name,
+        effect.function,
+        variables,
+        parameters,
+        effect.cause,
+        effect.source,
+        effect.typical,
+    )
+
+
 Profiles = Mapping[str, tuple[ArrayLike, ArrayLike]]
 
 
@@ -99,13 +153,19 @@ def _analysed(
     data: str | os.PathLike[str] | None,
     ranks_only: bool,
     closes_loop: bool,
+    effects: Mapping[str, Effect] | None = None,
 ) -> Report:
     columns = {
         name: (np.asarray(position, float), np.asarray(value, float))
         for name, (position, value) in (profiles or {}).items()
     }
     document, text = _slideway.analyse(
-        source(problem), columns, _data_folder(data), ranks_only, closes_loop
+        source(problem),
+        columns,
+        _data_folder(data),
+        ranks_only,
+        closes_loop,
+        [_effect(name, effect) for name, effect in (effects or {}).items()],
     )
     report: Report = made(Report, json.loads(document) | {"text": text})
     return report
@@ -117,6 +177,7 @@ def identify(
     *,
     data: str | os.PathLike[str] | None = None,
     trace: bool = True,
+    effects: Mapping[str, Effect] | None = None,
 ) -> Report:
     """The main job: low band, ranking, fit, cross-check, and the closed loop.
 
@@ -130,10 +191,11 @@ def identify(
     :param data: what ``${SLIDEWAY_DATA}`` in the problem stands for; default: the environment
         variable
     :param trace: False stops before the closed loop
+    :param effects: effects of one's own that the loop looks for, by name
     :raises UsageError: the problem is wrong, or an argument
     :raises DataError: the numbers cannot be used
     """
-    return _analysed(problem, profiles, data, False, trace)
+    return _analysed(problem, profiles, data, False, trace, effects)
 
 
 def rank(

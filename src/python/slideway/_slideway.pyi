@@ -1,4 +1,5 @@
 import os
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,17 @@ def analyse(
     data: str | os.PathLike[str] | None,
     ranks_only: bool,
     closes_loop: bool,
+    effects: list[
+        tuple[
+            str,
+            Callable[..., Any],
+            list[str],
+            list[tuple[str, str, float | None, float | None]],
+            str,
+            str,
+            str,
+        ]
+    ],
 ) -> tuple[str, str]: ...
 def simulate(
     problem: str | dict[str, Any], seed: int | None, data: str | os.PathLike[str] | None

@@ -1,0 +1,250 @@
+#include "slideway/effects/channel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+
+#include "../linear_effect.hpp"
+#include "../variable_range.hpp"
+#include "numeric_derivative.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr double kLongestLag = 0.25;       // of the log
+constexpr double kSlowest = 2.0;           // times the log: a first-order lag that integrates
+constexpr double kFirstStep = 0.02;        // of a derivative, of the lag or of its range
+constexpr double kWidestGap = 0.2;         // of a profile's stretch on the clock
+constexpr double kOfTheEnds = 1e-9;        // rounding of where a log and a profile begin
+constexpr double kNormalMad = 1.4826;      // standard deviation over median absolute deviation
+constexpr double kSecondDifference = 6.0;  // its variance over that of white noise
+
+/// A quantity that is straight between its places, constant beyond them, after a first-order lag,
+/// and its integral.
+class Response {
+ public:
+  /// @param tau  0: no lag
+  Response(const Channel& channel, double tau) : channel_(channel), tau_(tau) {
+    const std::vector<double>&t = channel.at, &q = channel.values;
+    area_.push_back(0.0);
+    lagged_.push_back(q[0]);
+    for (std::size_t i = 1; i < t.size(); ++i) {
+      area_.push_back(area_.back() + 0.5 * (q[i] + q[i - 1]) * (t[i] - t[i - 1]));
+      lagged_.push_back(lagged_at(i - 1, t[i]));
+    }
+  }
+
+  [[nodiscard]] double value(double t) const {
+    if (t <= channel_.at.front()) return channel_.values.front();
+    return lagged_at(before(t), t);
+  }
+
+  /// Mean over [t - width/2, t + width/2].
+  [[nodiscard]] double mean(double t, double width) const {
+    if (!(width > 0.0)) return value(t);
+    return (integral(t + width / 2.0) - integral(t - width / 2.0)) / width;
+  }
+
+ private:
+  [[nodiscard]] std::size_t before(double t) const {
+    const auto after = std::ranges::upper_bound(channel_.at, t);
+    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - channel_.at.begin() - 1, 0));
+  }
+
+  [[nodiscard]] double slope(std::size_t i) const {
+    if (i + 1 >= channel_.at.size()) return 0.0;
+    return (channel_.values[i + 1] - channel_.values[i]) / (channel_.at[i + 1] - channel_.at[i]);
+  }
+
+  /// y from y_i on, where τ y' = q - y and q = q_i + c u: y = q - τ c + (y_i - q_i + τ c)
+  /// exp(-u/τ).
+  [[nodiscard]] double lagged_at(std::size_t i, double t) const {
+    const double u = t - channel_.at[i], c = slope(i), q = channel_.values[i] + c * u;
+    if (tau_ <= 0.0) return q;
+    return q - tau_ * c + (lagged_[i] - channel_.values[i] + tau_ * c) * std::exp(-u / tau_);
+  }
+
+  /// ∫ y = ∫ q - τ (y - y_0), as τ y' = q - y.
+  [[nodiscard]] double integral(double t) const {
+    const double first = channel_.at.front(), start = channel_.values.front();
+    if (t <= first) return start * (t - first);
+    const std::size_t i = before(t);
+    const double u = t - channel_.at[i];
+    const double area = area_[i] + u * (channel_.values[i] + 0.5 * slope(i) * u);
+    return area - tau_ * (lagged_at(i, t) - start);
+  }
+
+  const Channel& channel_;
+  double tau_;
+  std::vector<double> area_, lagged_;  // up to each place: ∫ q, and y there
+};
+
+std::string unit_of_clock(const Channel& channel) {
+  return channel.clock == IndependentVariable::slide ? "mm" : "s";
+}
+
+Description describe(const Channel& channel, const ChannelResponse& response) {
+  const std::string name = channel.name, t(symbol(channel.clock));
+  const std::string lag = response.free_lag || response.lag_s != 0.0 ? " - lag" : "";
+  std::string formula = "a q(" + t + lag + "), q the measured " + name;
+  if (response.free_tau || response.tau_s) formula += " after a first-order lag τ";
+  if (response.since_start) formula += ", from the start of the cut";
+  return {.name = response.name,
+          .standard_name = "a measured cause",
+          .formula = formula,
+          .source = "the log " + name,
+          .cause = name + " as it was logged",
+          .typical = "what the log and the size of the effect say",
+          .variable = channel.clock,
+          .measured = true};
+}
+
+std::vector<Parameter> parameters_of(const Channel& channel, const ChannelResponse& response) {
+  const double length = channel.at.back() - channel.at.front();
+  std::vector<Parameter> out{{"a", "a", "µm/(" + channel.unit + ")", 0.1}};
+  if (response.free_lag)
+    out.push_back(
+        {"lag_s", "lag", unit_of_clock(channel), length / 100.0, 0.0, kLongestLag * length});
+  if (response.free_tau)
+    out.push_back({"tau_s", "τ", unit_of_clock(channel), length / 10.0,
+                   length / static_cast<double>(channel.at.size()), kSlowest * length});
+  return out;
+}
+
+std::vector<Shape> shapes_of(const ChannelResponse& response) {
+  if (response.free_lag) return {{.parameter = 1}};
+  if (response.free_tau) return {{.parameter = 1, .logarithmic = true}};
+  return {};
+}
+
+class ChannelEffect : public LinearEffect {
+ public:
+  ChannelEffect(std::shared_ptr<const Channel> channel, const ChannelResponse& response)
+      : LinearEffect(describe(*channel, response), parameters_of(*channel, response),
+                     diagonal_map(1, kMicrometre), shapes_of(response)),
+        channel_(std::move(channel)),
+        response_(response) {}
+
+  [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_height(setup); }
+  [[nodiscard]] std::vector<std::string> lacking(const Setup& setup) const override;
+  void columns(const Stations& stations, std::span<const double> shape,
+               Eigen::Ref<Eigen::MatrixXd> out) const override;
+  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+                   Eigen::Ref<Eigen::MatrixXd> out) const override;
+  [[nodiscard]] double noise_share(const Stations& stations,
+                                   std::span<const double> shape) const override;
+
+ private:
+  [[nodiscard]] VariableReading reading() const {
+    return channel_->clock == IndependentVariable::slide            ? slide_of
+           : channel_->clock == IndependentVariable::measuring_time ? measuring_time_of
+                                                                    : time_of;
+  }
+  [[nodiscard]] double lag(std::span<const double> shape) const {
+    return response_.free_lag ? shape[0] : response_.lag_s;
+  }
+  [[nodiscard]] double tau(std::span<const double> shape) const {
+    return response_.free_tau ? shape[0] : response_.tau_s.value_or(0.0);
+  }
+
+  std::shared_ptr<const Channel> channel_;
+  ChannelResponse response_;
+};
+
+std::vector<std::string> ChannelEffect::lacking(const Setup& setup) const {
+  std::vector<std::string> keys = Effect::lacking(setup);
+  if (!keys.empty()) return keys;
+  std::vector<double> ends{setup.first_mm, setup.last_mm};
+  if (setup.kind == Kind::face && setup.first_mm < setup.center_mm &&
+      setup.center_mm < setup.last_mm)
+    ends.push_back(setup.center_mm);
+  const Machine machine(Machine::paper_lathe(), Lever::paper);
+  const VariableRange range = range_of({ends, setup, machine}, reading());
+  const double rounding = kOfTheEnds * range.extent();
+  const std::vector<double>& at = channel_->at;
+  const std::string where = " from " + significant(range.low, 5) + " to " +
+                            significant(range.high, 5) + " " + unit_of_clock(*channel_);
+  if (range.low < at.front() - rounding || range.high > at.back() + rounding)
+    return {"the log " + channel_->name + where + " (it has " + significant(at.front(), 5) +
+            " to " + significant(at.back(), 5) + ")"};
+  for (std::size_t i = 1; i < at.size(); ++i) {
+    const double gap = std::min(at[i], range.high) - std::max(at[i - 1], range.low);
+    if (gap > kWidestGap * range.extent())
+      return {"the log " + channel_->name + where + " without the gap at " +
+              significant(at[i - 1], 5)};
+  }
+  return {};
+}
+
+void ChannelEffect::columns(const Stations& stations, std::span<const double> shape,
+                            Eigen::Ref<Eigen::MatrixXd> out) const {
+  if (!applies_to(stations.setup())) return void(out.setZero());
+  const Response response(*channel_, tau(shape));
+  const VariableReading clock = reading();
+  const double width = range_of(stations, clock).step, later = lag(shape);
+  const double start =
+      response_.since_start ? response.value(stations.setup().start_s - later) : 0.0;
+  for (Eigen::Index i = 0; i < stations.size(); ++i)
+    out(i, 0) = response.mean(clock(stations, i) - later, width) - start;
+}
+
+void ChannelEffect::derivatives(const Stations& stations, std::span<const double> shape, int which,
+                                Eigen::Ref<Eigen::MatrixXd> out) const {
+  if (!applies_to(stations.setup())) return void(out.setZero());
+  const auto at = [&](double value) {
+    Eigen::MatrixXd result(out.rows(), out.cols());
+    columns(stations, std::array{value}, result);
+    return result;
+  };
+  const Parameter& parameter = parameters()[1];
+  const double step = kFirstStep * (shapes()[static_cast<std::size_t>(which)].logarithmic
+                                        ? shape[0]
+                                        : parameter.upper - parameter.lower);
+  out = numeric_derivative(at, shape[0], step, parameter.lower, parameter.upper).value;
+}
+
+// White noise of the log, averaged over the spacing of the stations and over τ, beside the variance
+// of the columns.
+double ChannelEffect::noise_share(const Stations& stations, std::span<const double> shape) const {
+  Eigen::MatrixXd column(stations.size(), 1);
+  columns(stations, shape, column);
+  const Eigen::VectorXd centred = column.col(0).array() - column.mean();
+  const double variance = centred.squaredNorm() / static_cast<double>(centred.size());
+  const double spacing =
+      (channel_->at.back() - channel_->at.front()) / static_cast<double>(channel_->at.size() - 1);
+  const double averaged =
+      std::max(1.0, (range_of(stations, reading()).step + 2.0 * tau(shape)) / spacing);
+  const double noise = noise_of(*channel_);
+  return variance > 0.0 ? std::min(1.0, noise * noise / averaged / variance) : 0.0;
+}
+
+}  // namespace
+
+double noise_of(const Channel& channel) {
+  std::vector<double> differences;
+  for (std::size_t i = 1; i + 1 < channel.values.size(); ++i)
+    differences.push_back(
+        std::abs(channel.values[i - 1] - 2.0 * channel.values[i] + channel.values[i + 1]));
+  if (differences.empty()) return 0.0;
+  const auto middle = differences.begin() + std::ssize(differences) / 2;
+  std::ranges::nth_element(differences, middle);
+  return kNormalMad * *middle / std::sqrt(kSecondDifference);
+}
+
+EffectFactory channel_effect(Channel channel, const ChannelResponse& response) {
+  if (channel.at.size() < 3 || channel.at.size() != channel.values.size())
+    throw UsageError("channel '" + channel.name + "' has fewer than three values");
+  if (std::ranges::adjacent_find(channel.at, std::ranges::greater_equal()) != channel.at.end())
+    throw UsageError("channel '" + channel.name + "' does not increase on its clock");
+  if (response.free_lag && response.free_tau)
+    throw UsageError("a free lag_s and a free tau_s; accepted: one of the two free");
+  auto shared = std::make_shared<const Channel>(std::move(channel));
+  return [shared, response](const Machine&, const TravelRange&) {
+    return std::make_unique<ChannelEffect>(shared, response);
+  };
+}
+
+}  // namespace slideway

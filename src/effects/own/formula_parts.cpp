@@ -1,0 +1,226 @@
+#include "formula_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "../variable_range.hpp"
+#include "formula_probes.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::size_t kFewestFinite = 20;    // of the places a formula is tried at
+constexpr double kLogarithmic = 10.0;        // upper over lower, from which a shape is searched so
+constexpr std::size_t kMostParameters = 12;  // of one formula
+
+/// Of a trace on the workpiece, from the mark of azimuth_deg; the other half of a diameter lies
+/// half a turn further.
+double azimuth_of(const Stations& stations, Eigen::Index i) {
+  constexpr double kHalfTurn = 180.0;
+  return stations.setup().azimuth_deg * kPi / kHalfTurn + (stations.trace(i) < 0.0 ? kPi : 0.0);
+}
+
+std::vector<std::string> names_of(const Formula& formula) {
+  std::vector<std::string> names;
+  for (const FormulaVariable& variable : formula_variables()) names.emplace_back(variable.name);
+  for (const FormulaParameter& parameter : formula.parameters) {
+    const std::string& name = parameter.name;
+    const std::string what = "parameter '" + printable(name) + "' ";
+    if (!is_identifier(name))
+      throw UsageError(what + "is no name; accepted: a letter, then letters, digits, _");
+    if (is_word_of_expressions(name) || std::ranges::count(names, name) > 0)
+      throw UsageError(what + "has a name that is taken; accepted: none of " + joined(names, " ") +
+                       " pi, nor a function");
+    names.push_back(name);
+  }
+  if (formula.parameters.size() > kMostParameters)
+    throw UsageError("more than " + std::to_string(kMostParameters) + " parameters");
+  return names;
+}
+
+/// Where a name stands in a formula; its end if it does not.
+std::size_t place_of(const std::string& name, const std::string& text) {
+  const auto is_part = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+  };
+  for (std::size_t at = 0; (at = text.find(name, at)) != std::string::npos; ++at)
+    if ((at == 0 || !is_part(text[at - 1])) &&
+        (at + name.size() >= text.size() || !is_part(text[at + name.size()])))
+      return at;
+  return text.size();
+}
+
+/// "um/min" without what follows the first unit.
+std::string numerator(const std::string& unit) { return unit.substr(0, unit.find_first_of("/* ")); }
+
+bool is_one_of(const std::string& word, std::initializer_list<const char*> list) {
+  return std::ranges::count(list, word) > 0;
+}
+
+std::string symbol_of_unit(std::string unit) {
+  if (unit.starts_with("um")) return "µm" + unit.substr(2);
+  if (unit.starts_with("urad")) return "µrad" + unit.substr(4);
+  return unit;
+}
+
+}  // namespace
+
+bool is_identifier(const std::string& text) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  return !text.empty() && is_letter(text[0]) && std::ranges::all_of(text, [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+bool is_logarithmic(double lower, double upper) {
+  return lower > 0.0 && upper >= kLogarithmic * lower;
+}
+
+const std::vector<FormulaVariable>& formula_variables() {
+  using enum IndependentVariable;
+  static const std::vector<FormulaVariable> kAll{
+      {"r", radius_of, radius, true},
+      {"x", slide_of, slide},
+      {"X", [](const Stations& s, Eigen::Index i) { return s.trace(i); }, trace},
+      {"z", [](const Stations& s, Eigen::Index) { return s.setup().z_mm; }, std::nullopt},
+      {"theta", azimuth_of, std::nullopt, true},
+      {"t", time_of, time},
+      {"m", measuring_time_of, measuring_time},
+      {"k", revolution_of, revolution},
+      {"s", distance_m_of, distance, true},
+      {"R", [](const Stations& s, Eigen::Index) { return s.setup().cut_radius_mm.value_or(0.0); },
+       std::nullopt, true, "cut_radius_mm",
+       [](const Setup& setup) { return setup.cut_radius_mm.has_value(); }},
+      {"feed",
+       [](const Stations& s, Eigen::Index) { return s.setup().feed_mm_per_min.value_or(0.0); },
+       std::nullopt, false, "feed_mm_per_min",
+       [](const Setup& setup) { return setup.feed_mm_per_min.has_value(); }},
+      {"rpm", [](const Stations& s, Eigen::Index) { return s.setup().spindle_rpm.value_or(0.0); },
+       std::nullopt, false, "spindle_rpm",
+       [](const Setup& setup) { return setup.spindle_rpm.has_value(); }}};
+  return kAll;
+}
+
+FormulaParts::FormulaParts(const Formula& formula)
+    : formula_(formula),
+      expression_(formula.function ? Expression(formula, names_of(formula))
+                                   : Expression(formula.text, names_of(formula))) {
+  if (variables().empty())
+    throw UsageError("column 1: no variable: the effect is the same everywhere; accepted: " +
+                     std::string("r x X z theta t m k s R feed rpm"));
+  sort_parameters();
+  check_units();
+  describe_parameters();
+}
+
+void FormulaParts::refuse(const std::string& name, const std::string& what) const {
+  if (formula_.function) throw UsageError("'" + name + "' " + what);
+  const std::size_t at = place_of(name, formula_.text);
+  throw UsageError("column " + std::to_string(at + 1) + ": '" + name + "' " + what);
+}
+
+void FormulaParts::sort_parameters() {
+  const std::size_t first = formula_variables().size();
+  for (std::size_t p = 0; p < formula_.parameters.size(); ++p)
+    if (!expression_.uses(first + p))
+      throw UsageError("parameter '" + formula_.parameters[p].name + "' is not in the formula");
+  FormulaProbes probes(formula_, expression_);
+  if (probes.finite() < kFewestFinite)
+    throw UsageError("column 1: the formula is not finite, wherever it is tried");
+  std::vector<std::size_t> linear;
+  // Those with bounds last: of two factors, the other one is the size.
+  for (const bool bounded : {false, true})
+    for (std::size_t p = 0; p < formula_.parameters.size(); ++p) {
+      if ((formula_.parameters[p].lower || formula_.parameters[p].upper) != bounded) continue;
+      linear.push_back(p);
+      if (!probes.are_linear(linear)) linear.pop_back();
+    }
+  std::ranges::sort(linear);
+  if (linear.empty())
+    throw UsageError(
+        "column 1: no parameter enters linearly; accepted: a * (...), with the size a");
+  if (!probes.vanishes_without(linear))
+    refuse(formula_.parameters[linear.front()].name,
+           "is the size, and something is left of the formula where it is 0; accepted: an "
+           "amplitude before every part");
+  for (std::size_t p = 0; p < formula_.parameters.size(); ++p) {
+    const FormulaParameter& parameter = formula_.parameters[p];
+    const bool is_amplitude = std::ranges::count(linear, p) > 0;
+    (is_amplitude ? amplitudes_ : shapes_).push_back(first + p);
+    if (is_amplitude) continue;
+    if (!parameter.lower || !parameter.upper)
+      refuse(parameter.name, "does not enter linearly: it needs lower and upper, to be searched");
+    if (probes.moves_a_jump(p))
+      refuse(parameter.name,
+             "moves a jump, or does nothing; accepted: a formula that changes smoothly with it, "
+             "as 1/(1 + exp((r - r0)/w)) for a step");
+  }
+}
+
+void FormulaParts::check_units() {
+  const std::size_t first = formula_variables().size();
+  std::vector<bool> is_slope;
+  for (const std::size_t place : amplitudes_) {
+    const FormulaParameter& parameter = formula_.parameters[place - first];
+    const std::string size = numerator(parameter.unit);
+    if (!is_one_of(size, {"um", "urad"}))
+      refuse(parameter.name, "enters linearly, in \"" + printable(parameter.unit) +
+                                 "\"; accepted: um, or urad where the formula is of slopes, "
+                                 "alone or by another unit, as um/min");
+    is_slope.push_back(size == "urad");
+    if (is_slope.back() != is_slope.front())
+      refuse(parameter.name, "is in \"" + parameter.unit + "\", another size is not; accepted: " +
+                                 "all in um or all in urad");
+  }
+  quantity_ = is_slope.front() ? Quantity::slope : Quantity::height;
+}
+
+void FormulaParts::describe_parameters() {
+  constexpr double kOrdinary = 0.1;  // µm
+  const std::size_t first = formula_variables().size();
+  for (const std::vector<std::size_t>* places : {&amplitudes_, &shapes_})
+    for (const std::size_t place : *places) {
+      const FormulaParameter& from = formula_.parameters[place - first];
+      Parameter to{from.name, from.name, symbol_of_unit(from.unit), kOrdinary};
+      if (from.lower) to.lower = *from.lower;
+      if (from.upper) to.upper = *from.upper;
+      if (places == &shapes_)
+        to.scale = is_logarithmic(to.lower, to.upper) ? std::sqrt(to.lower * to.upper)
+                                                      : 0.5 * (to.upper - to.lower);
+      parameters_.push_back(std::move(to));
+    }
+}
+
+std::vector<const FormulaVariable*> FormulaParts::variables() const {
+  std::vector<const FormulaVariable*> out;
+  for (std::size_t i = 0; i < formula_variables().size(); ++i)
+    if (expression_.uses(i)) out.push_back(&formula_variables()[i]);
+  return out;
+}
+
+std::vector<std::vector<double>> FormulaParts::readings(const Stations& stations) const {
+  std::vector<std::vector<double>> out(formula_variables().size());
+  for (std::size_t v = 0; v < out.size(); ++v)
+    for (Eigen::Index i = 0; expression_.uses(v) && i < stations.size(); ++i)
+      out[v].push_back(formula_variables()[v].read(stations, i));
+  return out;
+}
+
+void FormulaParts::set_station(const Stations& stations, Eigen::Index i,
+                               std::span<double> values) const {
+  for (std::size_t v = 0; v < formula_variables().size(); ++v)
+    if (expression_.uses(v)) values[v] = formula_variables()[v].read(stations, i);
+}
+
+void FormulaParts::set_amplitude(std::size_t one, std::span<double> values) const {
+  for (std::size_t j = 0; j < amplitudes_.size(); ++j)
+    values[amplitudes_[j]] = j == one ? 1.0 : 0.0;
+}
+
+void FormulaParts::set_shapes(std::span<const double> shape, std::span<double> values) const {
+  for (std::size_t s = 0; s < shapes_.size(); ++s) values[shapes_[s]] = shape[s];
+}
+
+}  // namespace slideway

@@ -1,0 +1,105 @@
+#include "problem_channel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "problem_own.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/base/units.hpp"
+#include "slideway/effects/formula.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::string_view kTimeUnits = "s min h";
+constexpr std::size_t kMostValues = 20000;  // of a log; more are kept as means
+
+std::optional<double> seconds(std::string_view unit) {
+  if (unit == "s") return 1.0;
+  if (unit == "min") return kMinute;
+  if (unit == "h") return kMinute * kMinute;
+  return std::nullopt;
+}
+
+/// What a place in the file is in s, or in mm.
+double scale_of_places(const Section& section, const Channel& channel, const TraceFile& file) {
+  const bool is_slide = channel.clock == IndependentVariable::slide;
+  const std::string accepted(is_slide ? kLengthUnits : kTimeUnits);
+  std::optional<std::string> unit = section.one_of("time_unit", accepted);
+  if (!unit && file.states_units) unit = file.trace.position_unit;
+  if (!unit) section.missing("time_unit", accepted);
+  if (!is_slide && seconds(*unit)) return *seconds(*unit);
+  if (is_slide && length_unit(*unit)) return (*length_unit(*unit))(1.0);
+  section.fail("time_unit", "the file has " + *unit + "; accepted: " + accepted);
+}
+
+/// Missing values left out, those of one time and those there are too many of as means.
+void take(const TraceFile& file, double scale, Channel& channel) {
+  const Trace& trace = file.trace;
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t i = 0; i < trace.positions.size(); ++i)
+    if (std::isfinite(trace.positions[i]) && std::isfinite(trace.values[i]))
+      points.emplace_back(trace.positions[i] * scale, trace.values[i]);
+  std::ranges::stable_sort(points, {}, &std::pair<double, double>::first);
+  const std::size_t most = points.size() / kMostValues + 1;
+  for (std::size_t i = 0; i < points.size();) {
+    double at = 0.0, value = 0.0, count = 0.0;
+    const std::size_t first = i;
+    const auto belongs = [&] {
+      return i < points.size() && (i < first + most || points[i].first == points[i - 1].first);
+    };
+    for (; belongs(); ++i, ++count) {
+      at += points[i].first;
+      value += points[i].second;
+    }
+    channel.at.push_back(at / count);
+    channel.values.push_back(value / count);
+  }
+}
+
+Channel read_channel(const Section& section, const ProblemRules& rules, Problem& problem) {
+  section.accept("name file time_column time_unit value_column value_unit clock");
+  Channel channel;
+  channel.name = section.required("name", section.text("name"), "a name of its own");
+  if (!is_identifier(channel.name))
+    section.fail("name", "'" + channel.name +
+                             "' is no name; accepted: a letter, then letters, "
+                             "digits, _");
+  const std::string clock = section.one_of("clock", "t m x").value_or("t");
+  channel.clock = clock == "x"   ? IndependentVariable::slide
+                  : clock == "m" ? IndependentVariable::measuring_time
+                                 : IndependentVariable::time;
+  channel.unit = section.text("value_unit").value_or("unit of the log");
+  TraceRequest request;
+  request.position_column = section.column("time_column").value_or(request.position_column);
+  request.value_column = section.column("value_column").value_or(request.value_column);
+  const std::filesystem::path path =
+      resolved(section, "file", section.required("file", section.text("file"), "a path"), rules);
+  const TraceFile file = read_trace(path, request);
+  take(file, scale_of_places(section, channel, file), channel);
+  problem.beside.push_back(path);
+  return channel;
+}
+
+}  // namespace
+
+std::vector<Channel> read_channels(const Section& root, const ProblemRules& rules,
+                                   Problem& problem) {
+  std::vector<Channel> out;
+  for (const Section& section : root.tables("channel")) {
+    out.push_back(read_channel(section, rules, problem));
+    const std::string& name = out.back().name;
+    check_name_is_free(section, "name", name, problem.own_effects);
+    try {
+      // What the loop asks of every log: the quantity, or what follows it slowly.
+      problem.own_effects.push_back(
+          {name, {.own = channel_effect(out.back(), {.name = name, .free_tau = true})}, {}});
+    } catch (const UsageError& error) {
+      section.fail("file", error.what());
+    }
+  }
+  return out;
+}
+
+}  // namespace slideway

@@ -1,0 +1,139 @@
+// Effects nobody shipped and causes somebody measured, looked for by the loop in faces that the
+// process made.
+#include <cmath>
+
+#include "slideway/effects/channel.hpp"
+#include "slideway/effects/formula.hpp"
+#include "slideway/trace/confounding.hpp"
+#include "trace/faces.hpp"
+
+namespace slideway {
+namespace {
+
+using namespace faces;  // NOLINT(google-build-using-namespace)
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::Field;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+constexpr double kSize = 0.4e-3;               // mm: 40 times the noise
+constexpr double kStart = 40.0, kRate = 60.0;  // s: when the coolant comes, how fast it tells
+
+/// Coolant that is switched on in every cut.
+turning::Hidden coolant() {
+  return {"coolant", [](const turning::ToolPoint& tool) {
+            return kSize * (1.0 - std::exp(-std::max(tool.t - kStart, 0.0) / kRate));
+          }};
+}
+
+DeclaredEffect coolant_formula() {
+  return {"coolant",
+          {.own = formula_effect(
+               {.name = "coolant",
+                .text = "a * (1 - exp(-max(t - t0, 0) / tau))",
+                .parameters = {{"a", "um"}, {"t0", "s", 0.0, 100.0}, {"tau", "s", 5.0, 600.0}}})},
+          {}};
+}
+
+TEST(OwnEffect, ThatTheLoopIsAskedForIsNamedWithItsParameters) {
+  Problem problem = problem_of();
+  problem.trace.own = problem.own_effects = {coolant_formula()};
+  const Closed result = closed(problem, quarter_faces(coolant(), 3, kBlunt, 11));
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ElementsAre("coolant"));
+  const TraceRound* round = round_of(result, "coolant");
+  ASSERT_NE(round, nullptr);
+  expect_within_4u(round->parameters, "coolant.a", kSize / kMicrometre);
+  expect_within_4u(round->parameters, "coolant.t0", kStart);
+  expect_within_4u(round->parameters, "coolant.tau", kRate);
+}
+
+TEST(OwnEffect, IsNotNamedInAFaceThatDoesNotHaveIt) {
+  Problem problem = problem_of();
+  problem.trace.own = problem.own_effects = {coolant_formula()};
+  const Closed result = closed(problem, quarter_faces({}, 3, kBlunt, 12));
+  EXPECT_THAT(named(result), IsEmpty());
+  EXPECT_THAT(result.detection_limits, Contains(Field(&DetectionLimit::effect, "coolant")));
+}
+
+/// What a sensor logged of a spindle that warms with two time constants, coolant from 250 s on.
+double temperature(double t) {
+  return 20.0 + 2.0 * (1.0 - std::exp(-t / 45.0)) + 3.0 * (1.0 - std::exp(-t / 400.0)) -
+         (t > 250.0 ? 1.5 * (1.0 - std::exp(-(t - 250.0) / 30.0)) : 0.0);
+}
+
+std::vector<Profile> warm_faces(std::uint64_t seed) {
+  return quarter_faces(
+      {"warm",
+       [](const turning::ToolPoint& tool) { return 0.2e-3 * (temperature(tool.t) - 20.0); }},
+      3, kBlunt, seed);
+}
+
+DeclaredEffect logged() {
+  Channel log{.name = "spindle_temperature", .unit = "degC"};
+  RandomStream random(5, "sensor");
+  for (int i = 0; i <= 400; ++i) {
+    log.at.push_back(i);
+    log.values.push_back(temperature(i) + 0.01 * random.normal());
+  }
+  return {log.name, {.own = channel_effect(log, {.name = log.name, .free_tau = true})}, {}};
+}
+
+TEST(OwnEffect, ThatWasMeasuredIsNamedWhereNoLawFits) {
+  Problem problem = problem_of();
+  EXPECT_THAT(named(closed(problem, warm_faces(21))), Not(Contains("spindle_temperature")));
+  problem.trace.own = problem.own_effects = {logged()};
+  const Closed result = closed(problem, warm_faces(21));
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ElementsAre("spindle_temperature"));
+  const TraceRound* round = round_of(result, "spindle_temperature");
+  ASSERT_NE(round, nullptr);
+  expect_within_4u(round->parameters, "spindle_temperature.a", 0.2);
+}
+
+/// A log that rises evenly: a linear drift fits as well, and nobody measured that.
+TEST(OwnEffect, ThatWasMeasuredOutranksADriftThatFitsAsWell) {
+  Channel log{.name = "room_temperature", .unit = "degC"};
+  for (int i = 0; i <= 400; ++i) {
+    log.at.push_back(i);
+    log.values.push_back(20.0 + 0.002 * i);
+  }
+  const turning::Hidden drift{
+      "drift", [](const turning::ToolPoint& tool) { return 0.5e-3 * 0.002 * tool.t; }};
+  Problem problem = problem_of();
+  problem.trace.own =
+      problem.own_effects = {{log.name, {.own = channel_effect(log, {.name = log.name})}, {}}};
+  const Closed result = closed(problem, quarter_faces(drift, 3, kBlunt, 31));
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ElementsAre("room_temperature"));
+  const TraceRound* round = round_of(result, "room_temperature");
+  ASSERT_NE(round, nullptr);
+  EXPECT_THAT(round->ambiguous_with, IsEmpty());
+  EXPECT_THAT(result.notes, Contains(::testing::HasSubstr("linear_drift")));
+}
+
+// One cut: a drift and a cone are one column; two feeds tell them apart.
+TEST(OwnEffect, IsHeldAgainstTheCatalogueByItsColumns) {
+  Problem problem = problem_of();
+  problem.own_effects = {
+      {"rise",
+       {.own = formula_effect({.name = "rise", .text = "a * t", .parameters = {{"a", "um/s"}}})},
+       {}}};
+  const auto of = [](const Confounding& confounding, const std::string& effect) {
+    for (const Lookalike& each : confounding.lookalikes)
+      if (each.effect == effect) return each;
+    return Lookalike{};
+  };
+  const std::vector<Profile> faces = quarter_faces({}, 3, kBlunt, 41);
+  const Confounding one = confounding_of(problem, {faces[0]}).front();
+  EXPECT_NEAR(of(one, "linear_drift").share, 1.0, 1e-6);
+  EXPECT_NEAR(of(one, "squareness").share, 1.0, 1e-6);
+  const Confounding all = confounding_of(problem, faces).front();
+  EXPECT_NEAR(of(all, "linear_drift").share, 1.0, 1e-6);
+  EXPECT_LT(of(all, "squareness").share, 0.5);
+  EXPECT_NEAR(of(all, "squareness").largest_alone, 1.0, 1e-6);
+}
+
+}  // namespace
+}  // namespace slideway
