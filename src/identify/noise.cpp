@@ -133,7 +133,8 @@ Noise::Noise(const ExponentialMixture& covariance, Eigen::Index n, std::vector<d
       values_(n),
       stations_(std::move(stations)),
       factor_(covariance.is_white() ? nullptr
-                                    : std::make_shared<const MixtureFactor>(factored(covariance))) {}
+                                    : std::make_shared<const MixtureFactor>(factored(covariance))) {
+}
 
 MixtureFactor Noise::factored(const ExponentialMixture& covariance) const {
   return stations_.empty() ? MixtureFactor(covariance, values_)

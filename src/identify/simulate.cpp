@@ -136,7 +136,8 @@ void copy_beside(const Problem& problem, const std::filesystem::path& directory)
   for (const std::filesystem::path& path : problem.beside) {
     const std::string name = path.filename().string();
     if (std::ranges::count(taken, name) > 0)
-      throw UsageError(path.string() + ": another file that is written has its name; accepted: "
+      throw UsageError(path.string() +
+                       ": another file that is written has its name; accepted: "
                        "files with names of their own");
     taken.push_back(name);
     write_file(directory / name, std::string(FileBytes(path).text()));

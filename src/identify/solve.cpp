@@ -24,7 +24,7 @@ ceres::Solver::Options solver_options() {
   options.gradient_tolerance = 1e-14;
   options.parameter_tolerance = 1e-13;
   options.initial_trust_region_radius = 1e16;  // one undamped step solves a linear problem
-  options.max_trust_region_radius = 1e16;  // beyond it rounding moves along null directions
+  options.max_trust_region_radius = 1e16;      // beyond it rounding moves along null directions
   options.max_num_consecutive_invalid_steps = 100;  // at the optimum a step is rounding
   return options;
 }

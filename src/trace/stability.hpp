@@ -18,8 +18,8 @@ struct Stability {
 /// Resamples: each profile left out, alternate blocks of a sixteenth and an eighth of each profile
 /// left out, either half, and noise drawn anew on what the effect makes. A profile counts as left
 /// out only if it is not the only one that shows the effect. Each resample chooses the candidate of
-/// least BIC at the shapes all data gave, and this effect if none is better by Gates::tie_bic; gains
-/// are scaled to the number of all rows.
+/// least BIC at the shapes all data gave, and this effect if none is better by Gates::tie_bic;
+/// gains are scaled to the number of all rows.
 Stability stability(const SearchRound& round, const TestedCandidate& effect, const Gates& gates);
 
 }  // namespace slideway

@@ -126,9 +126,9 @@ inline ModelResult sample_fit() {
   fit.nuisances[0].at_bound = true;
   fit.correlations = {{"straightness.b2", "straightness.b3", -0.97}};
   fit.identifiability = sample_identifiability();
-  fit.noise = {
-      {"feed2", NoiseScaling::refuted, true, 4.5, 0.012, std::nullopt, 0.31, 140.0, 0.42},
-      {sample_inputs()[1].name, NoiseScaling::declared, false, std::nullopt, std::nullopt, 1.5, 0.0, 20.0, 0.5}};
+  fit.noise = {{"feed2", NoiseScaling::refuted, true, 4.5, 0.012, std::nullopt, 0.31, 140.0, 0.42},
+               {sample_inputs()[1].name, NoiseScaling::declared, false, std::nullopt, std::nullopt,
+                1.5, 0.0, 20.0, 0.5}};
   fit.contributions = {{"squareness", "feed2", 0.4, std::nullopt, 0.9},
                        {"straightness", sample_inputs()[1].name, std::nullopt, 1.25, 0.1}};
   fit.residuals = {{"feed2", Role::fit, 0.1, 0.45, {}, {}},

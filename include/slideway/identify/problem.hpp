@@ -75,7 +75,7 @@ struct Problem {
   LowBandOptions low_band;    // of profiles without one of their own
   std::vector<ProfileEntry> profiles;
   std::vector<DeclaredEffect> effects;
-  std::vector<DeclaredEffect> own_effects;  // all that are not of the catalogue, by their names
+  std::vector<DeclaredEffect> own_effects;    // all that are not of the catalogue, by their names
   std::vector<std::filesystem::path> beside;  // files it names that hold no profile
   std::optional<Runout> runout;
   TraceOptions trace;

@@ -33,7 +33,7 @@ struct Uncertainty {
   Eigen::MatrixXd covariance;                // r by r, of w, before the inflation
   double inflation = 1.0;                    // of all variances
   std::vector<Eigen::MatrixXd> information;  // G_i, r by r, per fitted observation
-  std::vector<double> size_freedom;                // per fitted observation; 0: its size is known
+  std::vector<double> size_freedom;          // per fitted observation; 0: its size is known
   std::vector<Eigen::MatrixXd> nuisance_covariances;  // levelling, per fitted observation
 
   /// Adds a covariance of (amplitudes, shapes), whatever the inflation.

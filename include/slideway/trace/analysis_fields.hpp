@@ -94,14 +94,14 @@ inline constexpr auto kRecord<Fragile> =
            field("verdict", &Fragile::verdict));
 
 template <>
-inline constexpr auto kRecord<SharedResidual> = record(
-    "SharedResidual", "What traces of different surfaces by one instrument have in common.",
-    field("profiles", &SharedResidual::profiles),
-    field("correlation", &SharedResidual::correlation, "of their residuals"),
-    field("rms_um", &SharedResidual::rms_um, "of what they share"),
-    field("rms_urad", &SharedResidual::rms_urad),
-    field("p_value", &SharedResidual::p_value, "of as much by chance"),
-    field("significant", &SharedResidual::significant, "then it is the instrument's error"));
+inline constexpr auto kRecord<SharedResidual> =
+    record("SharedResidual", "What traces of different surfaces by one instrument have in common.",
+           field("profiles", &SharedResidual::profiles),
+           field("correlation", &SharedResidual::correlation, "of their residuals"),
+           field("rms_um", &SharedResidual::rms_um, "of what they share"),
+           field("rms_urad", &SharedResidual::rms_urad),
+           field("p_value", &SharedResidual::p_value, "of as much by chance"),
+           field("significant", &SharedResidual::significant, "then it is the instrument's error"));
 
 template <>
 inline constexpr auto kRecord<TraceResult> = record(

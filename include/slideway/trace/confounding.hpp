@@ -19,7 +19,7 @@ struct Lookalike {
 /// What the design of a problem, no value of a profile, says of one of its own effects.
 struct Confounding {
   std::string effect;
-  std::string needs;                   // what it cannot be looked for without; "": nothing
+  std::string needs;                  // what it cannot be looked for without; "": nothing
   std::vector<Lookalike> lookalikes;  // those of 0.9 and more, in all profiles or in one
 };
 
