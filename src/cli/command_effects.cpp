@@ -163,7 +163,7 @@ class EffectsCommand : public ReportCommand {
     if (!is_file()) listed_ = catalogue();
     if (is_file()) listed_ = in_file(effect_);
     if (!problem_.empty()) add_problem();
-    if (!effect_.empty() && !is_file()) choose();
+    if (is_named_ && !is_file()) choose();
     report([this] { return text(); }, [this] { return json(); });
     return kDone;
   }
@@ -171,9 +171,10 @@ class EffectsCommand : public ReportCommand {
  private:
   [[nodiscard]] bool is_file() const { return effect_.ends_with(".toml"); }
 
-  void check(const boost::program_options::variables_map& /*given*/) override {
+  void check(const boost::program_options::variables_map& given) override {
+    is_named_ = given.count("NAME") > 0;
     if (is_file() && !problem_.empty()) fail("a file and --problem; accepted: one of the two");
-    if (!effect_.empty() && !is_file() && problem_.empty()) {
+    if (is_named_ && !is_file() && problem_.empty()) {
       listed_ = catalogue();
       choose();
     }
@@ -204,7 +205,7 @@ class EffectsCommand : public ReportCommand {
     std::string all;
     for (const Listed& each : listed_) {
       if (!all.empty()) all += '\n';
-      const bool in_full = !effect_.empty() || each.design;
+      const bool in_full = is_named_ || each.design;
       all += in_full ? entry_of(*each.effect) : line_of(*each.effect);
       if (each.design) all += design_of(*each.design);
     }
@@ -222,6 +223,7 @@ class EffectsCommand : public ReportCommand {
   }
 
   std::string effect_, problem_, data_;
+  bool is_named_ = false;
   std::vector<Listed> listed_;
 };
 

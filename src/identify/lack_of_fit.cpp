@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ranges>
 
 #include "slideway/base/distribution.hpp"
 #include "slideway/identify/identifiability.hpp"
@@ -110,9 +109,8 @@ LackOfFit judged(double found, const std::vector<double>& shares,
   LackOfFit out{0.0, 0.0};
   double expected = 0.0;
   for (double done = 0.0; done < 1.0;) {
-    const bool last =
-        std::ranges::all_of(std::views::iota(std::size_t{0}, pools.size()),
-                            [&](std::size_t k) { return at[k] + 1 == pools[k].size(); });
+    bool last = true;
+    for (std::size_t k = 0; k < pools.size(); ++k) last = last && at[k] + 1 == pools[k].size();
     const double next = last ? 1.0 : std::ranges::min(until);
     Moments sum;
     for (std::size_t k = 0; k < pools.size(); ++k) sum += pools[k][at[k]].square;

@@ -17,7 +17,7 @@ constexpr int kCoarse = 4;                 // finest steps of the first search
 constexpr double kLongestTexture = 0.125;  // of a trace
 constexpr double kPlausible = 6.0;         // of -2 ln probability: 5 % of the best
 constexpr double kAllowed = 14.0;          // of the same: 0.1 % of the best
-constexpr double kWorthNeighbours = 4.0;   // of the same: 14 % of the best
+constexpr double kWorthNeighbours = 2.5;   // of the same: 30 % of the best
 
 double size_at(int index) { return std::pow(10.0, 0.125 * (index - 1) - 2.5); }
 double length_at(int index) { return std::exp2(0.25 * index); }
@@ -26,7 +26,10 @@ double slope_at(int index) { return 1.0 + 0.125 * index; }
 /// -2 ln of the prior: a texture of any kind is as probable as none, a long memory of any kind is
 /// Gates::memory_odds times as probable as none.
 double prior_cost(const MemoryPlace& place, double memory_odds) {
-  const auto coarse = [](int count) { return static_cast<double>((count - 1) / kCoarse + 1); };
+  const auto coarse = [](int count) {
+    const int steps = (count - 1) / kCoarse;
+    return static_cast<double>(steps + 1);
+  };
   double places = 1.0;
   if (place.texture > 0) places *= coarse(kSizes) * coarse(kLengths);
   if (place.memory > 0) places *= coarse(kSizes) * coarse(kSlopes) / memory_odds;

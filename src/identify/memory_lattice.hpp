@@ -1,8 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <compare>
 #include <map>
+#include <tuple>
 #include <vector>
 
 #include "restricted_likelihood.hpp"
@@ -14,7 +14,11 @@ struct MemoryPlace {
   int texture = 0, length = 0;  // size and length of a noise with one exponential
   int memory = 0, slope = 0;    // size and exponent of a long memory
 
-  auto operator<=>(const MemoryPlace&) const = default;
+  bool operator==(const MemoryPlace&) const = default;
+  bool operator<(const MemoryPlace& other) const {
+    return std::tie(texture, length, memory, slope) <
+           std::tie(other.texture, other.length, other.memory, other.slope);
+  }
 };
 
 /// I + g T + h K of a trace of n values there; the memory reaches from two values to `traces`

@@ -10,6 +10,8 @@
 namespace slideway {
 namespace {
 
+constexpr double kLeastShare =
+    0.05;                          // of the most probable noise: others move a variance by chance
 constexpr double kInfinite = 1e6;  // degrees of freedom: above it k is 2, and they are rounding
 
 /// Information of one profile on w under another noise, its nuisances eliminated.
@@ -33,11 +35,15 @@ Eigen::MatrixXd spread_of_noises(const std::vector<std::size_t>& members,
                                  const std::vector<Noise>& noise, const Linearisation& linear,
                                  const Uncertainty& at_best) {
   const Eigen::Index r = at_best.basis.cols();
-  const std::size_t count = noise[members.front()].alternatives.size();
+  const std::vector<Noise::Alternative>& allowed = noise[members.front()].alternatives;
+  const double least =
+      kLeastShare * std::ranges::max(allowed, {}, &Noise::Alternative::probability).probability;
+  const std::size_t count = allowed.size();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(r, r);
   if (count < 2 || r == 0) return out;
   std::vector<Eigen::MatrixXd> under(count);
   parallel_for(count, [&](std::size_t g) {
+    if (allowed[g].probability < least) return;
     Eigen::MatrixXd total = Eigen::MatrixXd::Identity(r, r);
     for (const std::size_t i : members)
       total += information_under(noise[i].factored(noise[i].alternatives[g].covariance),
@@ -45,10 +51,13 @@ Eigen::MatrixXd spread_of_noises(const std::vector<std::size_t>& members,
                at_best.information[i];
     under[g] = total.completeOrthogonalDecomposition().pseudoInverse();
   });
-  for (std::size_t g = 0; g < count; ++g)
-    out += noise[members.front()].alternatives[g].probability *
-           (under[g] - Eigen::MatrixXd::Identity(r, r));
-  return out;
+  double sum = 0.0;
+  for (std::size_t g = 0; g < count; ++g) {
+    if (allowed[g].probability < least) continue;
+    out += allowed[g].probability * (under[g] - Eigen::MatrixXd::Identity(r, r));
+    sum += allowed[g].probability;
+  }
+  return out / sum;
 }
 
 /// The estimated profiles by their pool.

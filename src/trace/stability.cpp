@@ -47,7 +47,7 @@ class Choice {
     columns -= basis * (basis.transpose() * columns).eval();
     Eigen::VectorXd rest = residual(rows);
     rest -= basis * (basis.transpose() * rest).eval();
-    const double count = static_cast<double>(residual.size());
+    const auto count = static_cast<double>(residual.size());
     const double log_count = std::log(count), to_all = count / static_cast<double>(rows.size());
     std::string best(kNothing);
     double least = 0.0, of_own = 0.0;

@@ -82,7 +82,7 @@ TEST_F(Effects, GivesOneEntryAsJson) {
   EXPECT_THAT(parameters, testing::ElementsAre("amplitude_um", "time_constant_s"));
 }
 
-const std::string kOwn = R"([[effect]]
+const std::string kOwn = R"toml([[effect]]
 name = "formula"
 as = "coolant"
 formula = "a * (1 - exp(-max(t - t0, 0) / tau))"
@@ -91,7 +91,7 @@ parameters = [{ name = "a", unit = "um" }, { name = "t0", unit = "s", lower = 0,
 cause = "coolant switched on"
 source = "trials"
 typical = "0.2 to 1 um"
-)";
+)toml";
 
 TEST_F(Effects, OfAFileAreCheckedAndPrintedWithCauseSourceAndSize) {
   folder_.file("our-lathes.toml", kOwn);

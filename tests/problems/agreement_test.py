@@ -170,7 +170,8 @@ class Agreement(unittest.TestCase):
         problems = sorted(SOURCE.glob("problems/*/*.toml"))
         self.assertGreater(len(problems), 8)
         for problem in problems:
-            if "${SLIDEWAY_DATA}" in problem.read_text(encoding="utf-8") and not MEASURED:
+            text = problem.read_text(encoding="utf-8")
+            if "[[profile]]" not in text or "${SLIDEWAY_DATA}" in text and not MEASURED:
                 continue
             with self.subTest(str(problem.relative_to(SOURCE))), \
                     tempfile.TemporaryDirectory() as folder:
@@ -214,7 +215,8 @@ class Agreement(unittest.TestCase):
             self.assertEqual(known["value"], parameter.value)
             self.assertEqual(known["expanded_uncertainty"], parameter.expanded_uncertainty)
         kept = lambda line: not line.startswith("│") or line.startswith(("│ Verdict", "│ Result"))
-        lines = lambda said: list(filter(kept, said.splitlines()))  # a page takes room in the box
+        # A page takes room in the box: a sentence of two lines is then cut after the first.
+        lines = lambda said: [line.removesuffix(" …") for line in said.splitlines() if kept(line)]
         self.assertEqual(lines(str(found)), lines(text))
 
 
