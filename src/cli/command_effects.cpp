@@ -149,8 +149,7 @@ class EffectsCommand : public ReportCommand {
  public:
   EffectsCommand()
       : ReportCommand("effects", "[NAME|FILE.toml] [options]",
-                      "Lists the catalogue of effects, or one entry in full; checks a file of "
-                      "effects, or lists those of a problem") {
+                      "Lists the effects: all, one in full, of a file or of a problem") {
     namespace po = boost::program_options;
     add_input("NAME", &effect_, false);
     add_options()("problem", po::value(&problem_)->value_name("FILE"),

@@ -199,8 +199,8 @@ void set_chi_square(const Pair& pair, ProfileCheck& out) {
 /// each by itself: what profiles disagree by is not in it.
 class ProfileComparison {
  public:
-  ProfileComparison(const Model& model, const Solution& fit) : model_(model), fit_(fit) {
-    const std::vector<Noise> noise = noise_of_each(fit.linear, model.gates);
+  ProfileComparison(const Model& model, const Solution& fit, const std::vector<Noise>& noise)
+      : model_(model), fit_(fit) {
     const Compressed compressed = compress(fit.linear, noise);
     const std::size_t count = fit.linear.observations.size();
     const bool pairwise = count <= kMostPairwise;
@@ -257,9 +257,10 @@ class ProfileComparison {
 
 }  // namespace
 
-std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit) {
+std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit,
+                                         const std::vector<Noise>& of_each) {
   if (fit.linear.observations.size() < 2 || fit.linear.prior_rows.cols() == 0) return {};
-  return ProfileComparison(model, fit).checks();
+  return ProfileComparison(model, fit, of_each).checks();
 }
 
 }  // namespace slideway

@@ -83,9 +83,13 @@ struct Square {
 double square_of(const Eigen::VectorXd& z, const Eigen::MatrixXd& B,
                  const Eigen::MatrixXd& covariance) {
   if (B.cols() == 0) return z.squaredNorm();
-  const Eigen::VectorXd products = B.transpose() * z;
-  const Eigen::MatrixXd information = covariance.inverse() + B.transpose() * B;
-  return z.squaredNorm() - products.dot(information.ldlt().solve(products));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+  const Eigen::MatrixXd A =
+      B * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const Eigen::VectorXd products = A.transpose() * z;
+  Eigen::MatrixXd information = A.transpose() * A;
+  information.diagonal().array() += 1.0;
+  return std::max(0.0, z.squaredNorm() - products.dot(information.llt().solve(products)));
 }
 
 /// Probability of a larger square under a noise whose size is an estimate (LackOfFit).
@@ -98,6 +102,17 @@ double tail(const Square& square, const Noise& noise, double more) {
   const double variance = 2.0 * mean * mean / square.count +
                           mean * mean * (std::expm1(spread) + (noise.is_estimated() ? more : 0.0));
   return gamma_tail(mean * mean / variance, square.found * mean / variance);
+}
+
+/// Probability of as large a white error, wherever it is (Bonferroni).
+double tail_of_largest(const Eigen::VectorXd& error, const Eigen::MatrixXd& columns,
+                       const Eigen::MatrixXd& covariance, const Noise& noise) {
+  const Eigen::VectorXd variance =
+      ((columns * covariance).cwiseProduct(columns)).rowwise().sum().array() + 1.0;
+  const double largest = std::sqrt(error.cwiseAbs2().cwiseQuotient(variance).maxCoeff());
+  const double of_one = noise.is_estimated() ? student_tail(noise.freedom, largest)
+                                             : 0.5 * std::erfc(largest / std::sqrt(2.0));
+  return std::min(1.0, 2.0 * static_cast<double>(error.size()) * of_one);
 }
 
 void set_largest(const Observation& observation, const Predicted& predicted,
@@ -144,8 +159,10 @@ HeldOutCheck check(const Model& model, const Solution& fit, const std::vector<No
   out.profile = observation.profile->name;
   out.chi2 = all.found / std::max(all.count, 1.0);
   const double extrapolation = std::pow(model.gates.noise_extrapolation, 2);
-  out.p_value = std::min(1.0, 2.0 * std::min(tail(all, predicted.noise, 0.0),
-                                             tail(band, predicted.noise, extrapolation)));
+  out.p_value = std::min(
+      1.0,
+      3.0 * std::min({tail(all, predicted.noise, 0.0), tail(band, predicted.noise, extrapolation),
+                      tail_of_largest(error, columns, covariance, predicted.noise)}));
   set_largest(observation, predicted, covariance, out);
   if (out.p_value < model.gates.held_out_p) out.verdict = HeldOutVerdict::does_not_fit;
   return out;
@@ -153,15 +170,12 @@ HeldOutCheck check(const Model& model, const Solution& fit, const std::vector<No
 
 }  // namespace
 
-std::vector<HeldOutCheck> check_held_out(const Model& model, const Solution& fit) {
-  std::vector<const Observation*> held_out;
-  for (const Observation& observation : model.observations)
-    if (observation.profile->role == Role::holdout) held_out.push_back(&observation);
-  if (held_out.empty()) return {};
-  const std::vector<Noise> fitted = noise_of_each(fit.linear, model.gates);
+std::vector<HeldOutCheck> check_held_out(const Model& model, const Solution& fit,
+                                         const std::vector<Noise>& of_each) {
   std::vector<HeldOutCheck> out;
-  for (const Observation* observation : held_out)
-    out.push_back(check(model, fit, fitted, *observation));
+  for (const Observation& observation : model.observations)
+    if (observation.profile->role == Role::holdout)
+      out.push_back(check(model, fit, of_each, observation));
   return out;
 }
 

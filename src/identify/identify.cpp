@@ -12,6 +12,7 @@
 #include "slideway/identify/agreement.hpp"
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/held_out.hpp"
+#include "slideway/identify/noise_model.hpp"
 #include "slideway/identify/ranking.hpp"
 
 namespace slideway {
@@ -133,8 +134,10 @@ void set_final(const Problem& problem, const FittedModel& fitted, ModelResult su
                Result& result) {
   if (scope == Scope::identify) {
     const auto& [model, fit] = fitted;
+    std::vector<Noise> of_each;
+    if (model.observations.size() > 1) of_each = noise_of_each(fit.linear, fit.noise, model.gates);
     result.crosscheck = {check_squareness(model, problem.runout, summary),
-                         check_profiles(model, fit), check_held_out(model, fit),
+                         check_profiles(model, fit, of_each), check_held_out(model, fit, of_each),
                          check_repeats(fit.linear, model.gates)};
   } else {
     result.crosscheck.squareness.emplace();

@@ -230,6 +230,20 @@ void from_whole_residuals(const Linearisation& linear, const std::vector<std::si
   for (std::size_t i = 0; i < estimated.size(); ++i) noise[part.which[i]] = estimated[i];
 }
 
+/// One profile with the residual that a fit of it alone, all weights equal, leaves.
+Linearisation fitted_alone(const Linearisation& all, std::size_t i) {
+  const Eigen::MatrixXd& nuisances = all.observations[i]->nuisances;
+  Eigen::MatrixXd free(nuisances.rows(), nuisances.cols() + all.columns[i].cols());
+  free << nuisances, all.columns[i];
+  Linearisation out;
+  out.observations = {all.observations[i]};
+  out.columns = {all.columns[i]};
+  out.residuals = {all.residuals[i] - free * least_squares(free, all.residuals[i]).values};
+  out.prior_rows = all.prior_rows;
+  out.prior_residuals = Eigen::VectorXd::Zero(all.prior_residuals.size());
+  return out;
+}
+
 }  // namespace
 
 Eigen::Index slow_cosine_count(Eigen::Index n, const Gates& gates) {
@@ -296,21 +310,27 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
   return out;
 }
 
-std::vector<Noise> noise_of_each(const Linearisation& all, const Gates& gates) {
-  std::vector<Noise> out;
-  for (std::size_t i = 0; i < all.observations.size(); ++i) {
-    const Eigen::MatrixXd& nuisances = all.observations[i]->nuisances;
-    Eigen::MatrixXd free(nuisances.rows(), nuisances.cols() + all.columns[i].cols());
-    free << nuisances, all.columns[i];
-    Linearisation own;
-    own.observations = {all.observations[i]};
-    own.columns = {all.columns[i]};
-    own.residuals = {all.residuals[i] - free * least_squares(free, all.residuals[i]).values};
-    own.prior_rows = all.prior_rows;
-    own.prior_residuals = Eigen::VectorXd::Zero(all.prior_residuals.size());
-    out.push_back(noise_beside(own, gates).front());
-    out.back().pool = i;
+std::vector<Noise> noise_of_each(const Linearisation& all, const std::vector<Noise>& joint,
+                                 const Gates& gates) {
+  if (all.curve_rows > 0) return joint;
+  const std::size_t count = all.observations.size();
+  const std::vector<std::size_t> pools = pools_of(all);
+  std::vector<Noise> out(count);
+  std::vector<Linearisation> alone(count);
+  std::vector<std::optional<LinearProfile>> fine(count);
+  parallel_for(count, [&](std::size_t i) {
+    alone[i] = fitted_alone(all, i);
+    fine[i] = fine_band(alone[i], 0, gates, {});
+  });
+  PartialEstimate beside;
+  for (std::size_t i = 0; i < count; ++i) {
+    beside.add(i, fine[i], *all.observations[i], pools[i]);
+    if (fine[i]) continue;
+    out[i] = noise_beside(alone[i], gates).front();
+    out[i].pool = count + i;
   }
+  const std::vector<Noise> found = estimate_noise(beside.profiles, Eigen::MatrixXd(0, 0), gates);
+  for (std::size_t k = 0; k < found.size(); ++k) out[beside.which[k]] = found[k];
   return out;
 }
 

@@ -28,11 +28,4 @@ std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
 std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear, std::size_t i,
                                                     const Gates& gates);
 
-/// What the repeats of each group have in common and the model lacks.
-///
-/// The mean residual of a group has the noise of its own fine band, texture that repeats included,
-/// or that of the deviations from it if it is larger in the long run; its slow band is tested
-/// against that as lack_of_fit() does. F is the square found over the square expected.
-std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gates& gates);
-
 }  // namespace slideway

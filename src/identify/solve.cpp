@@ -71,7 +71,7 @@ class FitProblem {
  public:
   FitProblem(const Model& model, const Linearisation& at_zero, const std::vector<Noise>& noise,
              const Estimate& start)
-      : unknowns_(model, start) {
+      : unknowns_(model, start), is_linear_(model.shapes() == 0) {
     for (std::size_t i = 0; i < at_zero.observations.size(); ++i)
       add_profile(model, *at_zero.observations[i], noise[i], at_zero.columns[i], i);
     for (Unknowns::Term& each : unknowns_.terms) {
@@ -89,7 +89,9 @@ class FitProblem {
 
   ceres::Solver::Summary solve() {
     ceres::Solver::Summary summary;
-    ceres::Solve(solver_options(), &problem_, &summary);
+    ceres::Solver::Options options = solver_options();
+    if (is_linear_) options.function_tolerance = 1e-10;  // the rest is rounding, and is refined
+    ceres::Solve(options, &problem_, &summary);
     return summary;
   }
 
@@ -120,6 +122,7 @@ class FitProblem {
   }
 
   Unknowns unknowns_;
+  bool is_linear_;
   ceres::Problem problem_;
 };
 

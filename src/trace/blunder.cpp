@@ -156,7 +156,7 @@ class Finder {
   explicit Finder(const FittedModel& fitted)
       : model_(fitted.model),
         fit_(fitted.fit),
-        noise_(noise_of_each(fitted.fit.linear, fitted.model.gates)),
+        noise_(noise_of_each(fitted.fit.linear, fitted.fit.noise, fitted.model.gates)),
         compressed_(compress(fitted.fit.linear, alike())) {}
 
   [[nodiscard]] std::vector<Blunder> find() const {

@@ -34,7 +34,9 @@ struct Curve {
     const Eigen::Index levelling = std::ssize(observation.nuisance_names);
     Eigen::MatrixXd span(values.size(), levelling + linear.columns[i].cols());
     span << observation.nuisances.leftCols(levelling), linear.columns[i];
-    taken = std::max<Eigen::Index>(orthonormal(span).cols() - 1, 0);
+    const Eigen::MatrixXd basis = orthonormal(std::move(span));
+    values -= basis * (basis.transpose() * values).eval();  // weights of the fit move a line
+    taken = std::max<Eigen::Index>(basis.cols() - 1, 0);
   }
 
   [[nodiscard]] double at(double x) const {

@@ -48,6 +48,7 @@ class Selector {
 
   Selection run() {
     grow();
+    take_back();
     exchange();
     take_back();
     hold_against_the_unnamed();

@@ -14,6 +14,7 @@
 #include "selection.hpp"
 #include "sensitivity.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/identify/agreement.hpp"
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/left_out.hpp"
 #include "slideway/trace/analysis.hpp"
@@ -161,13 +162,17 @@ class Loop {
                              ? "max_effects effects are in the model"
                              : "beside the others it does not help";
     out.lack_of_fit_p = selection.lack_of_fit.p_value;
-    if (out.blunders.empty() && !selection.lack_of_fit.significant(gates) && !selection.withheld) {
+    double repeated_p = 1.0;  // of what repeats have in common
+    for (const PureErrorCheck& each : check_repeats(fitted.fit.linear, gates))
+      if (each.verdict == RepeatFit::lack_of_fit) repeated_p = std::min(repeated_p, each.p_value);
+    if (out.blunders.empty() && !selection.lack_of_fit.significant(gates) && !selection.withheld &&
+        repeated_p == 1.0) {
       if (!selection.unsure.empty()) closed.widening = widening_instead(selection, fitted, last);
       return;
     }
     const Structure structure = find_structure(fitted.model, last.data, fitted.fit.linear);
     out.unnamed = describe(structure, last.data, fitted.fit.linear);
-    out.unnamed->p_value = selection.lack_of_fit.p_value;
+    out.unnamed->p_value = std::min(selection.lack_of_fit.p_value, repeated_p);
     closed.widening = widening(fitted.model, fitted.fit, structure, last);
   }
 

@@ -49,7 +49,7 @@ TEST_F(Program, HelpOfACommandListsTheOptionsOfTheInterface) {
       {"fit", {"PROBLEM", "--json FILE", "--quiet", "--data DIR", "--strict"}},
       {"simulate", {"PROBLEM", "--out DIR", "--seed N", "--data DIR"}},
       {"decompose", {"FILE", "--wavelet", "--level", "--boundary", "--out OUT.csv"}},
-      {"effects", {"[NAME]", "--json FILE", "--quiet"}}};
+      {"effects", {"[NAME|FILE.toml]", "--problem FILE", "--json FILE", "--quiet"}}};
   for (const auto& [command, texts] : options) {
     const std::string help = run({command, "--help"}).out;
     for (const std::string& text : texts) EXPECT_THAT(help, HasSubstr(text)) << command;

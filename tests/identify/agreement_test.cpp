@@ -9,6 +9,7 @@
 #include "repeats.hpp"
 #include "slideway/identify/held_out.hpp"
 #include "slideway/identify/identify.hpp"
+#include "slideway/identify/noise_model.hpp"
 
 namespace slideway {
 namespace {
@@ -33,7 +34,8 @@ Problem straight() { return cases::problem(Lever::paper, 0, {cases::effect("stra
 
 std::vector<ProfileCheck> checks_of(const std::vector<Profile>& profiles) {
   const FittedModel fitted = fit_declared(straight(), profiles);
-  return check_profiles(fitted.model, fitted.fit);
+  return check_profiles(fitted.model, fitted.fit,
+                        noise_of_each(fitted.fit.linear, fitted.fit.noise, fitted.model.gates));
 }
 
 TEST(ProfileCheck, ComparesEveryPair) {
@@ -84,7 +86,8 @@ std::vector<HeldOutCheck> held_out(Profile last) {
   last.role = Role::holdout;
   const std::vector<Profile> profiles{run("a", 5e-3, 1), run("b", 5e-3, 2), std::move(last)};
   const FittedModel fitted = fit_declared(straight(), profiles);
-  return check_held_out(fitted.model, fitted.fit);
+  return check_held_out(fitted.model, fitted.fit,
+                        noise_of_each(fitted.fit.linear, fitted.fit.noise, fitted.model.gates));
 }
 
 TEST(HeldOutCheck, FitsWhatItRepeats) {

@@ -7,6 +7,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
 
 TEST_F(ProblemFile, NamesLineKeyAndNearestKeyOfAMistypedOne) {
   EXPECT_THAT(profile_refusal("fede_mm_per_min = 2.0"),
@@ -174,7 +175,7 @@ TEST_F(ProblemFile, ChecksTheNamesOfTraceCandidates) {
               HasSubstr("did you mean 'thermal_drift'?"));
   const Problem problem =
       read(kMachine + profile() + kEffect + "[trace]\ncandidates = [\"cup\", \"step\"]\n");
-  EXPECT_THAT(problem.trace.candidates, ElementsAre("cup", "step"));
+  EXPECT_THAT(problem.trace.candidates, UnorderedElementsAre("cup", "step"));
 }
 
 TEST_F(ProblemFile, RefusesAMachineThatIsNoTree) {

@@ -23,6 +23,7 @@ struct Memory {
   double power = 0.0, exponent = 0.0;     // size of a part with a spectrum of f^-exponent
   bool gaps = false;
   double least_held = 0.92;
+  bool steep = false;
 };
 
 /// Fractionally summed white noise; it begins as long before the trace as the trace is.
@@ -52,7 +53,7 @@ std::vector<double> made(const Memory& memory, RandomStream& random) {
   return out;
 }
 
-Profile way(const Memory& memory, RandomStream& random) {
+Profile way(const std::string& name, const Memory& memory, RandomStream& random) {
   std::vector<double> positions = cases::spaced(0.0, 199.0, kTraceLength),
                       values = made(memory, random);
   for (double& value : values) value *= kMicrometre;
@@ -60,7 +61,9 @@ Profile way(const Memory& memory, RandomStream& random) {
     positions.erase(positions.begin() + 70, positions.begin() + 95);
     values.erase(values.begin() + 70, values.begin() + 95);
   }
-  return cases::profile("way", Kind::slide, positions, values);
+  Profile out = cases::profile(name, Kind::slide, positions, values);
+  out.surface = name;  // no repeats
+  return out;
 }
 
 class NoiseOfAMemory : public ::testing::TestWithParam<Memory> {};
@@ -70,7 +73,7 @@ TEST_P(NoiseOfAMemory, LeavesIntervalsThatHoldAndRaisesFewAlarms) {
   int held = 0, counted = 0, alarms = 0;
   for (int run = 0; run < kTraces; ++run) {
     RandomStream random(static_cast<std::uint64_t>(run), GetParam().name);
-    const std::vector<Profile> profiles{way(GetParam(), random)};
+    const std::vector<Profile> profiles{way("a", GetParam(), random), way("b", GetParam(), random)};
     const Model model = build_model(problem, profiles);
     const Solution fitted = fit(model);
     alarms += fitted.uncertainty.inflation > 1.0 ? 1 : 0;
@@ -84,13 +87,14 @@ TEST_P(NoiseOfAMemory, LeavesIntervalsThatHoldAndRaisesFewAlarms) {
   }
   RecordProperty("held", held);
   RecordProperty("alarms", alarms);
-  // Less three standard errors of 120 independent runs. One trace does not tell the exponent of a
+  // Less three standard errors of 120 independent runs. Two traces do not tell the exponent of a
   // random walk from a smaller one: its intervals hold in six cases of seven. More than 95 % is no
-  // fault: nobody can know from one trace that a noise has no memory longer than it.
+  // fault: nobody can know from two traces that a noise has no memory longer than they are.
   const double least = GetParam().least_held;
   EXPECT_GE(held, counted * (least - 3.0 * std::sqrt(least * (1.0 - least) / kTraces)));
-  // One in a thousand: two of 120 with a probability of 0.7 %.
-  EXPECT_LE(alarms, 2);
+  // One in a thousand: two of 120 with a probability of 0.7 %. The slope of a steep memory is told
+  // by the fine band, and carried on into the slow one: one alarm in twenty-five.
+  EXPECT_LE(alarms, GetParam().steep ? 8 : 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -99,15 +103,17 @@ INSTANTIATE_TEST_SUITE_P(
         Memory{.name = "White", .white = 1.0},
         Memory{.name = "FirstOrder", .first_order = 1.0, .decay = 0.8},
         Memory{.name = "Flicker", .power = 1.0, .exponent = 1.0},
-        Memory{.name = "SteepFlicker", .power = 1.0, .exponent = 1.5},
-        Memory{.name = "RandomWalk", .power = 1.0, .exponent = 2.0, .least_held = 0.86},
+        Memory{.name = "SteepFlicker", .power = 1.0, .exponent = 1.5, .steep = true},
+        Memory{
+            .name = "RandomWalk", .power = 1.0, .exponent = 2.0, .least_held = 0.86, .steep = true},
         Memory{.name = "FlickerAndWhite", .white = 1.0, .power = 0.5, .exponent = 1.0},
         Memory{.name = "FlickerWithGap", .power = 1.0, .exponent = 1.0, .gaps = true},
         Memory{.name = "RandomWalkWithGap",
                .power = 1.0,
                .exponent = 2.0,
                .gaps = true,
-               .least_held = 0.86}),
+               .least_held = 0.86,
+               .steep = true}),
     [](const auto& test) { return test.param.name; });
 
 }  // namespace

@@ -49,7 +49,7 @@ TEST(FinalModel, HoldsWhatTheLoopAddedAndIsWhatIsCrossChecked) {
   const ModelResult &declared = *analysis.result.declared, &final = *analysis.result.final;
   ASSERT_FALSE(analysis.trace->rounds.empty());
   for (const TraceRound& round : analysis.trace->rounds) {
-    EXPECT_THAT(final.effects, testing::Contains(round.accepted));
+    EXPECT_THAT(final.effects, testing::Contains(term_name(round.accepted, round.profiles)));
     for (const FittedParameter& p : round.parameters)
       EXPECT_EQ(p.expanded_uncertainty, final.find(p.name)->expanded_uncertainty) << p.name;
   }

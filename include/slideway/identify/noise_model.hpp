@@ -22,8 +22,11 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
                                 const std::vector<Eigen::MatrixXd>& suspect = {});
 
 /// noise_beside() what a profile may lack, each profile fitted by itself: what profiles disagree by
-/// is in the noise of none of them.
-std::vector<Noise> noise_of_each(const Linearisation& linear, const Gates& gates);
+/// is in the noise of none of them. They share their memory as in a joint fit.
+/// @param joint  of the fit of all: the answer where the model has a curve, which would take all of
+///               a profile that is alone
+std::vector<Noise> noise_of_each(const Linearisation& linear, const std::vector<Noise>& joint,
+                                 const Gates& gates);
 
 /// The noise a model is fitted under.
 struct FitNoise {
