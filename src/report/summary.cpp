@@ -106,7 +106,7 @@ void say_verdict(const Analysis& analysis, Summary& out) {
     case TraceVerdict::nothing_missing:
       return say(Alarm::good, "Nothing missing", "the model explains the profiles down to noise");
     case TraceVerdict::explained:
-      if (trace.rounds.front().accepted == kInstrument)
+      if (!trace.rounds.empty() && trace.rounds.front().accepted == kInstrument)
         return say(Alarm::warn, "Instrument",
                    "surfaces share a residual: the instrument's error, not the slide's");
       return say(
