@@ -10,14 +10,15 @@ namespace slideway {
 namespace {
 
 // Finest steps: an eighth of a decade of g and h, a quarter of an octave of L, an eighth of α.
-constexpr int kSizes = 37;                // 10^-2.5 ... 100
-constexpr int kLengths = 25;              // 1 ... 64 values
-constexpr int kSlopes = 17;               // 1 (1/f noise) ... 3 (more than a random walk, 2)
-constexpr int kSteepestAlone = 4;         // 1.5: alone, no profile goes to the unit root
-constexpr int kCoarse = 4;                // finest steps of the first search
-constexpr double kPlausible = 6.0;        // of -2 ln probability: 5 % of the best
-constexpr double kAllowed = 14.0;         // of the same: 0.1 % of the best
-constexpr double kWorthNeighbours = 2.5;  // of the same: 30 % of the best
+constexpr int kSizes = 37;                 // 10^-2.5 ... 100
+constexpr int kLengths = 25;               // 1 ... 64 values
+constexpr int kSlopes = 17;                // 1 (1/f noise) ... 3 (more than a random walk, 2)
+constexpr double kLongestTexture = 0.125;  // of a trace
+constexpr int kSteepestAlone = 4;          // 1.5: alone, no profile goes to the unit root
+constexpr int kCoarse = 4;                 // finest steps of the first search
+constexpr double kPlausible = 6.0;         // of -2 ln probability: 5 % of the best
+constexpr double kAllowed = 14.0;          // of the same: 0.1 % of the best
+constexpr double kWorthNeighbours = 2.5;   // of the same: 30 % of the best
 
 double size_at(int index) { return std::pow(10.0, 0.125 * (index - 1) - 2.5); }
 double length_at(int index) { return std::exp2(0.25 * index); }
@@ -49,7 +50,7 @@ std::vector<MemoryPlace> with_texture(MemoryPlace place) {
 std::vector<MemoryPlace> with_memory(MemoryPlace place) {
   std::vector<MemoryPlace> out;
   for (const int size : {9, 21, kSizes})  // 0.03, 1, 100
-    for (const int slope : {0, kSteepestAlone}) {
+    for (const int slope : {0, kSteepestAlone, 8}) {
       place.memory = size, place.slope = slope;
       out.push_back(place);
     }
@@ -108,13 +109,11 @@ ExponentialMixture memory_at(const MemoryPlace& place, double n, double traces) 
 PoolMemory::PoolMemory(std::vector<const LinearProfile*> profiles, const Eigen::MatrixXd& rest,
                        const Gates& gates)
     : profiles_(std::move(profiles)), rest_(rest), gates_(gates) {
-  double spare = 0.0;
   Eigen::VectorXd start(std::ssize(profiles_));
   for (std::size_t i = 0; i < profiles_.size(); ++i) {
     const LinearProfile& profile = *profiles_[i];
     values_ = std::max(values_, profile.extent());
     const auto own = static_cast<double>(profile.residual.size() - profile.nuisances.cols());
-    spare += own;
     start[static_cast<Eigen::Index>(i)] =
         0.5 * std::log(std::max(profile.residual.squaredNorm(), 1e-300) / std::max(own, 1.0));
   }
@@ -154,7 +153,7 @@ void PoolMemory::visit(const std::vector<MemoryPlace>& places, const Eigen::Vect
 
 bool PoolMemory::fits(const MemoryPlace& place) const {
   if (profiles_.size() == 1 && place.slope > kSteepestAlone) return false;
-  return place.texture == 0 || length_at(place.length) <= gates_.longest_texture * values_;
+  return place.texture == 0 || length_at(place.length) <= kLongestTexture * values_;
 }
 
 MemoryPlace PoolMemory::most_probable() const {

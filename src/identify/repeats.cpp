@@ -192,11 +192,9 @@ std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear,
 }
 
 std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gates& gates) {
-  // What is slow and repeats is no noise; texture is what the fine band tells of it.
   Gates finer = gates;
   finer.values_per_cosine = gates.values_per_repeated_cosine;
-  finer.memory_odds = 0.0;
-  finer.longest_texture = std::min(gates.longest_texture, 1.0 / (kPi * gates.slow_cosines));
+  finer.memory_odds = 0.0;  // what is slow and repeats is no noise, but for texture
   std::vector<PureErrorCheck> out;
   for (const std::vector<std::size_t>& group : repeat_groups(linear, gates)) {
     const CommonTrace common(linear, group, gates);

@@ -122,10 +122,10 @@ class Prediction {
   };
   [[nodiscard]] Best best(double factor, double sister_factor) const {
     constexpr int kSteps = 400;
-    constexpr double kMost = 10.0;  // |ln s|
+    constexpr double kFarthest = 10.0;  // |ln s|
     Best out;
     for (int step = -kSteps; step <= kSteps; ++step) {
-      const double size = std::exp(kMost * step / kSteps);
+      const double size = std::exp(kFarthest * step / kSteps);
       const double at = cost(factor, size, sister_factor);
       if (at < out.cost) out = {at, size};
     }

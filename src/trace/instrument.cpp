@@ -152,8 +152,8 @@ void name_instrument(TraceResult& out) {
   }
   if (round.profiles.empty()) return;
   std::ranges::sort(round.profiles);
-  const auto same = std::ranges::unique(round.profiles);
-  round.profiles.erase(same.begin(), same.end());
+  round.profiles.erase(std::unique(round.profiles.begin(), round.profiles.end()),
+                       round.profiles.end());
   for (TraceRound& other : out.rounds)
     if (other.profiles.empty() ||
         std::ranges::find_first_of(other.profiles, round.profiles) != other.profiles.end())

@@ -116,14 +116,17 @@ TEST(Repeats, AreToldByStationsNotByEqualDoubles) {
 }
 
 TEST(Repeats, WhatTheyShareAndTheModelLacksIsLackOfFit) {
-  const auto verdict = [](double step) {
-    const std::vector<Profile> profiles{run("a", 5e-3, 1, step), run("b", 5e-3, 2, step)};
+  const auto verdict = [](double amplitude) {
+    std::vector<Profile> profiles{run("a", 5e-3, 1), run("b", 5e-3, 2)};
+    for (Profile& each : profiles)
+      for (std::size_t i = 0; i < each.values.size(); ++i)
+        each.values[i] += amplitude * std::sin(6.0 * kPi * each.positions[i] / kLength);
     const FittedModel fitted = fit_declared(straight(), profiles);
     const auto checks = check_repeats(fitted.fit.linear, Gates{});
     return checks.at(0).verdict;
   };
   EXPECT_EQ(verdict(0.0), RepeatFit::fits);
-  EXPECT_EQ(verdict(10.0 * kNoise), RepeatFit::lack_of_fit);
+  EXPECT_EQ(verdict(kNoise), RepeatFit::lack_of_fit);  // three waves, of 200 values
 }
 
 }  // namespace
