@@ -121,11 +121,11 @@ class Prediction {
     double cost = HUGE_VAL, size = 1.0;
   };
   [[nodiscard]] Best best(double factor, double sister_factor) const {
-    constexpr int kSteps = 400;
+    constexpr int kSizesTried = 400;
     constexpr double kFarthest = 10.0;  // |ln s|
     Best out;
-    for (int step = -kSteps; step <= kSteps; ++step) {
-      const double size = std::exp(kFarthest * step / kSteps);
+    for (int step = -kSizesTried; step <= kSizesTried; ++step) {
+      const double size = std::exp(kFarthest * step / kSizesTried);
       const double at = cost(factor, size, sister_factor);
       if (at < out.cost) out = {at, size};
     }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <set>
 
 #include "fit_numbers.hpp"
@@ -49,9 +48,9 @@ class Selector {
 
   Selection run() {
     grow();
-    take_back([&](std::size_t i) { return too_small(out_.effects, i, nullptr); });
+    drop_small();
     exchange();
-    take_back([&](std::size_t i) { return reason_to_leave(i); });
+    take_back();
     hold_against_the_unnamed();
     name_rivals();
     out_.lack_of_fit = left_over();
@@ -211,11 +210,21 @@ class Selector {
     }
   }
 
-  /// Takes back what does not pass beside the others as they are now.
-  /// @param reason  why effect i does not; "": it does
-  void take_back(const std::function<std::string(std::size_t)>& reason) {
+  /// What is too small beside the others leaves before rivals are compared: a rival would take a
+  /// part of theirs.
+  void drop_small() {
     for (std::size_t i = out_.effects.size(); i-- > 0;) {
-      const std::string why = reason(i);
+      const std::string why = too_small(out_.effects, i, nullptr);
+      if (why.empty()) continue;
+      ruled_out_.push_back(out_.effects[i].name());
+      leave(i, why);
+    }
+  }
+
+  /// Takes back what does not pass every gate beside the others as they are now.
+  void take_back() {
+    for (std::size_t i = out_.effects.size(); i-- > 0;) {
+      const std::string why = reason_to_leave(i);
       if (why.empty()) continue;
       // The search, under the noise beside it, has found something.
       out_.withheld |= stands_out(i);
@@ -230,7 +239,6 @@ class Selector {
            find_tested(extender_.search(all_but(out_.effects, i)), out_.effects[i], gates_);
   }
 
-  /// Every gate.
   std::string reason_to_leave(std::size_t i) {
     const AcceptedEffect& effect = out_.effects[i];
     const SearchRound& round = extender_.search(all_but(out_.effects, i));
@@ -297,7 +305,7 @@ class Selector {
       leave(weakest(found.in_place_of), found.rival + " without a name explains more, by " +
                                             significant(-found.margin, 2) + " nats");
       out_.withheld = true;
-      take_back([&](std::size_t i) { return reason_to_leave(i); });
+      take_back();
     }
   }
 
