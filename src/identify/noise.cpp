@@ -196,16 +196,16 @@ double Noise::log_long_run_variance() const {
 
 void Noise::whiten(Eigen::Ref<Eigen::MatrixXd> rows) const {
   if (factor_ && factor_->rows() == rows.rows())
-    factor_->whiten(std::move(rows));
+    factor_->whiten(rows);
   else
-    MixtureFactor(covariance_, rows.rows()).whiten(std::move(rows));
+    MixtureFactor(covariance_, rows.rows()).whiten(rows);
 }
 
 void Noise::colour(Eigen::Ref<Eigen::MatrixXd> rows) const {
   if (factor_ && factor_->rows() == rows.rows())
-    factor_->colour(std::move(rows));
+    factor_->colour(rows);
   else
-    MixtureFactor(covariance_, rows.rows()).colour(std::move(rows));
+    MixtureFactor(covariance_, rows.rows()).colour(rows);
 }
 
 std::vector<Noise> estimate_noise(std::span<const LinearProfile> profiles,

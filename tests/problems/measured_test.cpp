@@ -97,11 +97,25 @@ TEST_F(Real, LatheBedPredictsTheRunThatWasHeldOutAsWellAsTheRunsRepeat) {
               0.0141 * std::sqrt(2.0), 0.05 * 0.0141);  // the same
 }
 
-TEST_F(Real, LatheBedRun5DoesNotFitRuns2To4AndSaysWhere) {
+/// Runs 2 to 5 with a polynomial.
+Problem bed_as_polynomial(int degree) {
   Problem problem = shipped_problem("real/lathe-bed-curve.toml");
-  std::erase_if(problem.effects, [](const DeclaredEffect&) { return true; });
   problem.effects = shipped_problem("real/lathe-bed.toml").effects;
-  problem.effects.front().options.degree = 10;
+  problem.effects.front().options.degree = degree;
+  return problem;
+}
+
+TEST_F(Real, RepeatsOfTheLatheBedRefuteAPolynomialOfAnyDegree) {
+  for (const int degree : {4, 6, 8, 10, 12, 16}) {
+    const Problem problem = bed_as_polynomial(degree);
+    const Result result = identify(problem, read_profiles(problem));
+    ASSERT_EQ(result.crosscheck.repeats.size(), 1U);
+    EXPECT_EQ(result.crosscheck.repeats.front().verdict, RepeatFit::lack_of_fit) << degree;
+  }
+}
+
+TEST_F(Real, LatheBedRun5DoesNotFitRuns2To4AndSaysWhere) {
+  Problem problem = bed_as_polynomial(10);
   problem.profiles.back().profile.role = Role::holdout;
   const Result result = identify(problem, read_profiles(problem));
   ASSERT_EQ(result.crosscheck.held_out.size(), 1U);

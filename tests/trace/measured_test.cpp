@@ -70,6 +70,7 @@ TEST_F(Measured, CurvatureOfAMirrorDeclaredStraightComesBack) {
 // What is left without a name is a part of the residual, not of what the parameters take.
 TEST_F(Measured, StructureWithoutANameIsNoLargerThanTheResidual) {
   Problem problem = shipped_problem("real/lathe-bed.toml");
+  problem.effects.front().options.degree = 4;  // too few: the bed was bent in one place
   problem.trace.max_effects = 0;
   const Closed result = closed(problem, read_profiles(problem));
   SCOPED_TRACE(story(result));
