@@ -185,9 +185,9 @@ std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear,
   append_unit_columns(free, alone);
   Eigen::MatrixXd basis = orthonormal(std::move(free));
   deviation -= basis * (basis.transpose() * deviation).eval();
-  constexpr int kLeastOrder = 1;  // as of the fine band
+  constexpr int kOrder = 1;  // at least, as of the fine band
   return LinearProfile{std::move(basis), Eigen::MatrixXd(deviation.size(), 0), std::move(deviation),
-                       observation.profile->standard_uncertainty, kLeastOrder};
+                       observation.profile->standard_uncertainty, kOrder};
 }
 
 std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gates& gates) {

@@ -81,11 +81,11 @@ class Prediction {
     double cost = HUGE_VAL, size = 1.0;
   };
   [[nodiscard]] Best best(double factor, double sister_factor) const {
-    constexpr int kSteps = 400;
+    constexpr int kTriedSizes = 400;
     constexpr double kMost = 10.0;  // |ln s|
     Best out;
-    for (int step = -kSteps; step <= kSteps; ++step) {
-      const double size = std::exp(kMost * step / kSteps);
+    for (int step = -kTriedSizes; step <= kTriedSizes; ++step) {
+      const double size = std::exp(kMost * step / kTriedSizes);
       const double at = cost(factor, size, sister_factor);
       if (at < out.cost) out = {at, size};
     }

@@ -100,15 +100,15 @@ TEST_F(RealBackground, PeriodInTimeOnAMilledSurface) {
 }
 
 TEST_F(RealBackground, StepOnAMilledSurface) {
-  static constexpr double kStep = 2e-3;  // mm; half of it is 4 of its standard uncertainties
+  static constexpr double kHeight = 2e-3;  // mm; half of it is 4 of its standard uncertainties
   const TraceResult result = close_loop(
       milled_problem(),
-      milled_faces({"step", [](const ToolPoint& p) { return p.r < 1.234 ? kStep : 0.0; }}));
+      milled_faces({"step", [](const ToolPoint& p) { return p.r < 1.234 ? kHeight : 0.0; }}));
   SCOPED_TRACE(story(result));
   const TraceRound* round = round_of(result, "step");
   ASSERT_NE(round, nullptr);
   EXPECT_THAT(round->ambiguous_with, ::testing::IsEmpty());
-  expect_within_4u(round->parameters, "step.height_um", kStep / kMicrometre);
+  expect_within_4u(round->parameters, "step.height_um", kHeight / kMicrometre);
   const FittedParameter* position = find(round->parameters, "step.position_mm");
   ASSERT_NE(position, nullptr);
   EXPECT_NEAR(*position->value, 1.234, 0.1);  // the nose: sqrt(2 · 2 mm · 2 µm) = 0.089 mm
