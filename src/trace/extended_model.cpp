@@ -36,10 +36,12 @@ std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::si
   return effects;
 }
 
-std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects,
+std::vector<AcceptedEffect> all_but(const std::vector<AcceptedEffect>& effects,
                                     const std::vector<std::size_t>& which) {
-  for (auto i = which.rbegin(); i != which.rend(); ++i) effects = all_but(std::move(effects), *i);
-  return effects;
+  std::vector<AcceptedEffect> out;
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    if (!std::ranges::binary_search(which, i)) out.push_back(effects[i]);
+  return out;
 }
 
 ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,

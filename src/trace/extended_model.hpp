@@ -19,7 +19,7 @@ struct AcceptedEffect {
 
 std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::size_t i);
 /// @param which  rising
-std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects,
+std::vector<AcceptedEffect> all_but(const std::vector<AcceptedEffect>& effects,
                                     const std::vector<std::size_t>& which);
 
 /// Makes and searches models of one problem, in the low band effects are searched in: that of each

@@ -56,7 +56,8 @@ FormulaProbes::FormulaProbes(const Formula& formula, const Expression& expressio
     : parameters_(formula.parameters), evaluation_(expression), first_(formula_variables().size()) {
   RandomStream random(1, "formula");
   for (int i = 0; i < kPlaces; ++i) {
-    std::vector<double> place = variables_at(random), other = place;
+    std::vector<double> place = variables_at(random);
+    std::vector<double> other = place;
     for (const FormulaParameter& parameter : parameters_) {
       place.push_back(parameter_at(parameter, random));
       other.push_back(parameter_at(parameter, random));
