@@ -91,6 +91,9 @@ Json run_case(const std::string& name, int cuts, double size, bool at_limit, dou
   if (result.unnamed) {
     json["clock"] = result.unnamed->clock;
     json["unnamed_um"] = result.unnamed->rms_um.value_or(0.0);
+    json["forms"] = Json::array();
+    for (const UnnamedForm& form : result.unnamed->forms)
+      json["forms"].push_back({form.form, form.delta_bic, form.instead_of});
   }
   double u_before = 0.0, u_after = 0.0;
   json["bias_before"] =

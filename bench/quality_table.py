@@ -11,6 +11,8 @@ revolution_periodic step centre_height speed_effect edge_roll_off traverse_datum
 traverse_periodic""".split()
 OPEN = "stretched_exponential chirp double_bump switched_drift".split()
 CLOCK = {"stretched_exponential": "t", "switched_drift": "t", "chirp": "r", "double_bump": "r"}
+FORM = {"stretched_exponential": "stretched exponential", "switched_drift": "kink",
+        "chirp": "chirp", "double_bump": "bump + bump"}
 ON_CLOCK = {"t": {"linear_drift", "thermal_drift", "time_periodic", "revolution_periodic"},
             "r": {"slide_periodic", "step", "centre_height", "speed_effect", "edge_roll_off", "cup",
                   "straightness"}}
@@ -113,7 +115,8 @@ def main():
         false = [c for c in clean if named(c)]
         unnamed = [c for c in clean if c["verdict"] == "unnamed"]
         print(f"Nothing hidden: {share(len(false), len(clean))} named an effect that is not there "
-              f"(feed marks apart), {share(len(unnamed), len(clean))} called noise structure.\n")
+              f"(feed marks apart), {share(len(unnamed), len(clean))} called noise structure, "
+              f"{share(sum(bool(c.get('forms')) for c in clean), len(clean))} got a formula.\n")
         head = ["hidden effect", "cases", "in the set, >= 2 limits", "named alone, >= 2 limits",
                 "wrong name alone, >= 2 limits", "below", "found at 0.8 to 1.25 limits",
                 "size within 2 u", "Δβxz within 1.96 u", "bias removed"]
@@ -129,11 +132,15 @@ def main():
                      and set(named(c)) <= ON_CLOCK[CLOCK[name]]]
             among = [c for c in own if c["verdict"] != "unnamed" and c not in right
                      and set(named(c) + c["rivals"]) & ON_CLOCK[CLOCK[name]]]
+            variable = [c for c in no_name if c["clock"] == CLOCK[name]]
+            form = [c for c in no_name if FORM[name] in [f[0] for f in c.get("forms", [])[:3]]]
             rows.append([f"`{name}`", str(len(own)), share(len(no_name), len(own)),
+                         share(len(variable), len(no_name)), share(len(form), len(no_name)),
                          share(len(right), len(own)), share(len(among), len(own))])
         if rows:
             print("Shapes in no catalogue, from 5 times the noise up:\n")
-            print(table(["shape", "cases", "unnamed", "named over the right variable",
+            print(table(["shape", "cases", "unnamed", "of these: right variable",
+                         "form among first three", "named over the right variable",
                          "right variable among rivals"], rows) + "\n")
         print(coverage([c for n in CATALOGUE + ["clean"] for c in groups[cuts, n]]))
         print("First name given (alone + with rivals), by what was hidden:\n")

@@ -7,13 +7,13 @@
 # they are confounded with): what an effect is, is asked of the effect. Every breach is printed; one
 # or more is a failure.
 cmake_minimum_required(VERSION 3.25)
-set(ROOMS base format machine signal profile effects identify trace report batch python cli)
+set(ROOMS base format machine signal profile effects identify trace report batch serve python cli)
 set(MAX_LINES 400)
 # A library and the rooms whose sources (never public headers) may include it.
 set(LIBRARIES "ceres/" "nlohmann/" "toml\\+\\+/" "pugixml\\.hpp" "zip\\.h" "pybind11/" "mpi\\.h"
-    "boost/math/" "fast_float/" "muParser")
-set(OWNERS "identify trace" "report batch cli" "identify" "format" "format" "python" "batch"
-    "base signal" "format" "effects")
+    "boost/math/" "fast_float/" "muParser" "httplib\\.h")
+set(OWNERS "identify trace" "report batch serve cli" "identify" "format report" "format" "python" "batch"
+    "base signal" "format" "effects" "serve")
 
 # Strings that are a key of the report or a plain word and not the effect of that name: file:name.
 set(NOT_AN_EFFECT
@@ -21,6 +21,9 @@ set(NOT_AN_EFFECT
     include/slideway/identify/result_fields.hpp:squareness
     include/slideway/identify/result_fields.hpp:straightness
     src/report/html_pictures.cpp:straightness
+    src/serve/results_view.cpp:squareness src/serve/results_view.cpp:straightness
+    # [tolerance], what is held against a limit
+    src/identify/conformity.cpp:squareness src/identify/conformity.cpp:straightness
     # `export --step`, and the label of a step in position
     src/cli/command_export.cpp:step src/cli/command_info.cpp:step)
 

@@ -26,8 +26,14 @@ if(CMAKE_INSTALL_PREFIX STREQUAL /usr)
 endif()
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/zsh/site-functions/
         DESTINATION ${CMAKE_INSTALL_DATADIR}/${zsh_dir} OPTIONAL)
+# `serve` among the desktop's programs.
+install(FILES cmake/desktop/slideway.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications)
+install(FILES cmake/desktop/slideway.svg
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
-install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+include(cmake/sbom.cmake)
+install(FILES README.md CHANGELOG.md SECURITY.md THIRD_PARTY.md ${PROJECT_BINARY_DIR}/slideway.spdx.json
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY problems data DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples
         FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv" PATTERN "*.md")
@@ -40,7 +46,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
-    "g++, cmake, libceres-dev, libeigen3-dev, libmuparser-dev, libpugixml-dev, libssl-dev, libtomlplusplus-dev, libzip-dev, pkg-config")
+    "g++, cmake, libceres-dev, libcpp-httplib-dev, libeigen3-dev, libmuparser-dev, libpugixml-dev, libssl-dev, libtomlplusplus-dev, libzip-dev, pkg-config")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
 "slideway finds out from profilometer traces of a face-turned workpiece, or from
 readings taken along the slide, which straightness and squareness errors the

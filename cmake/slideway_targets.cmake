@@ -2,6 +2,7 @@
 add_library(slideway_options INTERFACE)
 target_compile_options(slideway_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
                        -Wno-sign-conversion -Wno-missing-field-initializers -ffp-contract=off)
+target_link_options(slideway_options INTERFACE -Wl,-z,relro,-z,now,-z,noexecstack)
 if(SLIDEWAY_SANITIZE)
   target_compile_options(slideway_options INTERFACE -fsanitize=${SLIDEWAY_SANITIZE}
                          -fno-sanitize-recover=all -fno-omit-frame-pointer)

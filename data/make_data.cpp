@@ -194,6 +194,54 @@ void three_levels(const std::filesystem::path& directory) {
   }
 }
 
+/// What a sensor in the spindle's housing shows, degC: two time constants of warming up, and
+/// coolant from 250 to 480 s and from 700 s on.
+double spindle_temperature(double t) {
+  double out = 20.0 + 2.0 * (1.0 - std::exp(-t / 45.0)) + 3.0 * (1.0 - std::exp(-t / 400.0));
+  for (const auto& [time, sign] :
+       {std::pair(250.0, -1.0), std::pair(480.0, 1.0), std::pair(700.0, -1.0)})
+    if (t > time) out += sign * 1.5 * (1.0 - std::exp(-(t - time) / 30.0));
+  return out;
+}
+
+/// Three faces cut one after another while the spindle grows by 0.2 µm/degC, 15 s after the sensor.
+void coolant(const std::filesystem::path& directory) {
+  constexpr double kLast = 1000.0, kStep = 0.25, kLag = 15.0;  // s
+  constexpr double kGrowth = 0.2 * kMicrometre;                // per degC
+  std::vector<double> growth{0.0};                             // at 0, kStep, ...
+  for (double t = 0.0; t < kLast; t += kStep) {
+    const double due = kGrowth * (spindle_temperature(t + kStep / 2.0) - 20.0);
+    growth.push_back(due + (growth.back() - due) * std::exp(-kStep / kLag));
+  }
+  const Error warm = [growth](const ToolPoint& tool) {
+    return growth.at(static_cast<std::size_t>(std::max(tool.t, 0.0) / kStep));
+  };
+  const Carriage carriage{{0.0}, {}, 2.0e-5, 0.0, 0.0};
+  const std::vector<Cut> cuts = {{.feed_mm_per_min = 2.0},
+                                 {.feed_mm_per_min = 8.0, .start_s = 400.0},
+                                 {.feed_mm_per_min = 2.0, .inward = false, .start_s = 600.0}};
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    FaceFile file;
+    file.path = directory / ("coolant-cut" + std::to_string(i + 1) + ".csv");
+    file.comment = "face of 10 mm radius, begun at " + fixed(cuts[i].start_s, 0) + " s";
+    file.cut = cuts[i];
+    file.cut.nose_radius_mm = 50.0;
+    file.error = sum({[=](const ToolPoint& tool) { return two_levers(carriage, tool); }, warm});
+    file.positions = grid(1001, 1, 100);
+    file.stylus.offset_mm = 0.3 * kMicrometre;
+    file.stylus.noise = {
+        .white = 0.005 * kMicrometre, .correlated = 0.01 * kMicrometre, .correlation_mm = 0.1};
+    write_face(file, 700 + i);
+  }
+  Column time{"t_s", {}, 0}, temperature{"T_degC", {}, 2};
+  RandomStream random(700, "sensor");
+  for (int t = 0; t <= static_cast<int>(kLast); t += 2) {
+    time.values.push_back(t);
+    temperature.values.push_back(spindle_temperature(t) + 0.02 * random.normal());
+  }
+  write_csv(directory / "coolant-log.csv", "sensor in the spindle's housing", {time, temperature});
+}
+
 /// Errors of the axes of a three-axis machine along a path of 500 mm and a signal they make: mostly
 /// Y, a part of X, hardly Z (the order of Fig. 11). µm
 void axis_ranking(const std::filesystem::path& directory) {
@@ -231,6 +279,7 @@ int main(int argc, char** argv) {
     paper_face_10mm(directory);
     three_levels(directory);
     axis_ranking(directory);
+    coolant(directory);
   } catch (const std::exception& error) {
     std::cerr << "make_data: " << error.what() << '\n';
     return 1;

@@ -123,6 +123,11 @@ std::string hexadecimal(std::span<const unsigned char> bytes) {
   return out;
 }
 
+std::string in_words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 std::string printable(std::string_view text, std::size_t limit) {
   std::string shown;
   for (; !text.empty() && limit > 0; --limit) {

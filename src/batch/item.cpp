@@ -18,13 +18,16 @@ Json or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Js
 
 /// The line up to where a result would begin.
 std::string head(const std::string& id, const std::string& status, const std::string& reason,
-                 const Fingerprint& print) {
-  const Json json = {{"id", id},
-                     {"status", status},
-                     {"reason", or_null(reason)},
-                     {"input_sha256", or_null(print.input_sha256)},
-                     {"options_hash", or_null(print.options_hash)},
-                     {"version", results_version()}};
+                 const Fingerprint& print, const std::string& machine = "",
+                 const std::string& time = "") {
+  Json json = {{"id", id},
+               {"status", status},
+               {"reason", or_null(reason)},
+               {"input_sha256", or_null(print.input_sha256)},
+               {"options_hash", or_null(print.options_hash)},
+               {"version", results_version()}};
+  if (!machine.empty()) json["machine"] = machine;
+  if (!time.empty()) json["time"] = time;
   std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.pop_back();
   return text;
@@ -61,6 +64,18 @@ Problem problem_of(const ManifestItem& item, const ItemOptions& options) {
   return problem;
 }
 
+/// Without curves, and without candidates that were tried and not taken: identify has them.
+void keep_what_a_table_shows(Analysis& analysis) {
+  Result& result = analysis.result;
+  for (std::optional<ModelResult>* model : {&result.declared, &result.final})
+    if (*model && (*model)->straightness) (*model)->straightness->curve = {};
+  for (Ranking& each : result.ranking.entries) each.running = {};
+  if (!analysis.trace) return;
+  analysis.trace->refused.clear();
+  for (TraceRound& round : analysis.trace->rounds) round.candidates.clear();
+  for (DetectionLimit& limit : analysis.trace->detection_limits) limit.by_shape.clear();
+}
+
 /// @param print  what is known of the item, for the line of one that fails
 std::string identified(const ManifestItem& item, const ItemOptions& options, Fingerprint& print) {
   const Problem problem = problem_of(item, options);
@@ -71,9 +86,8 @@ std::string identified(const ManifestItem& item, const ItemOptions& options, Fin
   print.input_sha256 = sha256(inputs);
   Analysis analysis =
       analyse(problem, profiles, {.closes_loop = options.closes_loop, .with_evidence = true});
-  for (std::optional<ModelResult>* model : {&analysis.result.declared, &analysis.result.final})
-    if (*model && (*model)->straightness) (*model)->straightness->curve = {};
-  return head(item.id, status::kOk, "", print) +
+  keep_what_a_table_shows(analysis);
+  return head(item.id, status::kOk, "", print, item.machine, item.time) +
          ",\"evidence\":" + evidence_text(*analysis.evidence) +
          ",\"report\":" + json_line(analysis) + "}\n";
 }

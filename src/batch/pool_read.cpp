@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -55,26 +57,67 @@ std::optional<double> parse_date(std::string_view text) {
   return days + (*hours + (*minutes + *seconds / 60.0) / 60.0) / 24.0;
 }
 
-/// The part of a line that a joint evaluation is made of.
-PoolItem pool_item(const std::string& id, const std::optional<double>& time,
-                   std::string_view line) {
-  constexpr std::string_view kFrom = ",\"evidence\":", kTo = ",\"report\":";
-  const std::size_t from = line.find(kFrom) + kFrom.size();
-  const auto json = nlohmann::json::parse(line.substr(from, line.find(kTo, from) - from));
-  return {id,
-          time,
-          {json.at("parameters").get<std::vector<std::string>>(),
-           json.at("units").get<std::vector<std::string>>(),
-           json.at("rows").get<std::vector<std::vector<double>>>(),
-           json.at("values").get<std::vector<double>>()}};
+/// Whose an item is, and when it was measured.
+struct Owner {
+  std::size_t place = 0;  // in the order of the items
+  std::string machine;
+  std::optional<double> time;
+};
+
+bool is_sound(const Evidence& evidence) {
+  const std::size_t columns = evidence.parameters.size();
+  constexpr double kMost = 1e100;  // whose square, and a sum of them, is finite
+  const auto is_possible = [](double number) { return std::abs(number) < kMost; };
+  return evidence.units.size() == columns && evidence.rows.size() == evidence.values.size() &&
+         std::ranges::all_of(evidence.values, is_possible) &&
+         std::ranges::all_of(evidence.rows, [&](const std::vector<double>& row) {
+           return row.size() == columns && std::ranges::all_of(row, is_possible);
+         });
 }
 
-bool is_sound(const PoolItem& item) {
-  const std::size_t columns = item.evidence.parameters.size();
-  return item.evidence.units.size() == columns &&
-         item.evidence.rows.size() == item.evidence.values.size() &&
-         std::all_of(item.evidence.rows.begin(), item.evidence.rows.end(),
-                     [&](const auto& row) { return row.size() == columns; });
+/// The part of a line that a joint evaluation is made of; none: it is damaged.
+std::optional<Evidence> evidence_of(std::string_view line) {
+  constexpr std::string_view kFrom = ",\"evidence\":", kTo = ",\"report\":";
+  const std::size_t from = line.find(kFrom) + kFrom.size();
+  try {
+    const auto json = nlohmann::json::parse(line.substr(from, line.find(kTo, from) - from));
+    Evidence out{json.at("parameters").get<std::vector<std::string>>(),
+                 json.at("units").get<std::vector<std::string>>(),
+                 json.at("rows").get<std::vector<std::vector<double>>>(),
+                 json.at("values").get<std::vector<double>>()};
+    if (is_sound(out)) return out;
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+using OwnerOf = std::function<std::optional<Owner>(const ResultHead&)>;
+
+/// Pools what has an owner, in the order of the first item of each machine.
+std::vector<PooledMachine> pool_owned(const std::filesystem::path& results,
+                                      const OwnerOf& owner_of) {
+  std::map<std::size_t, std::pair<std::string, PoolItem>> items;
+  read_results(results, [&](const ResultHead& head, std::string_view line) {
+    if (head.status != status::kOk) return;
+    const std::optional<Owner> owner = owner_of(head);
+    if (!owner) return;
+    std::optional<Evidence> evidence = evidence_of(line);
+    if (!evidence)
+      throw DataError(results.string() + ": id '" + printable(head.id, 60) +
+                      "': its evidence is damaged");
+    items.try_emplace(owner->place, owner->machine,
+                      PoolItem{head.id, owner->time, std::move(*evidence)});
+  });
+  std::map<std::string, std::vector<PoolItem>> machines;
+  std::vector<std::string> order;
+  for (auto& [place, item] : items) {
+    if (!machines.contains(item.first)) order.push_back(item.first);
+    machines[item.first].push_back(std::move(item.second));
+  }
+  std::vector<PooledMachine> out;
+  for (const std::string& machine : order) out.push_back(pool(machine, machines[machine]));
+  return out;
 }
 
 }  // namespace
@@ -107,26 +150,27 @@ std::vector<PooledMachine> pool_machines(const Manifest& manifest,
   if (by_id.empty())
     throw DataError(manifest.path.string() + ": names no machine; accepted: a column 'machine'");
 
-  std::map<std::size_t, PoolItem> items;  // by the place in the manifest
-  read_results(results, [&](const ResultHead& head, std::string_view line) {
+  return pool_owned(results, [&](const ResultHead& head) -> std::optional<Owner> {
     const auto at = by_id.find(head.id);
-    if (at == by_id.end() || head.status != status::kOk) return;
-    PoolItem item = pool_item(head.id, times.values[at->second], line);
-    if (!is_sound(item))
-      throw DataError(results.string() + ": id '" + printable(head.id, 60) +
-                      "': its evidence is damaged");
-    items.emplace(at->second, std::move(item));
+    if (at == by_id.end()) return std::nullopt;
+    return Owner{at->second, manifest.items[at->second].machine, times.values[at->second]};
   });
+}
 
-  std::map<std::string, std::vector<PoolItem>> machines;
-  std::vector<std::string> order;
-  for (auto& [place, item] : items) {
-    const std::string& machine = manifest.items[place].machine;
-    if (!machines.contains(machine)) order.push_back(machine);
-    machines[machine].push_back(std::move(item));
-  }
-  std::vector<PooledMachine> out;
-  for (const std::string& machine : order) out.push_back(pool(machine, machines[machine]));
+PooledResults pool_machines(const std::filesystem::path& results) {
+  std::size_t place = 0;
+  std::optional<bool> are_dates;
+  const auto time_of = [&](const std::string& text) {
+    const std::optional<double> date = parse_date(text), number = parse_double(text);
+    if (!are_dates && (date || number)) are_dates = date.has_value();
+    return are_dates.value_or(false) ? date : number;
+  };
+  PooledResults out;
+  out.machines = pool_owned(results, [&](const ResultHead& head) -> std::optional<Owner> {
+    if (head.machine.empty()) return std::nullopt;
+    return Owner{place++, head.machine, time_of(head.time)};
+  });
+  out.are_dates = are_dates.value_or(false);
   return out;
 }
 

@@ -46,7 +46,7 @@ std::string number(const std::optional<double>& value, int digits) {
 }
 
 std::string parameters_text(const PooledMachine& machine) {
-  using Column = TextTable::Column;
+  using Column = TextColumn;
   TextTable table({"parameter", "value ± U", "unit", "k"},
                   {Column::name, Column::text, Column::text, Column::number});
   for (const FittedParameter& p : machine.parameters) {
@@ -60,7 +60,7 @@ std::string parameters_text(const PooledMachine& machine) {
 
 std::string trends_text(const PooledMachine& machine, bool are_dates) {
   if (machine.trends.empty()) return "";
-  using Column = TextTable::Column;
+  using Column = TextColumn;
   TextTable table({"trend", "rate ± U", "unit", "p"},
                   {Column::name, Column::text, Column::text, Column::number});
   for (const Trend& trend : machine.trends) {
@@ -72,7 +72,7 @@ std::string trends_text(const PooledMachine& machine, bool are_dates) {
 
 /// The items that do not fit, and the one that comes nearest to it.
 std::string items_text(const PooledMachine& machine) {
-  using Column = TextTable::Column;
+  using Column = TextColumn;
   TextTable table({"item", "E_n", "p", ""},
                   {Column::name, Column::number, Column::number, Column::text});
   const auto add = [&](const PooledItem& item) {

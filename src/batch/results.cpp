@@ -63,9 +63,15 @@ std::optional<ResultHead> parse_head(std::string_view line) {
   const auto id = text(json, "id"), status = text(json, "status"), reason = text(json, "reason"),
              input = text(json, "input_sha256"), options = text(json, "options_hash"),
              version = text(json, "version");
-  if (!id || id->empty() || !status || !reason || !input || !options || !version)
+  if (!id || id->empty() || !status || status->empty() || !reason || !input || !options || !version)
     return std::nullopt;
-  return ResultHead{*id, *status, *reason, {*input, *options}, *version};
+  return ResultHead{.id = *id,
+                    .status = *status,
+                    .reason = *reason,
+                    .print = {*input, *options},
+                    .version = *version,
+                    .machine = text(json, "machine").value_or(""),
+                    .time = text(json, "time").value_or("")};
 }
 
 std::size_t read_results(const fs::path& path, const EachLine& each) {

@@ -16,8 +16,6 @@
 namespace slideway {
 namespace {
 
-constexpr double kAlike = 0.9;  // of the square: two effects look alike
-
 std::string with_unit(const Parameter& parameter) {
   return parameter.unit.empty() ? parameter.name : parameter.name + " (" + parameter.unit + ")";
 }
@@ -49,7 +47,8 @@ std::string text_of(const Lines& lines) {
 std::string entry_of(const Effect& effect) {
   const Description& about = effect.description();
   return about.name + "\n" +
-         text_of({{"standard name", about.standard_name},
+         text_of({{"plain name", about.plain_name},
+                  {"standard name", about.standard_name},
                   {"formula", about.formula},
                   {"source", about.source},
                   {"cause", about.cause},
@@ -91,6 +90,7 @@ nlohmann::ordered_json json_of(const Effect& effect) {
                           {"lower", bound(parameter.lower)},
                           {"upper", bound(parameter.upper)}});
   return {{"name", about.name},
+          {"plain_name", about.plain_name},
           {"standard_name", about.standard_name},
           {"formula", about.formula},
           {"source", about.source},

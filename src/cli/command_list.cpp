@@ -18,6 +18,18 @@ const std::vector<std::pair<std::string, CommandMaker>>& commands() {
   return kList;
 }
 
+std::string first_steps() {
+  return "slideway finds, from the measured flatness of a turned face, the errors of the\n"
+         "carriages of the lathe. What to type first:\n\n"
+         "  slideway demo                 an example: the verdict here, a page beside it\n"
+         "  slideway info FILE            what is in a file of measured data\n"
+         "  slideway init FILE...         makes a problem of your files, with questions\n"
+         "  slideway check problem.toml   every fault of it, and what it can determine\n"
+         "  slideway identify problem.toml --html report.html\n"
+         "  slideway serve                the same in a browser on this machine\n\n"
+         "All commands: slideway --help\n";
+}
+
 std::string program_help() {
   std::string text =
       "usage: slideway COMMAND [options] INPUT\n"

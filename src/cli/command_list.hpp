@@ -14,6 +14,9 @@ using CommandMaker = std::unique_ptr<Command> (*)();
 /// Every command by its name, in the order of --help.
 const std::vector<std::pair<std::string, CommandMaker>>& commands();
 
+/// What the program says to who types its name alone.
+std::string first_steps();
+
 /// What --help without a command prints.
 std::string program_help();
 

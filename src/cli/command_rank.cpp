@@ -30,6 +30,7 @@ class RankCommand : public ProblemCommand {
 
  private:
   void check(const po::variables_map& given) override {
+    ProblemCommand::check(given);
     if (input().empty() && !candidates_.empty())
       fail("FILE.csv is missing; put it first, --candidates takes every word behind it");
     options_ = low_band_.checked(0);
@@ -53,10 +54,10 @@ class RankCommand : public ProblemCommand {
   }
 
   [[nodiscard]] std::string text(const std::vector<ColumnRanking>& ranking) const {
-    constexpr auto kText = TextTable::Column::name, kNumber = TextTable::Column::number;
+    constexpr auto kText = TextColumn::name, kNumber = TextColumn::number;
     const bool filtered = options_.level > 0;
     std::vector<std::string> headings{"candidate", "raw", "lag", "at lag", "N_eff", "p"};
-    std::vector<TextTable::Column> columns{kText, kNumber, kNumber, kNumber, kNumber, kNumber};
+    std::vector<TextColumn> columns{kText, kNumber, kNumber, kNumber, kNumber, kNumber};
     if (filtered) {
       headings.insert(headings.begin() + 2, "low band");
       columns.push_back(kNumber);

@@ -12,22 +12,26 @@ namespace po = boost::program_options;
 class ReportAgainCommand : public Command {
  public:
   ReportAgainCommand()
-      : Command("report", "RESULT.json --html FILE",
-                "Makes the page of a result written by --json") {
+      : Command("report", "RESULT.json --html FILE | --svg FILE",
+                "Makes the page or a picture of a result written by --json") {
     add_input("RESULT.json", &input_);
     add_options()("html", po::value(&html_)->value_name("FILE"), "the page; - for stdout");
+    add_options()("svg", po::value(&svg_)->value_name("FILE"),
+                  "one picture: a profile, the model, and what is left; - for stdout");
   }
 
   int run() override {
-    if (html_.empty()) fail("--html FILE is missing");
+    if (html_.empty() && svg_.empty()) fail("--html FILE is missing, or --svg FILE");
     keep_input(input_, html_);
+    keep_input(input_, svg_);
     const FileBytes json(input_);
-    write_output(html_, html_report(json.text(), input_));
+    if (!html_.empty()) write_output(html_, html_report(json.text(), input_));
+    if (!svg_.empty()) write_output(svg_, svg_report(json.text(), input_));
     return kDone;
   }
 
  private:
-  std::string input_, html_;
+  std::string input_, html_, svg_;
 };
 
 }  // namespace

@@ -27,7 +27,12 @@ std::string words_of(const std::string& option) {
         {"value-unit", lengths + " " + std::string(kSlopeUnits)},
         {"encoding", "utf-8 utf-16 latin-1"},
         {"completion", "bash zsh"},
-        {"to", joined(compensation_formats(), " ")}};
+        {"kind", "face slide"},
+        {"trace", "diameter radius"},
+        {"direction", "inward outward unknown"},
+        {"free", "offset,tilt offset none"},
+        {"lever", "split paper"},
+        {"to", joined(compensation_formats(), " ") + " residual dcc"}};
     for (int n = 1; n <= 19; ++n) words["wavelet"] += (n > 1 ? " db" : "db") + std::to_string(n);
     return words;
   }();

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <iostream>
 #include <memory>
 #include <new>
 #include <string>
@@ -21,8 +22,10 @@ namespace slideway {
 namespace {
 
 int run(const std::vector<std::string>& arguments) {
-  if (arguments.empty())
-    throw UsageError("no command; usage: slideway COMMAND [options] INPUT, or slideway --help");
+  if (arguments.empty()) {
+    std::cerr << first_steps();
+    return kBadUsage;
+  }
   if (arguments[0] == "--help" || arguments[0] == "-h") {
     print(program_help());
     return kDone;

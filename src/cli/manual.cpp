@@ -35,8 +35,8 @@ std::string upper(std::string text) {
 
 std::string header(const std::string& name, const std::string& version,
                    const std::string& summary) {
-  return ".TH " + upper(name) + R"( 1 "" "slideway )" + version + "\" \"slideway\"\n.SH NAME\n" +
-         plain(name) + " \\- " + plain(summary) + "\n";
+  return ".TH " + upper(name) + R"( 1 "" "slideway )" + version +
+         "\" \"slideway\"\n.ad l\n.SH NAME\n" + plain(name) + " \\- " + plain(summary) + "\n";
 }
 
 std::string options_of(const Command& command) {

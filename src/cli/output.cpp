@@ -1,5 +1,6 @@
 #include "output.hpp"
 
+#include <spawn.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -50,6 +51,14 @@ void require_writable(const std::filesystem::path& output) {
 
 }  // namespace
 
+std::string as_typed(const std::string& name) {
+  constexpr std::string_view kTakenApart = " \t\n\"'\\$`&|;<>()[]{}*?!#~";
+  if (name.find_first_of(kTakenApart) == std::string::npos) return name;
+  std::string quoted = "'";
+  for (const char c : name) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 void keep_input(const std::filesystem::path& input, const std::filesystem::path& output) {
   if (output.empty() || output == "-") return;
   std::error_code ignored;
@@ -77,6 +86,18 @@ void print_report(const std::string& text) {
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   print(coloured ? with_emphasis(safe) : safe);
+}
+
+pid_t show_page(std::string page) {
+  std::string program = "xdg-open";
+  char* arguments[] = {program.data(), page.data(), nullptr};
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
+  pid_t child = -1;
+  const int error = posix_spawnp(&child, program.c_str(), nullptr, &attributes, arguments, environ);
+  posix_spawnattr_destroy(&attributes);
+  return error == 0 ? child : -1;
 }
 
 void say(std::string_view message) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -18,6 +20,9 @@ void write_output(const std::string& path, std::string_view text);
 /// @throws std::runtime_error  it cannot be written: its folder is missing, it is a folder
 void keep_input(const std::filesystem::path& input, const std::filesystem::path& output);
 
+/// A file's name as it is typed: in quotes where a shell would take it apart.
+std::string as_typed(const std::string& name);
+
 enum class Stream { out, err };
 
 /// Whether a stream ends in a terminal that obeys escape sequences.
@@ -26,6 +31,10 @@ bool obeys_escapes(Stream stream);
 /// print() of a text without control characters, with coloured headings and verdicts if stdout is a
 /// terminal and NO_COLOR is not set (no-color.org).
 void print_report(const std::string& text);
+
+/// Starts xdg-open of a page, in a process group of its own and with no signal blocked.
+/// @return its process; -1: there is no such program
+pid_t show_page(std::string page);
 
 /// A message of one line on stderr: "slideway: ...".
 void say(std::string_view message);

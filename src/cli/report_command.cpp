@@ -1,10 +1,14 @@
 #include "report_command.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "environment.hpp"
 #include "output.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/base/file.hpp"
+#include "slideway/base/text.hpp"
+#include "slideway/format/format.hpp"
 #include "slideway/report/report.hpp"
 #include "slideway/trace/analysis.hpp"
 
@@ -44,6 +48,18 @@ void ReportCommand::keep(const std::filesystem::path& input) const {
   keep_input(input, html_);
 }
 
+void ReportCommand::require_problem(const std::filesystem::path& input) {
+  std::error_code ignored;
+  if (input.extension() == ".toml" || !std::filesystem::is_regular_file(input, ignored)) return;
+  const Format& format = recognised_format(FileBytes::of_regular_file(input).text());
+  const Format& text = *formats().back();
+  const std::string ending = input.extension().string();
+  if (&format == &text && std::ranges::count(text.endings(), std::string_view(ending)) == 0) return;
+  throw UsageError(input.string() + ": is a data file (" + std::string(format.name()) +
+                   "), no problem; make a problem of it: slideway init " +
+                   as_typed(input.string()));
+}
+
 void ReportCommand::report(const Make& text, const Make& json, const Make& html) const {
   if (!json_.empty()) write_output(json_, json());
   if (!html_.empty()) write_output(html_, html());
@@ -74,6 +90,8 @@ ProblemCommand::ProblemCommand(std::string name, std::string arguments, std::str
                 "what ${SLIDEWAY_DATA} in the problem file stands for");
   add_options()("ignore-checksum", po::bool_switch(&ignore_checksum_),
                 "read a file whose checksum is wrong; the report then says so");
+  add_options()("date", po::value(&date_)->value_name("DATE"),
+                "when this was evaluated, 2026-11-23; without it the report has no date");
   add_options()("full", po::bool_switch(&full_),
                 "print all that was found, not the verdict and the numbers alone");
   add_options()("curves", po::bool_switch(&curves_),
@@ -84,9 +102,23 @@ void ProblemCommand::add_strict() {
   add_options()("strict", po::bool_switch(&strict_), "exit code 4 if the verdict is negative");
 }
 
-int ProblemCommand::run_problem(Scope scope, bool closes_loop) const {
+void ProblemCommand::check(const po::variables_map& given) {
+  const auto is_digit_of_date = [&](std::size_t i) {
+    return i == 4 || i == 7 ? date_[i] == '-' : date_[i] >= '0' && date_[i] <= '9';
+  };
+  bool is_date = date_.size() == std::string_view("2026-11-23").size();
+  for (std::size_t i = 0; is_date && i < date_.size(); ++i) is_date = is_digit_of_date(i);
+  if (given.count("date") != 0 && !is_date)
+    fail("--date: '" + printable(date_) + "' is no date; accepted: as 2026-11-23");
+}
+
+int ProblemCommand::run_problem(Scope scope, bool closes_loop,
+                                std::optional<double> time_limit_s) const {
   keep(input_);
-  const Problem problem = read_problem(input_, data_directory(data_));
+  require_problem(input_);
+  Problem problem = read_problem(input_, data_directory(data_));
+  if (!date_.empty()) problem.about["evaluated"] = date_;
+  if (time_limit_s) problem.trace.time_limit_s = time_limit_s;
   const Analysis analysis = [&] {
     StageLine line(!is_quiet());
     const std::vector<Profile> profiles = profiles_of(problem, ignore_checksum_, line);

@@ -30,6 +30,9 @@ class ReportCommand : public Command {
   /// @throws UsageError  an output would replace the input
   void keep(const std::filesystem::path& input) const;
 
+  /// @throws UsageError  the file is one of data, not a problem
+  static void require_problem(const std::filesystem::path& input);
+
   /// Reads the profiles of a problem, after a check that no output replaces one.
   [[nodiscard]] std::vector<Profile> profiles_of(Problem problem, bool ignore_checksum,
                                                  StageLine& line) const;
@@ -51,14 +54,16 @@ class ProblemCommand : public ReportCommand {
   ProblemCommand(std::string name, std::string arguments, std::string summary);
 
   void add_strict();
+  void check(const boost::program_options::variables_map& given) override;
 
   /// Reads the problem and its profiles, does the job and reports. @return the exit code.
-  int run_problem(Scope scope, bool closes_loop = false) const;
+  int run_problem(Scope scope, bool closes_loop = false,
+                  std::optional<double> time_limit_s = std::nullopt) const;
 
   [[nodiscard]] const std::string& input() const { return input_; }
 
  private:
-  std::string input_, data_;
+  std::string input_, data_, date_;
   bool strict_ = false, ignore_checksum_ = false, full_ = false, curves_ = false;
 };
 

@@ -23,7 +23,10 @@ Section trace_section() {
               "The closed loop. slideway help trace: the gates with their ranges and reasons.",
               {{"candidates", "[\"all\"], or names of effects"},
                {"candidate", "[[trace.candidate]], as [[effect]]: looked for, not declared"},
-               {"max_effects", "how many may enter, each counted once; default 3"}}};
+               {"max_effects", "how many may enter, each counted once; default 3"},
+               {"time_limit_s",
+                "seconds after which the loop ends with what it has; default: none. What is not "
+                "held against its rivals by then is not named"}}};
   for (const Gate& gate : gate_table()) out.keys.push_back({gate.name.data(), gate.decides.data()});
   return out;
 }
@@ -40,6 +43,31 @@ const std::vector<Section>& sections() {
          "[\"our-lathes.toml\"]: files of [[effect]] tables, each a formula with cause, source and "
          "typical size, that problems share. Their effects are looked for, and can be declared by "
          "name"}}},
+      {"[about]",
+       "Who measured what with which instrument: free text for the head of the report.",
+       {{"machine", "text"},
+        {"serial", "text"},
+        {"manufacturer", "text: of the machine"},
+        {"operator", "text: who measured"},
+        {"responsible", "text: who answers for the result"},
+        {"instrument", "text"},
+        {"instrument_serial", "text"},
+        {"calibrated", "text: when, until when, by whom"},
+        {"workpiece", "text"},
+        {"place", "text: where it was measured; \"laboratory\" or \"customer\" for a DCC"},
+        {"country", "text: its two letters, \"DE\""},
+        {"conditions", "text: temperature, warm-up, what the control compensates"},
+        {"customer", "text: name, address"},
+        {"laboratory", "text: name, address"},
+        {"certificate", "text: its number, one of its kind"},
+        {"date", "text: of the measurement; as 2026-11-23 for a DCC"},
+        {"remark", "text"}}},
+      {"[tolerance]",
+       "Limits of the workpiece and the slide, for conformity by ISO 14253-1: |value| + U within "
+       "the limit conforms, |value| - U beyond it does not, between the two it cannot be decided.",
+       {{"flatness_um", "of the face: peak to valley of its low band about the mean line"},
+        {"straightness_um", "of the slide, E_ZX about the minimum zone lines"},
+        {"squareness_um_per_m", "of the slide to the spindle, its amount"}}},
       {"[machine]",
        "The lathe.",
        {{"lever",
@@ -71,6 +99,8 @@ const std::vector<Section>& sections() {
         {"value_column", "text: header name or number"},
         {"position_unit", "m mm um nm inch, or s with feed_mm_per_min; not where the file says it"},
         {"value_unit", "m mm um nm inch; slope: rad mrad urad arcsec um_per_m mm_per_m"},
+        {"time_column", "text: header name or number; when each station was read"},
+        {"time_unit", "s min h; with time_column"},
         {"delimiter", "text, if not detected: , ; tab blank"},
         {"decimal", "text, if not detected: . or ,"},
         {"encoding", "text, if not detected: utf-8 utf-16 latin-1"},
@@ -110,6 +140,10 @@ const std::vector<Section>& sections() {
          "what a large residual costs: \"none\", its square; \"huber\", \"cauchy\", less, for a "
          "trace with dirt"},
         {"standard_uncertainty", "the instrument's, in value_unit; none: estimated"},
+        {"reversed",
+         "slide: true: read with the instrument, or the straightedge, turned over by 180°: the "
+         "form "
+         "of the slide keeps its sign, what is the instrument's changes it"},
         {"role", R"("fit", or "holdout": never fitted, only predicted)"}}},
       {"[[effect]]",
        "One effect of the declared model: slideway effects lists them all.",
@@ -126,14 +160,16 @@ const std::vector<Section>& sections() {
          "step[feed2].height_um"},
         {"scope",
          "\"profile\": once for each profile that sees it, with all parameters of its own, "
-         "step[feed2].height_um, step[feed8].height_um; default \"all\""},
+         "step[feed2].height_um, step[feed8].height_um; \"instrument\": once for each instrument, "
+         "default of what is an error of the instrument; \"all\": once, default of all else"},
         {"priors", "what is known of its parameters, below"}}},
       {"[[effect]] name = \"formula\"",
        "An effect of your own; keys of any effect besides. Under [[trace.candidate]] it is looked "
        "for, under [[truth.effect]] simulated.",
        {{"as", "its name in the report"},
         {"formula",
-         "um of a height, urad of a slope, of r x X z R (mm), theta (rad), t m (s), k (turns), s "
+         "um of a height, urad of a slope, of r x X z R (mm), theta (rad), t m t_read (s), k "
+         "(turns), s "
          "(m), feed (mm/min), rpm, pi and its parameters"},
         {"parameters",
          "[{ name = \"a\", unit = \"um\" }, { name = \"tau\", unit = \"s\", lower = 1, upper = 600 "
@@ -167,7 +203,8 @@ const std::vector<Section>& sections() {
         {"value_column", "header name or number; default 2"},
         {"value_unit", "text: for the report"},
         {"clock",
-         "\"t\" cutting time, start_s included; \"m\" measuring time; \"x\" slide coordinate; "
+         "\"t\" cutting time, start_s included; \"m\" measuring time; \"t_read\" reading time, of "
+         "time_column; \"x\" slide coordinate; "
          "default t"}}},
       {"[[effect]] name = \"channel\"",
        "h = a q: a logged quantity as cause; keys of any effect besides.",
@@ -178,6 +215,14 @@ const std::vector<Section>& sections() {
         {"tau_s", "first-order lag: tau dy/dt = q - y, or \"free\"; default none"},
         {"from", "\"log\": q as it is; \"start\": its change since the cut began; default log"}}},
       trace_section(),
+      {"[[plan.cut]]",
+       "A cut or trace that can be made next, for `slideway plan`; keys of a [[profile]] besides, "
+       "but for those that say how a file is read. A key left out is as in the profile it is "
+       "like. Without any, what the workshop can make of the first face is tried.",
+       {{"like", "name of a [[profile]]; default the first of its kind and quantity"},
+        {"samples", "in its window; default as close as those of that profile"},
+        {"cost", "a number in any unit, for the table"},
+        {"time_min", "minutes it takes, for the table"}}},
       {"[truth]",
        "What `simulate` makes the profiles from.",
        {{"seed", "of the noise; default 1"},
@@ -216,7 +261,8 @@ constexpr VariableText kVariables[] = {
     {IndependentVariable::revolution, "turns of the spindle: needs spindle_rpm besides"},
     {IndependentVariable::distance, "cutting distance along the spiral: needs spindle_rpm besides"},
     {IndependentVariable::trace, "position in the trace from the spindle axis, with its sign"},
-    {IndependentVariable::measuring_time, "time on the instrument: needs traverse_mm_per_s"}};
+    {IndependentVariable::measuring_time, "time on the instrument: needs traverse_mm_per_s"},
+    {IndependentVariable::reading_time, "when a station was read: needs time_column"}};
 
 std::string effects_text() {
   std::string text = paragraph(

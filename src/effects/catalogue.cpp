@@ -79,6 +79,14 @@ MotionError motion_error_of(const std::string& name) {
   return effect ? effect->description().motion : MotionError::none;
 }
 
+std::string plain_name(const std::string& term) {
+  const std::size_t end = std::min(term.find('['), term.size());
+  const Effect* effect = effect_of(term.substr(0, end));
+  const std::string name =
+      effect ? effect->description().plain_name : in_words(term.substr(0, end));
+  return name + term.substr(end);
+}
+
 bool fixed_by_convention(const std::string& parameter) {
   const Effect* effect = effect_of(parameter);
   return effect && std::ranges::any_of(effect->parameters(), [&](const Parameter& p) {

@@ -34,6 +34,9 @@ Case case_of(std::string name, Kind kind, Quantity quantity, double first, doubl
   setup.last_mm = last;
   for (int i = 0; i < kStations; ++i)
     out.positions.push_back(first + (last - first) * i / (kStations - 1));
+  ReadingTimes times{out.positions, {}};
+  for (int i = 0; i < kStations; ++i) times.times_s.push_back(10.0 * i + 0.05 * i * i);
+  setup.reading_times = std::make_shared<const ReadingTimes>(std::move(times));
   return out;
 }
 

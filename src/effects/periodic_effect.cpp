@@ -90,14 +90,11 @@ ParameterValues PeriodicEffect::parameter_values(const Eigen::VectorXd& amplitud
   result.values << modulus / kMicrometre, shape[0], modulus > 0.0 ? std::atan2(-s, c) : 0.0;
   result.jacobian = Eigen::MatrixXd::Zero(3, 3);
   result.jacobian(1, 2) = 1.0;
-  // Modulus and phase have no derivative at zero; zero is the one finite choice without a
-  // direction.
-  if (modulus > 0.0) {
-    const double cosine = c / modulus;
-    const double sine = s / modulus;
-    result.jacobian.row(0) << cosine / kMicrometre, sine / kMicrometre, 0.0;
-    result.jacobian.row(2) << sine / modulus, -cosine / modulus, 0.0;
-  }
+  // At zero the modulus grows alike in every direction, and nothing is known of the phase.
+  const double cosine = modulus > 0.0 ? c / modulus : 1.0;
+  const double sine = modulus > 0.0 ? s / modulus : 0.0;
+  result.jacobian.row(0) << cosine / kMicrometre, sine / kMicrometre, 0.0;
+  if (modulus > 0.0) result.jacobian.row(2) << sine / modulus, -cosine / modulus, 0.0;
   return result;
 }
 

@@ -8,6 +8,8 @@
 
 namespace slideway {
 
+inline constexpr int kMostPolynomialDegree = 20;
+
 // What a factory of the catalogue gets; terms/<name>.cpp defines make_<name>(const Request&).
 struct Request {
   const std::string& name;

@@ -16,6 +16,10 @@ double measuring_time_of(const Stations& stations, Eigen::Index i) {
   return stations.measuring_time(i);
 }
 
+double reading_time_of(const Stations& stations, Eigen::Index i) {
+  return stations.reading_time(i);
+}
+
 Eigen::VectorXd readings(const Stations& stations, VariableReading reading) {
   Eigen::VectorXd out(stations.size());
   for (Eigen::Index i = 0; i < out.size(); ++i) out[i] = reading(stations, i);
@@ -47,5 +51,18 @@ std::pair<double, double> transient_range(const Stations& stations, VariableRead
 bool is_height(const Setup& setup) { return setup.quantity == Quantity::height; }
 
 bool is_face_height(const Setup& setup) { return is_height(setup) && setup.kind == Kind::face; }
+
+bool crosses_the_axis(const Setup& setup) {
+  return is_face_height(setup) && setup.first_mm < setup.center_mm &&
+         setup.center_mm < setup.last_mm;
+}
+
+double sign_of_instrument(const Setup& setup) { return setup.reversed ? -1.0 : 1.0; }
+
+std::vector<std::string> lacking_of_reversal(const std::vector<const Setup*>& setups) {
+  const auto reversed = std::ranges::count_if(setups, &Setup::reversed);
+  if (reversed > 0 && reversed < std::ssize(setups)) return {};
+  return {"readings with reversed = true beside others"};
+}
 
 }  // namespace slideway

@@ -16,6 +16,7 @@ double radius_of(const Stations& stations, Eigen::Index i);
 double revolution_of(const Stations& stations, Eigen::Index i);
 double distance_m_of(const Stations& stations, Eigen::Index i);
 double measuring_time_of(const Stations& stations, Eigen::Index i);
+double reading_time_of(const Stations& stations, Eigen::Index i);
 
 Eigen::VectorXd readings(const Stations& stations, VariableReading reading);
 
@@ -35,5 +36,13 @@ std::pair<double, double> transient_range(const Stations& stations, VariableRead
 // Which readings see an effect.
 bool is_height(const Setup& setup);
 bool is_face_height(const Setup& setup);
+// Else a step at the axis is an offset.
+bool crosses_the_axis(const Setup& setup);
+
+// The sign of what is the instrument's.
+double sign_of_instrument(const Setup& setup);
+
+// What readings of an error that a reversal shows lack together: both ways round.
+std::vector<std::string> lacking_of_reversal(const std::vector<const Setup*>& setups);
 
 }  // namespace slideway

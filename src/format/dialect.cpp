@@ -67,6 +67,7 @@ class Head {
     return encoding_ == "latin-1" ? utf8_from_latin1(field) : std::string(field);
   }
   [[nodiscard]] std::vector<std::string> fields_of(const Line& line, char delimiter) const;
+  [[nodiscard]] std::optional<std::size_t> first_like_the_next() const;
   std::size_t find_first_row();
   void decide_encoding(std::size_t first_row);
   [[nodiscard]] std::vector<std::string> read_header(std::size_t first_row, Dialect& dialect) const;
@@ -120,6 +121,20 @@ bool Head::names_all(std::string_view line) const {
          names_all(line, kBlanks);
 }
 
+// The first line with numbers in the same fields as the line after it, and as many fields: a row of
+// a table that has columns of words, too.
+std::optional<std::size_t> Head::first_like_the_next() const {
+  std::vector<bool> before;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    std::vector<bool> numbers;
+    for (const auto field : split(lines_[i].text, delimiter_of(lines_[i].text)))
+      numbers.push_back(is_numeric(field));
+    if (numbers == before && std::ranges::count(numbers, true) > 0) return i - 1;
+    before = std::move(numbers);
+  }
+  return std::nullopt;
+}
+
 // Reads lines_ up to the first row and returns its place there. Rows follow the line with the names
 // asked for; without names they start where numbers stand.
 std::size_t Head::find_first_row() {
@@ -131,6 +146,9 @@ std::size_t Head::find_first_row() {
     bytes += line.text.size();
     if (lone_return(line.text) != std::string_view::npos)
       throw DataError("line " + std::to_string(number) + kLoneReturn);
+    if (const auto row = bytes > kLongestHeader ? first_like_the_next() : std::nullopt;
+        row && !named)
+      return *row;
     if (bytes > kLongestHeader)
       throw DataError("line " + std::to_string(number) + ": no row of numbers in " +
                       std::to_string(kLongestHeader) + " bytes of header");
@@ -148,8 +166,9 @@ std::size_t Head::find_first_row() {
     at = std::min(text_.size(), at + line.text.size() + 1);
     at = next_content(text_, at, ++number);
   }
-  // Nothing is a row. The second line is treated as one, to say what is wrong with it.
-  if (!named && !request_->header_lines && lines_.size() > 1) return 1;
+  // Nothing is a row. A line is treated as one, to say what is wrong with it.
+  if (!named && !request_->header_lines && lines_.size() > 1)
+    return first_like_the_next().value_or(1);
   throw DataError("holds no rows of numbers");
 }
 
@@ -190,7 +209,7 @@ std::vector<std::string> Head::read_header(std::size_t first_row, Dialect& diale
   std::vector<std::string> names = fields_of(lines_[line], dialect.delimiter);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string below = i < units.size() ? units[i] : "";
-    dialect.units.push_back(below.empty() ? unit_of_name(names[i]) : below);
+    dialect.header_units.push_back(below.empty() ? unit_of_name(names[i]) : below);
   }
   return names;
 }
@@ -280,12 +299,11 @@ Dialect Head::dialect() {
   const std::size_t named = dialect.names.size();
   for (std::size_t n = split(row.text, dialect.delimiter).size(); dialect.names.size() < n;)
     dialect.names.push_back(std::to_string(dialect.names.size() + 1));
-  std::vector<std::string> units;
+  dialect.header_units.resize(dialect.names.size());
   for (const std::string& column : request_->columns) {
     dialect.columns.push_back(find_column(column, dialect.names));
-    units.push_back(dialect.columns.back() < named ? dialect.units[dialect.columns.back()] : "");
+    dialect.units.push_back(dialect.header_units[dialect.columns.back()]);
   }
-  dialect.units = std::move(units);
   if (!dialect.columns.empty()) {
     refuse_commas_for_both(row, dialect, named);
     dialect.decimal = request_->decimal.empty() ? decimal_of(dialect) : request_->decimal[0];

@@ -13,12 +13,13 @@ namespace slideway {
 struct Dialect {
   char delimiter = ',';
   char decimal = '.';
-  std::size_t first_row = 0;         // offset of the line
-  std::size_t first_line = 1;        // its number
-  std::vector<std::string> names;    // of all columns
-  std::vector<std::size_t> columns;  // those asked for
-  std::vector<std::string> units;    // of those; empty where the header says nothing
-  std::string decision;              // all of this in words
+  std::size_t first_row = 0;              // offset of the line
+  std::size_t first_line = 1;             // its number
+  std::vector<std::string> names;         // of all columns
+  std::vector<std::string> header_units;  // of all columns; empty where the header says nothing
+  std::vector<std::size_t> columns;       // those asked for
+  std::vector<std::string> units;         // of those
+  std::string decision;                   // all of this in words
 };
 
 // @param encoding  of the text as far as known; decided here where the header tells

@@ -29,7 +29,7 @@ bool speaks_of_text(const TraceRequest& request) {
   const TraceRequest nothing;
   return !request.delimiter.empty() || !request.decimal.empty() || !request.encoding.empty() ||
          request.header_lines || request.position_column != nothing.position_column ||
-         request.value_column != nothing.value_column;
+         request.value_column != nothing.value_column || !request.time_column.empty();
 }
 
 // `before` points came before these.
@@ -76,6 +76,24 @@ const Format& recognised_format(std::string_view bytes) {
   const auto all = formats();
   return **std::find_if(all.begin(), all.end() - 1,
                         [&](const Format* format) { return format->recognises(bytes); });
+}
+
+StatedUnits Format::stated_units(std::string_view /*bytes*/,
+                                 const TraceRequest& /*request*/) const {
+  return {states_units(), states_units()};
+}
+
+StatedUnits stated_units(const std::filesystem::path& path, const TraceRequest& request) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return {};
+  try {
+    const FileBytes bytes = FileBytes::of_regular_file(path);
+    return recognised_format(bytes.text()).stated_units(bytes.text(), request);
+  } catch (const DataError&) {
+    return {true, true};
+  } catch (const UsageError&) {
+    return {true, true};
+  }
 }
 
 const Format& format_to_write(const std::filesystem::path& path) {

@@ -12,12 +12,13 @@
 namespace slideway {
 namespace {
 
-constexpr std::string_view kEndings[] = {".xml"};
-
 class NistXml final : public Format {
  public:
   [[nodiscard]] std::string_view name() const override { return "NIST XML"; }
-  [[nodiscard]] std::span<const std::string_view> endings() const override { return kEndings; }
+  [[nodiscard]] std::span<const std::string_view> endings() const override {
+    static constexpr std::string_view kEndings[] = {".xml"};
+    return kEndings;
+  }
   [[nodiscard]] bool is_writable() const override { return false; }
   [[nodiscard]] bool recognises(std::string_view bytes) const override {
     if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);

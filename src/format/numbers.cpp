@@ -11,7 +11,7 @@
 namespace slideway {
 namespace {
 
-constexpr std::string_view kBlanks(" \t\r\n\f\v\0", 7);
+constexpr std::string_view kWhiteSpace(" \t\r\n\f\v\0", 7);
 
 [[noreturn]] void refuse(const std::string& place, std::string_view field, const char* accepted) {
   throw DataError(place + ": '" + printable(field) + "' is not " + accepted);
@@ -20,9 +20,9 @@ constexpr std::string_view kBlanks(" \t\r\n\f\v\0", 7);
 }  // namespace
 
 std::optional<std::string_view> Words::next() {
-  text_.remove_prefix(std::min(text_.find_first_not_of(kBlanks), text_.size()));
+  text_.remove_prefix(std::min(text_.find_first_not_of(kWhiteSpace), text_.size()));
   if (text_.empty()) return std::nullopt;
-  const std::string_view word = text_.substr(0, text_.find_first_of(kBlanks));
+  const std::string_view word = text_.substr(0, text_.find_first_of(kWhiteSpace));
   text_.remove_prefix(word.size());
   return word;
 }

@@ -15,23 +15,22 @@
 namespace slideway {
 namespace {
 
-constexpr std::string_view kEndings[] = {".prf"};
 constexpr std::array<std::array<std::string_view, 2>, 4> kUnits{
     {{"MM", "mm"}, {"UM", "um"}, {"NM", "nm"}, {"M", "m"}}};
 
-struct Axis {
+struct PrfAxis {
   std::size_t count = 0;
   std::string unit;
   double scale = 0.0;
 };
 
-Axis read_axis(std::string_view line, const std::string& name) {
+PrfAxis read_prf_axis(std::string_view line, const std::string& name) {
   const std::vector<std::string_view> fields = words(line.substr(0, 400));
   if (fields.size() < 6 || fields[0] != name || fields[1] != "M" || fields[5].size() != 1 ||
       fields[5].find_first_of("ILFD") != 0)
     throw DataError(name + ": '" + printable(line) + "'; accepted: " + name +
                     " M COUNT UNIT SCALE TYPE (I L F D)");
-  Axis axis{
+  PrfAxis axis{
       read_count(fields[2], name + ", count"), {}, read_positive(fields[4], name + ", scale")};
   for (const auto& [token, unit] : kUnits)
     if (token == fields[3]) axis.unit = unit;
@@ -64,7 +63,10 @@ double read_spacing(std::string_view record) {
 class Prf final : public Format {
  public:
   [[nodiscard]] std::string_view name() const override { return "PRF"; }
-  [[nodiscard]] std::span<const std::string_view> endings() const override { return kEndings; }
+  [[nodiscard]] std::span<const std::string_view> endings() const override {
+    static constexpr std::string_view kEndings[] = {".prf"};
+    return kEndings;
+  }
   [[nodiscard]] bool recognises(std::string_view bytes) const override {
     const auto first = words(take_line(bytes).substr(0, 16));
     const std::string_view second = trimmed(take_line(bytes));
@@ -81,8 +83,8 @@ Trace Prf::read(std::string_view bytes, const TraceRequest& request) const {
   std::string_view header = take_record(bytes, "header");
   take_line(header);
   take_line(header);
-  const Axis x = read_axis(take_line(header), "CX");
-  const Axis z = read_axis(take_line(header), "CZ");
+  const PrfAxis x = read_prf_axis(take_line(header), "CX");
+  const PrfAxis z = read_prf_axis(take_line(header), "CZ");
   if (x.count != z.count)
     throw DataError("header: CX has " + std::to_string(x.count) + " points, CZ " +
                     std::to_string(z.count));

@@ -17,7 +17,6 @@
 namespace slideway {
 namespace {
 
-constexpr std::string_view kEndings[] = {".sdf"};
 constexpr std::size_t kVersionSize = 8;
 constexpr std::size_t kBinaryHeaderSize = 81;
 constexpr std::array<std::size_t, 8> kTypeSizes{1, 2, 4, 4, 1, 2, 4, 8};
@@ -186,7 +185,10 @@ std::vector<double> read_binary_values(std::string_view bytes, const Header& hea
 class Sdf final : public Format {
  public:
   [[nodiscard]] std::string_view name() const override { return "SDF"; }
-  [[nodiscard]] std::span<const std::string_view> endings() const override { return kEndings; }
+  [[nodiscard]] std::span<const std::string_view> endings() const override {
+    static constexpr std::string_view kEndings[] = {".sdf"};
+    return kEndings;
+  }
   [[nodiscard]] bool recognises(std::string_view bytes) const override {
     return is_version(version_of(bytes));
   }

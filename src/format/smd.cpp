@@ -15,12 +15,11 @@
 namespace slideway {
 namespace {
 
-constexpr std::string_view kEndings[] = {".smd"};
 constexpr char kEndOfRecord = '\x03';
 constexpr char kEndOfFile = '\x1a';
 constexpr std::string_view kAxisForm = " TYPE COUNT UNIT SCALE DATATYPE";
 
-struct Axis {
+struct SmdAxis {
   std::string place;
   std::vector<std::string_view> fields;  // CX I 22401 mm 1.0e0 D 2.5e-4
   [[nodiscard]] std::size_t count() const { return read_count(fields[2], place + ", count"); }
@@ -33,9 +32,9 @@ struct Axis {
   }
 };
 
-Axis read_axis(std::string_view line, std::string_view name, std::string_view type,
-               std::size_t size) {
-  Axis axis{"record 1, " + std::string(name), words(line.substr(0, 400))};
+SmdAxis read_smd_axis(std::string_view line, std::string_view name, std::string_view type,
+                      std::size_t size) {
+  SmdAxis axis{"record 1, " + std::string(name), words(line.substr(0, 400))};
   if (axis.fields.size() < size || axis.fields[0] != name)
     throw DataError(axis.place + ": '" + printable(line) + "'; accepted: " + std::string(name) +
                     std::string(kAxisForm) + (size > 6 ? " INCREMENT" : ""));
@@ -59,7 +58,10 @@ std::array<std::uint64_t, 2> checksums(std::string_view bytes) {
 class Smd final : public Format {
  public:
   [[nodiscard]] std::string_view name() const override { return "SMD"; }
-  [[nodiscard]] std::span<const std::string_view> endings() const override { return kEndings; }
+  [[nodiscard]] std::span<const std::string_view> endings() const override {
+    static constexpr std::string_view kEndings[] = {".smd"};
+    return kEndings;
+  }
   [[nodiscard]] bool recognises(std::string_view bytes) const override {
     return bytes.starts_with("ISO 5436");
   }
@@ -104,8 +106,8 @@ Trace Smd::read(std::string_view bytes, const TraceRequest& request) const {
   const std::string_view feature = Words(take_line(header)).next().value_or("");
   if (feature != "PRF")
     throw DataError("line 2: feature type '" + printable(feature) + "'; accepted: PRF");
-  const Axis x = read_axis(take_line(header), "CX", "I", 7);
-  const Axis z = read_axis(take_line(header), "CZ", "A", 6);
+  const SmdAxis x = read_smd_axis(take_line(header), "CX", "I", 7);
+  const SmdAxis z = read_smd_axis(take_line(header), "CZ", "A", 6);
   if (x.count() != z.count())
     throw DataError("record 1: CX has " + std::to_string(x.count()) + " points, CZ " +
                     std::to_string(z.count()));

@@ -316,6 +316,14 @@ Table Reader::read(const TakeRows& take) {
 
 }  // namespace
 
+TableHead parse_head(std::string_view bytes, const TableRequest& request) {
+  if (bytes.empty()) throw DataError("is empty");
+  const DecodedText text = decoded(bytes, request.encoding);
+  Dialect dialect = find_dialect(text.bytes(), text.encoding, request);
+  return {std::move(dialect.names), std::move(dialect.header_units), std::move(dialect.units),
+          std::move(dialect.decision)};
+}
+
 Table parse_table(std::string_view bytes, const TableRequest& request, const TakeRows& take) {
   if (bytes.empty()) throw DataError("is empty");
   const DecodedText text = decoded(bytes, request.encoding);

@@ -20,6 +20,9 @@ class TextFormat : public Format {
   }
   [[nodiscard]] bool states_units() const override { return false; }
 
+  [[nodiscard]] StatedUnits stated_units(std::string_view bytes,
+                                         const TraceRequest& request) const override;
+
   [[nodiscard]] bool recognises(std::string_view bytes) const override {
     const auto all = formats();
     return std::none_of(all.begin(), all.end(), [&](const Format* format) {
@@ -33,14 +36,30 @@ class TextFormat : public Format {
   [[nodiscard]] std::string write(const Trace& trace) const override;
 };
 
+TableRequest columns_of(const TraceRequest& request) {
+  return {.columns = {request.position_column, request.value_column},
+          .delimiter = request.delimiter,
+          .decimal = request.decimal,
+          .encoding = request.encoding,
+          .header_lines = request.header_lines,
+          .may_miss = true};
+}
+
+StatedUnits TextFormat::stated_units(std::string_view bytes, const TraceRequest& request) const {
+  const TableHead head = parse_head(bytes, columns_of(request));
+  return {!head.requested_units[0].empty(), !head.requested_units[1].empty()};
+}
+
 Trace TextFormat::read(std::string_view bytes, const TraceRequest& request) const {
-  std::vector<double> positions, values;
+  std::vector<double> positions, values, times;
   Trace trace = read_in_parts(bytes, request, [&](const TracePart& part) {
     append(part.positions, part.share, positions);
     append(part.values, part.share, values);
+    append(part.times, part.share, times);
   });
   trace.positions = std::move(positions);
   trace.values = std::move(values);
+  trace.times = std::move(times);
   return trace;
 }
 
@@ -49,15 +68,14 @@ Trace TextFormat::read_in_parts(std::string_view bytes, const TraceRequest& requ
   if (!request.line.empty())
     throw UsageError("line = \"" + printable(request.line) +
                      "\" belongs to an areal file; delimited text has columns");
-  const TableRequest columns{.columns = {request.position_column, request.value_column},
-                             .delimiter = request.delimiter,
-                             .decimal = request.decimal,
-                             .encoding = request.encoding,
-                             .header_lines = request.header_lines,
-                             .may_miss = true};
+  TableRequest columns = columns_of(request);
+  const bool timed = !request.time_column.empty();
+  if (timed) columns.columns.push_back(request.time_column);
   Table table = parse_table(bytes, columns, [&](const TablePart& part) {
-    take({part.table.units[0], part.table.units[1], false, part.columns[0], part.columns[1],
-          part.share});
+    TracePart points{part.table.units[0], part.table.units[1], false,
+                     part.columns[0],     part.columns[1],     part.share};
+    if (timed) points.times = part.columns[2], points.time_unit = part.table.units[2];
+    take(points);
   });
   return {{}, {}, std::move(table.units[0]), std::move(table.units[1]), std::move(table.decisions)};
 }

@@ -19,7 +19,6 @@
 namespace slideway {
 namespace {
 
-constexpr std::string_view kEndings[] = {".x3p"};
 // Numbers as text deflate to a third or so.
 constexpr std::size_t kFreeXml = std::size_t{1} << 20U;
 constexpr std::size_t kXmlExpansion = 20;
@@ -143,7 +142,10 @@ std::string absolute_axis(const std::string& name) {
 class X3p final : public Format {
  public:
   [[nodiscard]] std::string_view name() const override { return "X3P"; }
-  [[nodiscard]] std::span<const std::string_view> endings() const override { return kEndings; }
+  [[nodiscard]] std::span<const std::string_view> endings() const override {
+    static constexpr std::string_view kEndings[] = {".x3p"};
+    return kEndings;
+  }
   [[nodiscard]] bool recognises(std::string_view bytes) const override {
     return bytes.starts_with("PK\x03\x04") || bytes.starts_with("PK\x05\x06");
   }

@@ -14,7 +14,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMissingPoint = std::numeric_limits<double>::quiet_NaN();
 
 X3pAxis read_axis(pugi::xml_node root, const std::string& name) {
   X3pAxis axis;
@@ -42,7 +42,8 @@ X3pAxis read_axis(pugi::xml_node root, const std::string& name) {
   return axis;
 }
 
-void append(X3pPoints& points, const X3pAxes& axes, std::array<std::optional<double>, 3> point) {
+void append_point(X3pPoints& points, const X3pAxes& axes,
+                  std::array<std::optional<double>, 3> point) {
   if (point[0]) points.x.push_back(axes.x.coordinate(*point[0]));
   if (point[1]) points.y.push_back(axes.y.coordinate(*point[1]));
   points.z.push_back(axes.z.coordinate(point[2].value()));
@@ -72,8 +73,8 @@ std::array<std::optional<double>, 3> read_datum(std::string_view text, const X3p
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (!stored[axis]) continue;
     const std::string_view number = trimmed(fields[field++]);
-    point[axis] =
-        axis == 2 && (number == "NaN" || number == "nan") ? kMissing : read_number(number, place);
+    point[axis] = axis == 2 && (number == "NaN" || number == "nan") ? kMissingPoint
+                                                                    : read_number(number, place);
   }
   return point;
 }
@@ -123,12 +124,13 @@ X3pPoints read_data_list(pugi::xml_node list, const X3pAxes& axes, std::size_t c
       throw DataError(place + ": only " + std::to_string(count) + " are declared");
     const std::string_view text = text_of(datum);
     const auto unless_given = [](const X3pAxis& axis) {
-      return axis.incremental ? std::nullopt : std::optional(kMissing);
+      return axis.incremental ? std::nullopt : std::optional(kMissingPoint);
     };
-    append(points, axes,
-           text.empty() ? std::array<std::optional<double>, 3>{unless_given(axes.x),
-                                                               unless_given(axes.y), kMissing}
-                        : read_datum(text, axes, place));
+    append_point(points, axes,
+                 text.empty()
+                     ? std::array<std::optional<double>, 3>{unless_given(axes.x),
+                                                            unless_given(axes.y), kMissingPoint}
+                     : read_datum(text, axes, place));
     const auto consistent = [&](const std::vector<double>& stored) {
       return stored.empty() || stored.size() == points.z.size();
     };
@@ -157,8 +159,8 @@ X3pPoints read_binary(std::string_view bytes, std::string_view valid, const X3pA
     if (!axes.x.incremental) point[0] = take(axes.x);
     if (!axes.y.incremental) point[1] = take(axes.y);
     point[2] = take(axes.z);
-    if (!is_valid(valid, i)) point[2] = kMissing;
-    append(points, axes, point);
+    if (!is_valid(valid, i)) point[2] = kMissingPoint;
+    append_point(points, axes, point);
   }
   return points;
 }

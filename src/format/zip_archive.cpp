@@ -38,7 +38,7 @@ using Archive = std::unique_ptr<zip_t, Discard>;
 using File = std::unique_ptr<zip_file_t, Discard>;
 using Source = std::unique_ptr<zip_source_t, Discard>;
 
-std::string quoted(std::string_view name) { return "entry '" + printable(name, 60) + "'"; }
+std::string entry_text(std::string_view name) { return "entry '" + printable(name, 60) + "'"; }
 
 bool leads_out(std::string_view name) {
   if (name.starts_with('/') || name.find_first_of("\\:") != std::string_view::npos) return true;
@@ -64,9 +64,10 @@ void check_names(zip_t* archive) {
     const char* const name = zip_get_name(archive, static_cast<zip_uint64_t>(i), ZIP_FL_ENC_RAW);
     if (name == nullptr || *name == '\0')
       throw DataError("zip: entry " + std::to_string(i + 1) + " has no name");
-    if (leads_out(name)) throw DataError("zip: " + quoted(name) + ": its path leads out");
-    if (is_archive(name)) throw DataError("zip: " + quoted(name) + " is an archive in the archive");
-    if (!names.insert(name).second) throw DataError("zip: " + quoted(name) + " is there twice");
+    if (leads_out(name)) throw DataError("zip: " + entry_text(name) + ": its path leads out");
+    if (is_archive(name))
+      throw DataError("zip: " + entry_text(name) + " is an archive in the archive");
+    if (!names.insert(name).second) throw DataError("zip: " + entry_text(name) + " is there twice");
   }
 }
 
@@ -123,7 +124,7 @@ bool ZipArchive::contains(const std::string& name) const {
 }
 
 std::string ZipArchive::read(const std::string& name, std::size_t most) const {
-  const std::string place = "zip: " + quoted(name);
+  const std::string place = "zip: " + entry_text(name);
   zip_t* const archive = state_->archive.get();
   zip_stat_t entry{};
   if (!contains(name) || zip_stat(archive, name.c_str(), ZIP_FL_ENC_RAW, &entry) != 0)

@@ -8,7 +8,7 @@ namespace slideway {
 namespace {
 
 constexpr double kSamePlace = 1e-3;    // of a station
-constexpr double kRounding = 0.75;     // of two roundings: half, and what levelling adds
+constexpr double kRoundings = 0.75;    // of two roundings: half, and what levelling adds
 constexpr double kScatter = 10.0;      // roundings a value scatters by: noise that a display shows
 constexpr double kRough = 0.02;        // fourth over second differences: a smooth curve has none
 constexpr Eigen::Index kLeast = 8;     // values
@@ -73,7 +73,7 @@ bool is_copy(const Profile& a, const Profile& b) {
   const double difference = largest_difference(a, b);
   if (!(difference < fine) || fine < kRough * scatter(values_of(a), 2)) return false;
   const double both = rounding(a) + rounding(b);
-  return difference <= kRounding * both && fine >= kScatter * both;
+  return difference <= kRoundings * both && fine >= kScatter * both;
 }
 
 }  // namespace

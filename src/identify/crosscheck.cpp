@@ -9,7 +9,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kCoverage = 2.0;
+constexpr double kRunoutCoverage = 2.0;
 constexpr double kConsistent = 1.0;  // E_n up to here is consistent
 
 const FittedParameter* squareness_of(const ModelResult& fit) {
@@ -59,7 +59,7 @@ SquarenessCheck check_squareness(const Model& model, const std::optional<Runout>
   if (runout) {
     out.indirect_rad = (runout->r_um + runout->p_um) * kMicrometre / runout->diameter_mm;
     out.indirect_U_rad =
-        kCoverage * runout->standard_uncertainty_um * kMicrometre / runout->diameter_mm;
+        kRunoutCoverage * runout->standard_uncertainty_um * kMicrometre / runout->diameter_mm;
     if (out.travel_mm) out.indirect_amplitude_um = *out.indirect_rad * *out.travel_mm / kMicrometre;
   }
   if (!parameter) {

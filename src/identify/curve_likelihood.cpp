@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "slideway/base/parallel.hpp"
+#include "slideway/identify/isotropic_prior.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/solve.hpp"
 
@@ -25,32 +26,18 @@ double matern(double roughness, double u) {
   return roughness < 2.0 ? (1.0 + v) * falling : (1.0 + v + v * v / 3.0) * falling;
 }
 
-/// Every amplitude of one length and roughness. With the correlation's root L the likelihood of a
-/// needs M = LᵀAL and q = Lᵀb alone:
-///   2 ln likelihood = a² qᵀ (1 + a² M)⁻¹ q - ln det (1 + a² M),
-/// M made tridiagonal once.
+/// Every amplitude of one length and roughness: with the correlation's root L and the coefficients
+/// L⁻¹ of the knots, a prior a² I.
 std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, double roughness) {
   const Eigen::MatrixXd root = correlation_root(data.knots(), length, roughness);
   const Eigen::MatrixXd inner = root.transpose() * data.information() * root;
   const double most = inner.trace();
   std::vector<Hypothesis> out;
   if (!(most > 0.0)) return out;
-  const Eigen::Tridiagonalization<Eigen::MatrixXd> reduced(inner);
-  const Eigen::VectorXd diagonal = reduced.diagonal(), beside = reduced.subDiagonal();
-  const Eigen::VectorXd q = reduced.matrixQ().transpose() * (root.transpose() * data.products());
+  const IsotropicPrior prior(inner, root.transpose() * data.products());
   const double last = std::sqrt(kMostInformation / most);
-  for (double a = std::sqrt(kLeastInformation / most); a < last; a *= kAmplitudeStep) {
-    const double variance = a * a;
-    double pivot = 0.0, carried = 0.0, twice = 0.0;
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      const double off = i > 0 ? variance * beside[i - 1] : 0.0;
-      const double share = i > 0 ? off / pivot : 0.0;
-      pivot = 1.0 + variance * diagonal[i] - share * off;
-      carried = q[i] - share * carried;
-      twice += variance * carried * carried / pivot - std::log(pivot);
-    }
-    out.push_back({{a, length, roughness}, 0.5 * twice});
-  }
+  for (double a = std::sqrt(kLeastInformation / most); a < last; a *= kAmplitudeStep)
+    out.push_back({{a, length, roughness}, prior.log_evidence(a * a)});
   return out;
 }
 

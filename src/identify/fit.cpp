@@ -8,6 +8,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/identify/left_out.hpp"
 #include "slideway/identify/noise_model.hpp"
+#include "slideway/identify/planned_fit.hpp"
 
 namespace slideway {
 namespace {
@@ -15,38 +16,12 @@ namespace {
 constexpr double kSettled = 1e-4;  // relative change of the noise: no estimate moves visibly
 constexpr int kMostRounds = 6;
 
-void require_enough_data(const Model& model) {
-  Eigen::Index values = 0, unknowns = model.amplitudes() + model.shapes();
-  if (const ModelTerm* const curve = curve_term(model))
-    unknowns -= curve->effect->knots()->positions_mm.size();  // they have a prior
-  for (const Observation* observation : fitted_observations(model)) {
-    values += observation->values.size() - observation->left_out();
-    unknowns += std::ssize(observation->nuisance_names);
-  }
-  if (values == 0) throw UsageError("no profile has role = \"fit\"");
-  if (values < unknowns)
-    throw DataError("the profiles have " + std::to_string(values) + " low-band values for " +
-                    std::to_string(unknowns) +
-                    " parameters; lower the degree or the level of the low band");
-}
-
 bool has_settled(const std::vector<Noise>& before, const std::vector<Noise>& after) {
   const auto same = [](double a, double b) { return std::abs(a - b) <= kSettled * b; };
   return std::ranges::equal(before, after, [&](const Noise& a, const Noise& b) {
     return same(a.standard_deviation(), b.standard_deviation()) &&
            same(a.long_run_deviation(), b.long_run_deviation());
   });
-}
-
-/// Size of one unit of each parameter in the data, for telling a coefficient from rounding.
-Eigen::VectorXd parameter_scale(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& scale) {
-  const auto or_one = [](double s) { return s > 0.0 ? s : 1.0; };
-  if (jacobian.size() == 0) return Eigen::VectorXd::Ones(jacobian.rows());
-  const Eigen::VectorXd unit = scale.unaryExpr(or_one);
-  const Eigen::MatrixXd inverse = (jacobian * unit.cwiseInverse().asDiagonal())
-                                      .completeOrthogonalDecomposition()
-                                      .pseudoInverse();
-  return inverse.colwise().norm().transpose().unaryExpr(or_one);
 }
 
 /// Whether the sum of squares is smooth about the estimate, which is inside all bounds.
@@ -119,18 +94,31 @@ void fix_gauge(const Model& model, const Compressed& compressed, Solution& fit) 
   fit.parameters = all_parameters(model, fit.estimate);
 }
 
-/// Rank, gauge and uncertainty at the estimate.
-void conclude(const Model& model, Solution& fit) {
-  const Compressed compressed = refined(model, fit);
-  fit.parameters = all_parameters(model, fit.estimate);
+void find_null_directions(const Model& model, const Compressed& compressed, Solution& fit) {
   fit.null = null_directions(model, fit.rank.null_space, fit.parameters.jacobian,
                              parameter_scale(fit.parameters.jacobian, compressed.scale));
-  fix_gauge(model, compressed, fit);
+}
+
+void find_uncertainty(const Model& model, const Compressed& compressed, Solution& fit) {
   const double inflation = fit.uncertainty.inflation;
   fit.uncertainty = assess(fit.linear, compressed, fit.noise, fit.rank.basis, inflation);
   if (fit.estimate.curve)
     fit.uncertainty.add(covariance_of_curve_prior(model, fit.linear, fit.noise, fit.estimate),
                         compressed);
+}
+
+/// Rank, gauge and uncertainty at the estimate.
+void conclude(const Model& model, Solution& fit) {
+  const Compressed compressed = refined(model, fit);
+  fit.parameters = all_parameters(model, fit.estimate);
+  find_null_directions(model, compressed, fit);
+  fix_gauge(model, compressed, fit);
+  find_uncertainty(model, compressed, fit);
+}
+
+Eigen::MatrixXd covariance_of(const Uncertainty& uncertainty) {
+  return uncertainty.inflation * uncertainty.basis * uncertainty.covariance *
+         uncertainty.basis.transpose();
 }
 
 /// The noise under the model, and under that noise the prior of its curve.
@@ -149,6 +137,21 @@ bool settle(const Model& model, Solution& fit, Estimate& estimate,
 }
 
 }  // namespace
+
+void require_enough_data(const Model& model) {
+  Eigen::Index values = 0, unknowns = model.amplitudes() + model.shapes();
+  if (const ModelTerm* const curve = curve_term(model))
+    unknowns -= curve->effect->knots()->positions_mm.size();  // they have a prior
+  for (const Observation* observation : fitted_observations(model)) {
+    values += observation->values.size() - observation->left_out();
+    unknowns += std::ssize(observation->nuisance_names);
+  }
+  if (values == 0) throw UsageError("no profile has role = \"fit\"");
+  if (values < unknowns)
+    throw DataError("the profiles have " + std::to_string(values) + " low-band values for " +
+                    std::to_string(unknowns) +
+                    " parameters; lower the degree or the level of the low band");
+}
 
 Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   require_enough_data(model);
@@ -172,6 +175,29 @@ Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   out.message = solved.message;
   out.shape_at_bound = solved.shape_at_bound;
   conclude(model, out);
+  return out;
+}
+
+Solution with_profiles(const Model& model, const Solution& fit,
+                       const std::vector<ProfileToCome>& more) {
+  Solution out = fit;
+  for (const ProfileToCome& profile : more) {
+    const Observation& observation = *profile.observation;
+    out.linear.observations.push_back(&observation);
+    out.linear.columns.push_back(linear_columns(model, fit.estimate, observation));
+    out.linear.residuals.emplace_back(Eigen::VectorXd::Zero(observation.values.size()));
+    out.estimate.nuisances.emplace_back(Eigen::VectorXd::Zero(observation.nuisances.cols()));
+    out.noise.push_back(profile.noise);
+  }
+  const Compressed compressed = compress(out.linear, out.noise);
+  out.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
+  find_null_directions(model, compressed, out);
+  find_uncertainty(model, compressed, out);
+  if (fit.other_form && !more.empty()) {
+    const Solution without = with_profiles(model, fit, {});
+    out.uncertainty.add(covariance_of(fit.uncertainty) - covariance_of(without.uncertainty),
+                        compressed);
+  }
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "slideway/identify/identifiability.hpp"
 
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -91,6 +92,16 @@ Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
   return rank;
 }
 
+Eigen::VectorXd parameter_scale(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& scale) {
+  const auto or_one = [](double s) { return s > 0.0 ? s : 1.0; };
+  if (jacobian.size() == 0) return Eigen::VectorXd::Ones(jacobian.rows());
+  const Eigen::VectorXd unit = scale.unaryExpr(or_one);
+  const Eigen::MatrixXd inverse = (jacobian * unit.cwiseInverse().asDiagonal())
+                                      .completeOrthogonalDecomposition()
+                                      .pseudoInverse();
+  return inverse.colwise().norm().transpose().unaryExpr(or_one);
+}
+
 NullDirections null_directions(const Model& model, const Eigen::MatrixXd& null_space,
                                const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& scale) {
   NullDirections null;
@@ -100,7 +111,9 @@ NullDirections null_directions(const Model& model, const Eigen::MatrixXd& null_s
   null.amplitudes = null_space;
   Eigen::MatrixXd scaled = scale.asDiagonal() * (jacobian * null_space);
   null.own = reduce(scaled, null.amplitudes, order);
-  null.identifiable.assign(order.size(), true);
+  null.identifiable.resize(order.size());
+  for (std::size_t p = 0; p < order.size(); ++p)  // what moves with nothing is not known
+    null.identifiable[p] = !jacobian.row(static_cast<Eigen::Index>(p)).isZero(0.0);
   for (Eigen::Index j = 0; j < scaled.cols(); ++j) {
     const double largest = scaled.col(j).cwiseAbs().maxCoeff();
     for (Eigen::Index i = 0; i < scaled.rows(); ++i) {
@@ -122,7 +135,7 @@ NullDirections null_directions(const Model& model, const Eigen::MatrixXd& null_s
 std::vector<UndeterminedDirection> undetermined(const Model& model, const NullDirections& null) {
   const std::vector<std::string> names = model.parameter_names();
   std::vector<UndeterminedDirection> out;
-  for (Eigen::Index d = 0; d < null.parameters.cols(); ++d) {
+  for (Eigen::Index d = 0; d < std::ssize(null.own); ++d) {  // beyond these no parameter moves
     UndeterminedDirection direction;
     std::vector<bool> involved(names.size(), false);
     const double length = null.parameters.col(d).norm();
@@ -141,7 +154,8 @@ Eigen::MatrixXd determined_rows(const NullDirections& null) {
   const std::set<Eigen::Index> own(null.own.begin(), null.own.end());
   std::vector<Eigen::RowVectorXd> rows;
   for (Eigen::Index p = 0; p < null.parameters.rows(); ++p) {
-    if (null.identifiable[p] || own.contains(p)) continue;
+    const bool is_known = null.identifiable[p] || !null.parameters.row(p).any();  // or nothing is
+    if (is_known || own.contains(p)) continue;
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(null.parameters.rows());
     row[p] = 1.0;
     for (std::size_t d = 0; d < null.own.size(); ++d) row[null.own[d]] = -null.parameters(p, d);

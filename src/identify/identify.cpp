@@ -10,6 +10,7 @@
 #include "slideway/base/statistics.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/agreement.hpp"
+#include "slideway/identify/conformity.hpp"
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/held_out.hpp"
 #include "slideway/identify/noise_model.hpp"
@@ -91,6 +92,7 @@ LowBandSummary planned_low_band(const Profile& profile, const LowBandOptions& op
 Result summarise_inputs(const Problem& problem, const std::vector<Profile>& profiles) {
   Result result;
   result.title = problem.title;
+  result.about = problem.about;
   result.version = SLIDEWAY_VERSION;
   for (const Profile& profile : profiles) result.inputs.push_back(summarise_input(profile));
   result.assumed = assumptions(problem, profiles);
@@ -143,6 +145,7 @@ void set_final(const Problem& problem, const FittedModel& fitted, ModelResult su
     result.crosscheck.squareness.emplace();
     result.crosscheck.squareness->reason = "this command makes no cross-check";
   }
+  result.conformity = conformity_of(problem, fitted, summary);
   result.final = std::move(summary);
 }
 

@@ -14,17 +14,16 @@ namespace {
 
 constexpr double kSpanned = 1e-6;  // of a unit cosine outside the model: it is the model's own
 
-/// White slow cosines of unit length, and their inner products with one another, the model's
-/// columns and the residual, nuisances eliminated.
-struct SlowProducts {
-  Eigen::MatrixXd own, columns;
-  Eigen::VectorXd residual;
+/// What one profile's slow cosines span, white, nuisances eliminated: orthonormal directions.
+struct SlowDirections {
+  Eigen::MatrixXd of_model;  // their products with the model's columns
+  Eigen::VectorXd residual;  // and with the residual
 
-  SlowProducts(const Observation& observation, const Noise& noise, const Eigen::MatrixXd& of_model,
-               const Eigen::VectorXd& rest, Eigen::Index count) {
-    const Eigen::Index m = observation.nuisances.cols(), k = of_model.cols(), n = rest.size();
+  SlowDirections(const Observation& observation, const Noise& noise, const Eigen::MatrixXd& model,
+                 const Eigen::VectorXd& rest, Eigen::Index count) {
+    const Eigen::Index m = observation.nuisances.cols(), k = model.cols(), n = rest.size();
     Eigen::MatrixXd rows(n, m + count + k + 1);
-    rows << observation.nuisances, slow_cosines(n, count), of_model, rest;
+    rows << observation.nuisances, slow_cosines(n, count), model, rest;
     noise.whiten(rows);
     for (Eigen::Index j = 0; j < count; ++j) rows.col(m + j).normalize();
     Eigen::MatrixXd gram = rows.middleCols(m, count).transpose() * rows;
@@ -35,9 +34,13 @@ struct SlowProducts {
                                          .solve(nuisances.transpose() * rows);
       gram -= gram.leftCols(m).eval() * solved;
     }
-    own = gram.middleCols(m, count);
-    columns = gram.middleCols(m + count, k);
-    residual = gram.rightCols(1);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> own(gram.middleCols(m, count));
+    const Eigen::Index rank = (own.eigenvalues().array() > kSpanned).count();
+    const Eigen::MatrixXd directions =
+        own.eigenvectors().rightCols(rank) *
+        own.eigenvalues().tail(rank).cwiseSqrt().cwiseInverse().asDiagonal();
+    of_model = directions.transpose() * gram.middleCols(m + count, k);
+    residual = directions.transpose() * gram.rightCols(1);
   }
 };
 
@@ -58,6 +61,7 @@ struct AllowedMemory {
 /// @param share  directions of the slow band that are this profile's
 Moments moments(const Noise& noise, const ExponentialMixture& covariance, double share,
                 Eigen::Index count, const Gates& gates) {
+  if (count == 0) return {};
   double mean = 0.0, square = 0.0;
   for (Eigen::Index j = 1; j <= count; ++j) {
     const double ratio = noise.power_ratio(covariance, 0.5 * static_cast<double>(j));
@@ -138,31 +142,38 @@ LackOfFit lack_of_fit(const Linearisation& linear, const std::vector<Noise>& noi
   const Eigen::MatrixXd basis =
       analyse_rank(compressed.triangle, compressed.scale, gates.rank_tolerance).basis;
   std::vector<Eigen::Index> counts;
-  Eigen::Index total = 0, next = 0;
-  for (const Observation* observation : linear.observations) {
-    counts.push_back(slow_cosine_count(observation->values.size(), gates));
+  // With S the slow directions, orthonormal, M the model's and r the residual outside M, the square
+  // of r in what S adds to M is |Sᵀr|² + wᵀ K⁻¹ w: w = -Mᵀ S Sᵀr, K = I - Mᵀ S Sᵀ M.
+  const Eigen::VectorXd in_model =
+      basis.transpose() * (compressed.triangle.transpose() * compressed.target);
+  Eigen::Index total = 0, rank = 0;
+  double found = 0.0;
+  Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(basis.cols(), basis.cols());  // K
+  Eigen::VectorXd against = Eigen::VectorXd::Zero(basis.cols());                 // w
+  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+    const Observation& observation = *linear.observations[i];
+    counts.push_back(slow_cosine_count(observation.values.size(), gates));
+    if (counts.back() == 0) continue;
     total += counts.back();
+    const SlowDirections slow(observation, noise[i], linear.columns[i], linear.residuals[i],
+                              counts.back());
+    const Eigen::MatrixXd inside = slow.of_model * basis;
+    const Eigen::VectorXd outside = slow.residual - inside * in_model;
+    rank += outside.size();
+    found += outside.squaredNorm();
+    rest -= inside.transpose() * inside;
+    against -= inside.transpose() * outside;
   }
-  if (total == 0) return {};
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(total, total), inside(total, basis.cols());
-  Eigen::VectorXd products(total);
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    const SlowProducts slow(*linear.observations[i], noise[i], linear.columns[i],
-                            linear.residuals[i], counts[i]);
-    gram.block(next, next, counts[i], counts[i]) = slow.own;
-    inside.middleRows(next, counts[i]) = slow.columns * basis;
-    products.segment(next, counts[i]) = slow.residual;
-    next += counts[i];
+  if (basis.cols() > 0) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(rest);
+    const Eigen::Index left = (eigen.eigenvalues().array() > kSpanned).count();
+    rank -= basis.cols() - left;
+    found += (eigen.eigenvectors().rightCols(left).transpose() * against)
+                 .cwiseAbs2()
+                 .cwiseQuotient(eigen.eigenvalues().tail(left))
+                 .sum();
   }
-  gram -= inside * inside.transpose();
-  products -= inside * (basis.transpose() * (compressed.triangle.transpose() * compressed.target));
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gram);
-  const Eigen::Index rank = (eigen.eigenvalues().array() > kSpanned).count();
-  if (rank == 0) return {};
-  const double found = (eigen.eigenvectors().rightCols(rank).transpose() * products)
-                           .cwiseAbs2()
-                           .cwiseQuotient(eigen.eigenvalues().tail(rank))
-                           .sum();
+  if (rank <= 0) return {};
   std::vector<double> shares;
   for (const Eigen::Index count : counts)
     shares.push_back(static_cast<double>(rank * count) / static_cast<double>(total));

@@ -16,7 +16,7 @@ Eigen::VectorXd to_unit(const Eigen::MatrixXd& columns) {
 }  // namespace
 
 Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns) {
-  if (columns.cols() == 0) return columns;
+  if (columns.size() == 0) return Eigen::MatrixXd(columns.rows(), 0);
   columns *= to_unit(columns).asDiagonal();
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
   qr.setThreshold(kRankTolerance);

@@ -34,6 +34,15 @@ std::string term_name(const std::string& effect, const std::vector<std::string>&
   return profiles.empty() ? effect : effect + "[" + joined(profiles, ",") + "]";
 }
 
+std::vector<EffectOptions> of_each_instrument(const EffectOptions& options,
+                                              const std::vector<const Profile*>& profiles) {
+  const std::vector<std::vector<std::string>> instruments = by_instrument(profiles);
+  if (instruments.size() < 2) return {options};
+  std::vector<EffectOptions> out(instruments.size(), options);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].profiles = instruments[i];
+  return out;
+}
+
 SlideRange slide_range(const Profile& profile, const Machine& machine) {
   const Stations stations = profile.stations(machine);
   SlideRange range{INFINITY, -INFINITY};
@@ -84,6 +93,7 @@ namespace {
 
 TravelRange travel_range(const std::vector<Profile>& profiles, const Machine& machine) {
   TravelRange range{INFINITY, -INFINITY, INFINITY, -INFINITY};
+  double read_from_s = INFINITY;
   for (const Profile& profile : profiles) {
     const SlideRange own = slide_range(profile, machine);
     const double foot = profile.setup.base_mm.value_or(0.0) / 2.0;  // beyond the centre of a bridge
@@ -94,7 +104,10 @@ TravelRange travel_range(const std::vector<Profile>& profiles, const Machine& ma
           range.coarsest_feed_mm, *profile.setup.feed_mm_per_min / *profile.setup.spindle_rpm);
     range.z_min = std::min(range.z_min, profile.setup.z_mm);
     range.z_max = std::max(range.z_max, profile.setup.z_mm);
+    if (profile.setup.reading_times)
+      read_from_s = std::min(read_from_s, std::ranges::min(profile.setup.reading_times->times_s));
   }
+  if (std::isfinite(read_from_s)) range.read_from_s = read_from_s;
   return range;
 }
 
@@ -120,9 +133,9 @@ Eigen::MatrixXd nuisance_columns(const Profile& profile, const LowBand& low_band
   return apply_in_parts(low_band, n, std::ssize(names), fill);
 }
 
-Observation observe(const Profile& profile, LowBandOptions options, std::size_t most_values) {
-  while ((profile.positions.size() >> options.level) > most_values) ++options.level;
-  LowBand low_band(options, profile.positions);
+Observation observe(const Profile& profile, const LowBandOptions& options,
+                    std::size_t most_values) {
+  LowBand low_band(with_at_most(options, profile.positions.size(), most_values), profile.positions);
   const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
     rows = Eigen::Map<const Eigen::VectorXd>(profile.values.data() + first, rows.rows());
   };

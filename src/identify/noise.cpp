@@ -159,10 +159,23 @@ Noise Noise::scaled(double factor) const {
   return out;
 }
 
+Noise Noise::repeated(double factor) const {
+  Noise out = *this;
+  const auto multiply = [&](ExponentialMixture& covariance) { covariance.variances *= factor; };
+  multiply(out.covariance_);
+  for (Alternative& each : out.alternatives) multiply(each.covariance);
+  if (!out.is_white())
+    out.factor_ = std::make_shared<const MixtureFactor>(factored(out.covariance_));
+  out.repeats_ *= factor;
+  return out;
+}
+
 double Noise::standard_deviation() const {
-  if (is_white() || values_ < 2) return std::sqrt(covariance_.variance());
+  ExponentialMixture own = covariance_;
+  own.variances /= repeats_;
+  if (is_white() || values_ < 2) return std::sqrt(own.variance());
   const auto n = static_cast<double>(values_);
-  return std::sqrt((covariance_.variance() - covariance_.variance_of_mean(n)) * n / (n - 1.0));
+  return std::sqrt((own.variance() - own.variance_of_mean(n)) * n / (n - 1.0));
 }
 
 double Noise::spectrum(const ExponentialMixture& covariance) const {

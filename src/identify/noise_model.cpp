@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "noise_bounds.hpp"
 #include "outstanding_line.hpp"
 #include "repeats.hpp"
 #include "slideway/base/parallel.hpp"
@@ -18,8 +19,9 @@ namespace slideway {
 namespace {
 
 constexpr Eigen::Index kLeastSpare = 6;  // values beyond what is free, else the whole residual
-constexpr double kRounding = 1e-13;      // of the values: no noise, only rounding
+constexpr double kChance = 2.0;          // standard errors of a correlation
 constexpr double kSameStep = 0.1;        // relative; values as far apart have the same memory
+constexpr double kGrid = 1024.0;         // places of a station in a step: more is jitter
 
 double rms(const Eigen::VectorXd& values) {
   return std::sqrt(values.squaredNorm() /
@@ -108,7 +110,7 @@ std::optional<LinearProfile> fine_band(const Linearisation& linear, std::size_t 
   Eigen::VectorXd rest =
       without_lines(linear.residuals[i], basis, lines, near_half(observation), gates);
   rest -= basis * (basis.transpose() * rest).eval();
-  if (rest.norm() <= kRounding * observation.values.norm()) return std::nullopt;
+  if (is_rounding(rest, observation.values)) return std::nullopt;
   return LinearProfile{std::move(basis), Eigen::MatrixXd(n, 0), std::move(rest),
                        observation.profile->standard_uncertainty};
 }
@@ -151,7 +153,8 @@ std::vector<double> stations_of(const Observation& observation) {
   std::ranges::nth_element(sorted, sorted.begin() + std::ssize(sorted) / 2);
   const double median = sorted[sorted.size() / 2];
   std::vector<double> out{0.0};
-  for (const double step : steps) out.push_back(out.back() + std::max(step / median, 1.0));
+  for (const double step : steps)
+    out.push_back(out.back() + std::max(std::round(kGrid * step / median) / kGrid, 1.0));
   return out;
 }
 
@@ -191,17 +194,13 @@ struct PartialEstimate {
   }
 };
 
-/// White, of the size of a residual that is only rounding.
-Noise rounding_noise(const Observation& observation, const Eigen::VectorXd& residual,
-                     Eigen::Index taken) {
-  const Eigen::Index spare = std::max<Eigen::Index>(residual.size() - taken, 1);
-  const double size = std::sqrt(residual.squaredNorm() / static_cast<double>(spare));
-  const std::optional<double>& declared = observation.profile->standard_uncertainty;
-  Noise noise = Noise::white(
-      declared.value_or(std::max(size, 1e-17 * std::max(rms(observation.values), 1.0))),
-      observation.values.size());
-  noise.declared = declared.has_value();
-  return noise;
+/// estimate_noise(), each noise within what is possible for its values.
+std::vector<Noise> estimated(const PartialEstimate& part, const Linearisation& linear,
+                             const Eigen::MatrixXd& priors, const Gates& gates) {
+  std::vector<Noise> out = estimate_noise(part.profiles, priors, gates);
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = bounded(out[k], linear.observations[part.which[k]]->values);
+  return out;
 }
 
 /// Noise of the profiles named, from their whole residuals, the model left free.
@@ -215,7 +214,7 @@ void from_whole_residuals(const Linearisation& linear, const std::vector<std::si
   for (const std::size_t i : which) {
     const Observation& observation = *linear.observations[i];
     const Eigen::VectorXd& residual = linear.residuals[i];
-    if (rms(residual) <= kRounding * rms(observation.values)) {
+    if (is_rounding(residual, observation.values)) {
       noise[i] = rounding_noise(observation, residual, basis.cols() + observation.nuisances.cols());
       continue;
     }
@@ -225,9 +224,50 @@ void from_whole_residuals(const Linearisation& linear, const std::vector<std::si
              observation, pools[i]);
   }
   const Eigen::MatrixXd priors = linear.prior_rows * basis;
-  const std::vector<Noise> estimated =
-      estimate_noise(part.profiles, priors.transpose() * priors, gates);
-  for (std::size_t i = 0; i < estimated.size(); ++i) noise[part.which[i]] = estimated[i];
+  std::vector<Noise> found = estimated(part, linear, priors.transpose() * priors, gates);
+  for (std::size_t i = 0; i < found.size(); ++i) noise[part.which[i]] = std::move(found[i]);
+}
+
+/// How much of the texture of repeats they have in common, from 0 to 1: mean product of what the
+/// slow band leaves of two of them over the variance that is not white, or over all where it is.
+/// 0 where two unrelated noises could have as much in common.
+double common_share(const Linearisation& linear, const std::vector<std::size_t>& group,
+                    const std::vector<std::optional<LinearProfile>>& fine,
+                    const std::vector<Noise>& noise, const Gates& gates) {
+  double products = 0.0, squares = 0.0, variances = 0.0, effective = 0.0;
+  for (std::size_t a = 0; a < group.size(); ++a)
+    for (std::size_t b = a + 1; b < group.size(); ++b) {
+      const std::size_t i = group[a], j = group[b];
+      if (!fine[i] || !fine[j]) continue;
+      const auto match = matched_values(*linear.observations[i], *linear.observations[j], gates);
+      const Eigen::VectorXd &own = fine[i]->residual, &other = fine[j]->residual;
+      double product = 0.0, square = 0.0;
+      for (Eigen::Index row = 0; row < own.size(); ++row) {
+        if (match[row] < 0) continue;
+        product += own[row] * other[match[row]];
+        square += 0.5 * (own[row] * own[row] + other[match[row]] * other[match[row]]);
+      }
+      const double white = 0.5 * (noise[i].covariance().white + noise[j].covariance().white);
+      products += product;
+      squares += square;
+      effective += noise[i].effective_values();
+      variances += std::max(square - static_cast<double>(own.size()) * white, 0.0);
+    }
+  if (products * std::sqrt(effective) <= kChance * squares) return 0.0;
+  return std::clamp(products / (variances > 0.0 ? variances : squares), 0.0, 1.0);
+}
+
+/// Traces of one cut weigh by what they do not have in common: see Noise::repeated(). What readings
+/// of a slide have in common is its form.
+void weigh_repeats(const Linearisation& linear, const Gates& gates,
+                   const std::vector<std::optional<LinearProfile>>& fine,
+                   std::vector<Noise>& noise) {
+  for (const std::vector<std::size_t>& group : repeat_groups(linear, gates)) {
+    if (linear.observations[group.front()]->profile->setup.kind != Kind::face) continue;
+    const double others =
+        static_cast<double>(group.size() - 1) * common_share(linear, group, fine, noise, gates);
+    for (const std::size_t i : group) noise[i] = noise[i].repeated(1.0 + others);
+  }
 }
 
 /// One profile with the residual that a fit of it alone, all weights equal, leaves.
@@ -298,10 +338,11 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
   if (!whole.empty()) from_whole_residuals(linear, whole, gates, out);
   for (const std::size_t i : whole) out[i].pool += 2 * count;
   const Eigen::MatrixXd no_priors(0, 0);
-  std::vector<Noise> found = estimate_noise(beside.profiles, no_priors, gates);
+  std::vector<Noise> found = estimated(beside, linear, no_priors, gates);
   for (std::size_t k = 0; k < found.size(); ++k) out[beside.which[k]] = std::move(found[k]);
+  weigh_repeats(linear, gates, fine, out);
   // Repeats hold no texture, and the fine band no slow noise: the larger in the long run.
-  found = estimate_noise(instrument.profiles, no_priors, gates);
+  found = estimated(instrument, linear, no_priors, gates);
   for (std::size_t k = 0; k < found.size(); ++k) {
     Noise& noise = out[instrument.which[k]];
     if (!fine[instrument.which[k]] || found[k].long_run_deviation() > noise.long_run_deviation())
@@ -329,7 +370,7 @@ std::vector<Noise> noise_of_each(const Linearisation& all, const std::vector<Noi
     out[i] = noise_beside(alone[i], gates).front();
     out[i].pool = count + i;
   }
-  const std::vector<Noise> found = estimate_noise(beside.profiles, Eigen::MatrixXd(0, 0), gates);
+  const std::vector<Noise> found = estimated(beside, all, Eigen::MatrixXd(0, 0), gates);
   for (std::size_t k = 0; k < found.size(); ++k) out[beside.which[k]] = found[k];
   return out;
 }
@@ -343,7 +384,11 @@ FitNoise noise_under(const Linearisation& linear, const Gates& gates) {
   }
   std::vector<std::size_t> all(out.profiles.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<double> repeats;
+  for (const Noise& noise : out.profiles) repeats.push_back(noise.repeats());
   from_whole_residuals(linear, all, gates, out.profiles);
+  for (std::size_t i = 0; i < repeats.size(); ++i)
+    out.profiles[i] = out.profiles[i].repeated(repeats[i]);
   return out;
 }
 

@@ -46,12 +46,12 @@ MatrixXd carriage_rows(const PoolItem& item) {
 }
 
 /// The least-squares solution of stacked rows of unit variance.
-struct LeastSquares {
+struct SolvedRows {
   Rank rank;
   VectorXd values;      // with the parameters nobody determines along null_space at the least
   MatrixXd covariance;  // of what is determined
 
-  explicit LeastSquares(const MatrixXd& rows) {
+  explicit SolvedRows(const MatrixXd& rows) {
     const Index p = rows.cols() - 1;
     const MatrixXd a = rows.leftCols(p);
     const Eigen::HouseholderQR<MatrixXd> qr(rows);
@@ -113,7 +113,7 @@ struct Misfit {
 /// v = y - A θ_rest, along what the rest determines.
 Misfit misfit(const MatrixXd& item, const MatrixXd& rest) {
   if (rest.rows() == 0) return {};
-  const LeastSquares solution(rest);
+  const SolvedRows solution(rest);
   const MatrixXd a = item.leftCols(item.cols() - 1);
   const VectorXd v = item.rightCols(1) - a * solution.values;
   MatrixXd determined = MatrixXd::Identity(item.rows(), item.rows());
@@ -205,7 +205,7 @@ CarriageParameters carriage_parameters(const PoolItem& item) {
 
 std::vector<FittedParameter> estimates(const CarriageParameters& parameters, const MatrixXd& rows,
                                        double scatter) {
-  const LeastSquares solution(rows);
+  const SolvedRows solution(rows);
   const std::vector<bool> determined = solution.determined(scale_of(rows));
   std::vector<FittedParameter> out;
   for (std::size_t p = 0; p < parameters.names.size(); ++p) {

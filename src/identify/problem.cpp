@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "problem_assumed.hpp"
 #include "problem_channel.hpp"
 #include "problem_effect.hpp"
 #include "problem_override.hpp"
+#include "problem_plan.hpp"
 #include "problem_profile.hpp"
 #include "problem_section.hpp"
 #include "problem_toml.hpp"
@@ -18,6 +20,9 @@
 namespace slideway {
 namespace {
 
+constexpr std::string_view kAboutKeys =
+    "machine serial manufacturer operator responsible instrument instrument_serial calibrated "
+    "workpiece place country conditions customer laboratory certificate date remark";
 constexpr double kFarthest = 1e6;  // mm: no slide is longer than a kilometre
 constexpr int kHighestInteger = std::numeric_limits<int>::max();
 
@@ -41,6 +46,16 @@ std::vector<Body> read_bodies(const Section& machine) {
   return bodies;
 }
 
+std::vector<Body> checked_bodies(const Section& machine, Lever lever) {
+  std::vector<Body> bodies = read_bodies(machine);
+  try {
+    static_cast<void>(Machine(bodies, lever));
+  } catch (const UsageError& error) {
+    machine.fail("body", error.what());
+  }
+  return bodies;
+}
+
 ProfileDefaults read_machine(const Section& root, Problem& problem) {
   ProfileDefaults defaults;
   problem.bodies = Machine::paper_lathe();
@@ -54,24 +69,21 @@ ProfileDefaults read_machine(const Section& root, Problem& problem) {
   check_overhang(*section, defaults.overhang_mm, problem.lever);
   defaults.spindle_position_mm =
       section->coordinate("spindle_position_mm", kFarthest).value_or(0.0);
-  problem.bodies = read_bodies(*section);
-  try {
-    static_cast<void>(problem.machine());
-  } catch (const UsageError& error) {
-    section->fail("body", error.what());
-  }
+  section->attempt([&] { problem.bodies = checked_bodies(*section, problem.lever); });
   return defaults;
 }
 
-void check_lever_is_given(const Section& root, const Problem& problem) {
-  const bool face =
-      std::any_of(problem.profiles.begin(), problem.profiles.end(),
-                  [](const ProfileEntry& entry) { return entry.profile.setup.kind == Kind::face; });
+void check_lever_is_given(const Section& root, const Problem& problem,
+                          const std::vector<PlannedCut>& planned) {
+  const auto is_face = [](const ProfileEntry& entry) {
+    return entry.profile.setup.kind == Kind::face;
+  };
+  const bool face = std::ranges::any_of(problem.profiles, is_face) ||
+                    std::ranges::any_of(planned, is_face, &PlannedCut::entry);
   const std::optional<Section> machine = root.table("machine");
   if (!face || (machine && machine->has("lever"))) return;
   const std::string what = "missing; a face needs it; accepted: " + std::string(kLevers);
-  if (machine) machine->fail("lever", what);
-  root.fail("machine.lever", what);
+  machine ? machine->refuse("lever", what) : root.refuse("machine.lever", what);
 }
 
 LowBandOptions read_low_band(const Section& root) {
@@ -84,13 +96,15 @@ LowBandOptions read_low_band(const Section& root) {
 void read_profile_entries(const Section& root, const ProfileDefaults& defaults,
                           const ProblemRules& rules, Problem& problem) {
   std::set<std::string> names;
-  for (const Section& section : root.tables("profile")) {
-    problem.profiles.push_back(read_profile_entry(section, defaults, rules));
-    const std::string& name = problem.profiles.back().profile.name;
-    if (!names.insert(name).second)
-      section.fail("name", "'" + name + "' is used twice; accepted: a name of its own");
-  }
-  if (problem.profiles.empty()) root.fail("profile", "missing; accepted: at least one [[profile]]");
+  const std::vector<Section> sections = root.tables("profile");
+  for (const Section& section : sections)
+    section.attempt([&] {
+      problem.profiles.push_back(read_profile_entry(section, defaults, rules));
+      const std::string& name = problem.profiles.back().profile.name;
+      if (!name.empty() && !names.insert(name).second)
+        section.refuse("name", "'" + name + "' is used twice; accepted: a name of its own");
+    });
+  if (sections.empty()) root.refuse("profile", "missing; accepted: at least one [[profile]]");
 }
 
 std::optional<Runout> read_runout(const Section& root) {
@@ -98,57 +112,100 @@ std::optional<Runout> read_runout(const Section& root) {
   if (!section) return std::nullopt;
   section->accept("r_um p_um diameter_mm standard_uncertainty_um");
   Runout runout;
-  runout.r_um = section->required("r_um", section->coordinate("r_um"), "a number");
-  runout.p_um = section->required("p_um", section->coordinate("p_um"), "a number");
-  runout.diameter_mm =
-      section->required("diameter_mm", section->magnitude("diameter_mm"), "a number above 0");
-  runout.standard_uncertainty_um = section->required(
-      "standard_uncertainty_um", section->magnitude("standard_uncertainty_um"), "a number above 0");
+  const auto read = [&](const char* key, std::optional<double> value, const char* accepted,
+                        double& out) {
+    section->attempt([&] { out = section->required(key, value, accepted); });
+  };
+  read("r_um", section->coordinate("r_um"), "a number", runout.r_um);
+  read("p_um", section->coordinate("p_um"), "a number", runout.p_um);
+  read("diameter_mm", section->magnitude("diameter_mm"), "a number above 0", runout.diameter_mm);
+  read("standard_uncertainty_um", section->magnitude("standard_uncertainty_um"), "a number above 0",
+       runout.standard_uncertainty_um);
   return runout;
 }
 
-TraceOptions read_trace(const Section& root, const std::vector<Channel>& channels,
-                        Problem& problem) {
+std::map<std::string, std::string> read_about(const Section& root) {
+  const std::optional<Section> section = root.table("about");
+  if (!section) return {};
+  section->accept(kAboutKeys);
+  std::map<std::string, std::string> about;
+  for (const std::string& key : section->keys())
+    if (const auto text = section->text(key)) about[key] = *text;
+  return about;
+}
+
+Tolerance read_tolerance(const Section& root) {
+  const std::optional<Section> section = root.table("tolerance");
+  if (!section) return {};
+  section->accept("flatness_um straightness_um squareness_um_per_m");
+  return {section->magnitude("flatness_um"), section->magnitude("straightness_um"),
+          section->magnitude("squareness_um_per_m")};
+}
+
+TraceOptions read_trace_options(const Section& root, const std::vector<Channel>& channels,
+                                Problem& problem) {
   TraceOptions options;
   const std::optional<Section> section = root.table("trace");
-  read_candidates(section, channels, problem, options);
+  root.attempt([&] { read_candidates(section, channels, problem, options); });
   if (!section) return options;
-  std::vector<std::string> keys{"candidates", "candidate", "max_effects"};
+  std::vector<std::string> keys{"candidates", "candidate", "max_effects", "time_limit_s"};
   for (const Gate& gate : gate_table()) keys.emplace_back(gate.name);
   section->accept(keys);
   options.max_effects =
       section->integer("max_effects", 0, kHighestInteger).value_or(options.max_effects);
+  options.time_limit_s = section->magnitude("time_limit_s");
   for (const Gate& gate : gate_table()) {
     double& value = options.gates.*gate.value;
     value = section->number(gate.name).value_or(value);
     if (!(value >= gate.lower && value <= gate.upper))
-      section->fail(gate.name, "out of range; accepted: from " + shortest(gate.lower) + " to " +
-                                   shortest(gate.upper));
+      section->refuse(gate.name, "out of range; accepted: from " + shortest(gate.lower) + " to " +
+                                     shortest(gate.upper));
   }
   return options;
 }
 
+/// Effects, and what names them. A file, a log or an effect that was refused has no name: what
+/// would name it is not read then.
+void read_model(const Section& root, const ProblemRules& rules, Problem& problem) {
+  std::vector<Channel> channels;
+  const bool known = root.attempt([&] {
+    read_effect_files(root, rules, problem);
+    channels = read_channels(root, rules, problem);
+  });
+  if (!known) return;
+  const bool declared = root.attempt([&] {
+    read_effects(root, channels, problem);
+    if (root.tables("effect").empty() && rules.effect_is_needed)
+      root.refuse("effect", "missing; accepted: at least one [[effect]]");
+  });
+  root.attempt([&] { problem.trace = read_trace_options(root, channels, problem); });
+  if (declared) root.attempt([&] { problem.truth = read_truth(root, channels, problem); });
+}
+
 Problem problem_of(const TomlValue& tree, const std::filesystem::path& path,
-                   const ProblemRules& rules) {
+                   const ProblemRules& rules, Faults* faults = nullptr,
+                   std::vector<PlannedCut>* planned = nullptr) {
   const std::string file = path.string();
-  const Section root(file, "", tree);
-  root.accept("title machine low_band profile channel effects effect runout trace truth");
+  const Section root(file, "", tree, faults);
+  root.accept(
+      "title about tolerance machine low_band profile channel effects effect runout trace plan "
+      "truth");
   Problem problem;
   problem.path = path;
   problem.title = root.text("title").value_or("");
-  ProfileDefaults defaults = read_machine(root, problem);
-  defaults.low_band = problem.low_band = read_low_band(root);
-  read_profile_entries(root, defaults, rules, problem);
-  check_lever_is_given(root, problem);
-  read_effect_files(root, rules, problem);
-  const std::vector<Channel> channels = read_channels(root, rules, problem);
-  read_effects(root, channels, problem);
-  if (problem.effects.empty() && rules.effect_is_needed)
-    root.fail("effect", "missing; accepted: at least one [[effect]]");
-  problem.runout = read_runout(root);
-  problem.trace = read_trace(root, channels, problem);
-  problem.truth = read_truth(root, channels, problem);
-  problem.assumed = assumed_by(root, problem);
+  root.attempt([&] { problem.about = read_about(root); });
+  root.attempt([&] { problem.tolerance = read_tolerance(root); });
+  ProfileDefaults defaults;
+  root.attempt([&] { defaults = read_machine(root, problem); });
+  root.attempt([&] { defaults.low_band = problem.low_band = read_low_band(root); });
+  root.attempt([&] { read_profile_entries(root, defaults, rules, problem); });
+  std::vector<PlannedCut> cuts;
+  root.attempt([&] { cuts = planned_cuts_of(file, tree, defaults, rules, problem.profiles); });
+  root.attempt([&] { check_lever_is_given(root, problem, cuts); });
+  if (planned) *planned = cuts;
+  read_model(root, rules, problem);
+  root.attempt([&] { problem.runout = read_runout(root); });
+  if (faults == nullptr || faults->empty()) problem.assumed = assumed_by(root, problem);
   return problem;
 }
 
@@ -167,6 +224,19 @@ Problem read_problem(const std::filesystem::path& path,
   return problem_of(tree, path, {path.parent_path(), data_dir, true});
 }
 
+std::optional<Problem> read_problem(const std::filesystem::path& path,
+                                    const std::optional<std::filesystem::path>& data_dir,
+                                    Faults& faults) {
+  const std::size_t before = faults.size();
+  try {
+    Problem problem = problem_of(read_toml(path), path, {path.parent_path(), data_dir}, &faults);
+    if (faults.size() == before) return problem;
+  } catch (const FaultError& error) {
+    faults.push_back(error.fault);
+  }
+  return std::nullopt;
+}
+
 Problem read_profiles_of_problem(const std::filesystem::path& path,
                                  const std::optional<std::filesystem::path>& data_dir) {
   return problem_of(read_toml(path), path, {path.parent_path(), data_dir, true, false});
@@ -174,6 +244,14 @@ Problem read_profiles_of_problem(const std::filesystem::path& path,
 
 Problem read_problem(const TomlValue& tree, const std::optional<std::filesystem::path>& data_dir) {
   return problem_of(tree, "problem", {{}, data_dir, false});
+}
+
+std::vector<PlannedCut> read_planned_cuts(const std::filesystem::path& path,
+                                          const std::optional<std::filesystem::path>& data_dir) {
+  std::vector<PlannedCut> out;
+  static_cast<void>(
+      problem_of(read_toml(path), path, {path.parent_path(), data_dir, true}, nullptr, &out));
+  return out;
 }
 
 }  // namespace slideway

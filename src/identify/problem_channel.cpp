@@ -12,26 +12,17 @@
 namespace slideway {
 namespace {
 
-constexpr std::string_view kTimeUnits = "s min h";
 constexpr std::size_t kMostValues = 20000;  // of a log; more are kept as means
-
-std::optional<double> seconds(std::string_view unit) {
-  if (unit == "s") return 1.0;
-  if (unit == "min") return kMinute;
-  if (unit == "h") return kMinute * kMinute;
-  return std::nullopt;
-}
 
 /// What a place in the file is in s, or in mm.
 double scale_of_places(const Section& section, const Channel& channel, const TraceFile& file) {
   const bool is_slide = channel.clock == IndependentVariable::slide;
   const std::string accepted(is_slide ? kLengthUnits : kTimeUnits);
-  std::optional<std::string> unit = section.one_of("time_unit", accepted);
-  if (!unit && file.states_units) unit = file.trace.position_unit;
-  if (!unit) section.missing("time_unit", accepted);
-  if (!is_slide && seconds(*unit)) return *seconds(*unit);
-  if (is_slide && length_unit(*unit)) return (*length_unit(*unit))(1.0);
-  section.fail("time_unit", "the file has " + *unit + "; accepted: " + accepted);
+  std::optional<std::string> asked = section.unit("time_unit", accepted, "");
+  if (!asked && file.states_units) asked = file.trace.position_unit;
+  const std::string unit = section.required("time_unit", asked, accepted);
+  if (const auto scale = is_slide ? length_unit(unit) : time_unit(unit)) return (*scale)(1.0);
+  section.fail("time_unit", "the file has " + unit + "; accepted: " + accepted);
 }
 
 /// Missing values left out, those of one time and those there are too many of as means.
@@ -66,10 +57,11 @@ Channel read_channel(const Section& section, const ProblemRules& rules, Problem&
     section.fail("name", "'" + channel.name +
                              "' is no name; accepted: a letter, then letters, "
                              "digits, _");
-  const std::string clock = section.one_of("clock", "t m x").value_or("t");
-  channel.clock = clock == "x"   ? IndependentVariable::slide
-                  : clock == "m" ? IndependentVariable::measuring_time
-                                 : IndependentVariable::time;
+  const std::string clock = section.one_of("clock", "t m t_read x").value_or("t");
+  for (const IndependentVariable each :
+       {IndependentVariable::slide, IndependentVariable::measuring_time,
+        IndependentVariable::reading_time})
+    if (clock == symbol(each)) channel.clock = each;
   channel.unit = section.text("value_unit").value_or("unit of the log");
   TraceRequest request;
   request.position_column = section.column("time_column").value_or(request.position_column);
@@ -82,23 +74,29 @@ Channel read_channel(const Section& section, const ProblemRules& rules, Problem&
   return channel;
 }
 
+/// What the loop asks of every log: the quantity, or what follows it slowly.
+DeclaredEffect follower_of(const Section& section, const Channel& channel, const Problem& problem) {
+  check_name_is_free(section, "name", channel.name, problem.own_effects);
+  try {
+    return {channel.name,
+            {.own = channel_effect(channel, {.name = channel.name, .free_tau = true})},
+            {}};
+  } catch (const UsageError& error) {
+    section.fail("file", error.what());
+  }
+}
+
 }  // namespace
 
 std::vector<Channel> read_channels(const Section& root, const ProblemRules& rules,
                                    Problem& problem) {
   std::vector<Channel> out;
-  for (const Section& section : root.tables("channel")) {
-    out.push_back(read_channel(section, rules, problem));
-    const std::string& name = out.back().name;
-    check_name_is_free(section, "name", name, problem.own_effects);
-    try {
-      // What the loop asks of every log: the quantity, or what follows it slowly.
-      problem.own_effects.push_back(
-          {name, {.own = channel_effect(out.back(), {.name = name, .free_tau = true})}, {}});
-    } catch (const UsageError& error) {
-      section.fail("file", error.what());
-    }
-  }
+  for (const Section& section : root.tables("channel"))
+    section.attempt([&] {
+      Channel channel = read_channel(section, rules, problem);
+      problem.own_effects.push_back(follower_of(section, channel, problem));
+      out.push_back(std::move(channel));
+    });
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "copies.hpp"
+#include "problem_section.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/problem_tree.hpp"
@@ -54,12 +55,34 @@ class FilesRead {
   double all_ = 0.0, before_ = 0.0;  // bytes
 };
 
-/// "problem.toml:12: profile.center_mm: what is wrong"; of a key left out, where its table begins.
-std::string placed(const Problem& problem, const ProfileEntry& entry, const KeyError& error) {
-  const auto at = entry.lines.find(entry.lines.contains(error.key) ? error.key : "");
-  const bool has_line = at != entry.lines.end() && at->second > 0;
-  return problem.path.string() + (has_line ? ":" + std::to_string(at->second) : "") + ": profile." +
-         error.key + ": '" + entry.profile.name + "': " + error.what();
+/// Where a key of a profile stands; of a key left out, where its table begins.
+Fault at_key(const Problem& problem, const ProfileEntry& entry, const std::string& key) {
+  const bool is_there = entry.lines.contains(key);
+  const auto at = entry.lines.find(is_there ? key : "");
+  const int line = at != entry.lines.end() ? at->second : 0;
+  return {.message = "", .file = problem.path.string(), .line = line, .key = is_there ? key : ""};
+}
+
+/// "problem.toml:12: profile.center_mm: what is wrong"
+Fault placed(const Problem& problem, const ProfileEntry& entry, const KeyError& error) {
+  Fault out = at_key(problem, entry, error.key);
+  out.message = out.file + (out.line > 0 ? ":" + std::to_string(out.line) : "") + ": profile." +
+                error.key + ": '" + entry.profile.name + "': " + error.what();
+  return out;
+}
+
+/// @throws DataError, FaultError
+void read_entry(const Problem& problem, const ProfileEntry& entry, const GivenTraces& given,
+                const ReadProgress& progress, Profile& profile) {
+  try {
+    take_or_read(entry, given, progress, profile);
+  } catch (const DataError& error) {
+    throw DataError("profile '" + entry.profile.name + "': " + error.what());
+  } catch (const KeyError& error) {
+    throw FaultError(placed(problem, entry, error));
+  } catch (const UsageError& error) {
+    throw FaultError({.message = problem.path.string() + ": " + error.what()});
+  }
 }
 
 }  // namespace
@@ -75,15 +98,27 @@ std::vector<Profile> read_profiles(const Problem& problem, const GivenTraces& gi
   std::vector<Profile> profiles;
   for (const ProfileEntry& entry : problem.profiles) {
     profiles.push_back(entry.profile);
+    read_entry(problem, entry, given, files.within(entry), profiles.back());
+    files.finish(entry);
+  }
+  hold_out_copies(profiles);
+  return profiles;
+}
+
+std::vector<Profile> read_profiles(const Problem& problem, Faults& faults) {
+  std::vector<Profile> profiles;
+  for (const ProfileEntry& entry : problem.profiles) {
+    Profile profile = entry.profile;
     try {
-      take_or_read(entry, given, files.within(entry), profiles.back());
-      files.finish(entry);
+      read_entry(problem, entry, {}, {}, profile);
+      profiles.push_back(std::move(profile));
+    } catch (const FaultError& error) {
+      faults.push_back(error.fault);
     } catch (const DataError& error) {
-      throw DataError("profile '" + entry.profile.name + "': " + error.what());
-    } catch (const KeyError& error) {
-      throw UsageError(placed(problem, entry, error));
-    } catch (const UsageError& error) {
-      throw UsageError(problem.path.string() + ": " + error.what());
+      Fault fault = at_key(problem, entry, "file");
+      fault.message = error.what();
+      fault.is_of_data = true;
+      faults.push_back(std::move(fault));
     }
   }
   hold_out_copies(profiles);

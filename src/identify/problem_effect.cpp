@@ -23,9 +23,10 @@ EffectOptions read_effect_options(const Section& section, const Problem& problem
                         section.magnitude("span_mm")};
   std::vector<std::string> names;
   for (const ProfileEntry& entry : problem.profiles) names.push_back(entry.profile.name);
-  options.profiles = section.some_of("profiles", names).value_or(options.profiles);
-  if (section.has("profiles") && options.profiles.empty())
-    section.fail("profiles", "is empty; accepted: " + joined(names, " "));
+  if (const auto profiles = section.some_of("profiles", names)) {
+    if (profiles->empty()) section.refuse("profiles", "is empty; accepted: " + joined(names, " "));
+    options.profiles = *profiles;
+  }
   if (const auto form = section.one_of("form", "polynomial curve"))
     options.form = *form == "curve" ? Form::curve : Form::polynomial;
   options.resolution_mm = section.magnitude("resolution_mm");
@@ -42,18 +43,20 @@ std::unique_ptr<Effect> made(const Section& section, const std::string& name,
   }
 }
 
-/// The options of an effect with one size in all its profiles, or one for each of them that can see
-/// it: with scope = "profile", and where the effect is of one profile each.
+/// The options of an effect with one size in all its profiles, one for each instrument, or one for
+/// each profile that can see it: by `scope`, and where the effect is of one profile each.
 std::vector<EffectOptions> by_scope(const Section& section, const Effect& effect,
                                     const EffectOptions& options, const Problem& problem) {
   std::vector<EffectOptions> out;
   std::vector<const Setup*> setups;
+  std::vector<const Profile*> seen;
   for (const ProfileEntry& entry : problem.profiles) {
     const std::string& name = entry.profile.name;
     const Setup& setup = entry.profile.setup;
     const bool named = options.profiles.empty() || std::ranges::count(options.profiles, name) > 0;
     if (!named || !effect.applies_to(setup)) continue;
     setups.push_back(&setup);
+    seen.push_back(&entry.profile);
     out.push_back(options);
     out.back().profiles = {name};
   }
@@ -61,8 +64,11 @@ std::vector<EffectOptions> by_scope(const Section& section, const Effect& effect
                       std::ranges::all_of(setups, [&](const Setup* setup) {
                         return effect.lacking_together({setup}).empty();
                       });
-  const std::string scope = section.one_of("scope", "all profile").value_or("all");
-  return scope == "profile" || of_one ? out : std::vector{options};
+  const std::string scope =
+      section.one_of("scope", "all instrument profile")
+          .value_or(effect.description().of_instrument ? "instrument" : "all");
+  if (scope == "profile" || of_one) return out;
+  return scope == "instrument" ? of_each_instrument(options, seen) : std::vector{options};
 }
 
 std::vector<std::string> names_of(const std::vector<DeclaredEffect>& effects) {
@@ -147,11 +153,12 @@ void remember(const Section& section, const DeclaredEffect& effect, Problem& pro
 std::optional<double> read_true_value(const Section& section, const std::string& key,
                                       const Parameter& parameter) {
   const std::optional<double> value = section.number(key);
+  if (!value && section.has(key)) return value;
   const double used = value.value_or(0.0);
   if (!(used >= parameter.lower && used <= parameter.upper))
-    section.fail(key, std::string(value ? "out of range" : "missing") + "; accepted: from " +
-                          shortest(parameter.lower) + " to " + shortest(parameter.upper) + " " +
-                          parameter.unit);
+    section.refuse(key, std::string(value ? "out of range" : "missing") + "; accepted: from " +
+                            shortest(parameter.lower) + " to " + shortest(parameter.upper) + " " +
+                            parameter.unit);
   return value;
 }
 
@@ -172,7 +179,8 @@ std::map<std::string, double> read_true_parameters(const Section& truth, const P
   section->accept(accepted);
   std::map<std::string, double> values;
   for (const std::string& key : section->keys())
-    values[key] = *read_true_value(*section, key, known.at(key));
+    if (const auto at = known.find(key); at != known.end())
+      if (const auto value = read_true_value(*section, key, at->second)) values[key] = *value;
   return values;
 }
 
@@ -194,33 +202,56 @@ void read_hidden_effect(const Section& section, const std::vector<Channel>& chan
 
 }  // namespace
 
+namespace {
+
+/// An [[effect]]
+void read_declared(const Section& section, const std::vector<Channel>& channels, Problem& problem) {
+  std::vector<std::string> keys = accepted_keys(section);
+  keys.emplace_back("priors");
+  section.accept(keys);
+  DeclaredEffect effect = read_effect(section, channels, problem);
+  const auto as_made = made(section, effect.name, effect.options, problem);
+  effect.priors = read_priors(section, names_of(as_made->parameters()));
+  for (const DeclaredEffect& other : problem.effects)
+    if (is_same_effect(effect, other))
+      section.fail("name", "'" + effect.name + "' is declared twice for the same body and profile");
+  for (const EffectOptions& each : by_scope(section, *as_made, effect.options, problem))
+    problem.effects.push_back({effect.name, each, effect.priors});
+  remember(section, effect, problem);
+}
+
+/// A [[trace.candidate]]
+void read_candidate(const Section& section, const std::vector<Channel>& channels, Problem& problem,
+                    TraceOptions& options) {
+  section.accept(accepted_keys(section));
+  const DeclaredEffect effect = read_effect(section, channels, problem);
+  const auto as_made = made(section, effect.name, effect.options, problem);
+  std::erase_if(options.own, [&](const DeclaredEffect& other) {
+    return other.name == effect.name && other.options.profiles.empty();
+  });
+  std::erase(options.candidates, effect.name);
+  for (const EffectOptions& each : by_scope(section, *as_made, effect.options, problem))
+    options.own.push_back({effect.name, each, {}});
+  remember(section, effect, problem);
+}
+
+}  // namespace
+
 void read_effect_files(const Section& root, const ProblemRules& rules, Problem& problem) {
-  for (const std::string& file : root.texts("effects")) {
-    const std::filesystem::path path = resolved(root, "effects", file, rules);
-    for (DeclaredEffect& effect : read_effect_file(path)) {
-      check_name_is_free(root, "effects", effect.name, problem.own_effects);
-      problem.own_effects.push_back(std::move(effect));
-    }
-    problem.beside.push_back(path);
-  }
+  for (const std::string& file : root.texts("effects"))
+    root.attempt([&] {
+      const std::filesystem::path path = resolved(root, "effects", file, rules);
+      for (DeclaredEffect& effect : read_effect_file(path)) {
+        check_name_is_free(root, "effects", effect.name, problem.own_effects);
+        problem.own_effects.push_back(std::move(effect));
+      }
+      problem.beside.push_back(path);
+    });
 }
 
 void read_effects(const Section& root, const std::vector<Channel>& channels, Problem& problem) {
-  for (const Section& section : root.tables("effect")) {
-    std::vector<std::string> keys = accepted_keys(section);
-    keys.emplace_back("priors");
-    section.accept(keys);
-    DeclaredEffect effect = read_effect(section, channels, problem);
-    const auto as_made = made(section, effect.name, effect.options, problem);
-    effect.priors = read_priors(section, names_of(as_made->parameters()));
-    for (const DeclaredEffect& other : problem.effects)
-      if (is_same_effect(effect, other))
-        section.fail("name",
-                     "'" + effect.name + "' is declared twice for the same body and profile");
-    for (const EffectOptions& each : by_scope(section, *as_made, effect.options, problem))
-      problem.effects.push_back({effect.name, each, effect.priors});
-    remember(section, effect, problem);
-  }
+  for (const Section& section : root.tables("effect"))
+    section.attempt([&] { read_declared(section, channels, problem); });
 }
 
 void read_candidates(const std::optional<Section>& trace, const std::vector<Channel>& channels,
@@ -238,18 +269,8 @@ void read_candidates(const std::optional<Section>& trace, const std::vector<Chan
   std::ranges::copy_if(problem.own_effects, std::back_inserter(options.own), is_wanted,
                        &DeclaredEffect::name);
   if (!trace) return;
-  for (const Section& section : trace->tables("candidate")) {
-    section.accept(accepted_keys(section));
-    const DeclaredEffect effect = read_effect(section, channels, problem);
-    const auto as_made = made(section, effect.name, effect.options, problem);
-    std::erase_if(options.own, [&](const DeclaredEffect& other) {
-      return other.name == effect.name && other.options.profiles.empty();
-    });
-    std::erase(options.candidates, effect.name);
-    for (const EffectOptions& each : by_scope(section, *as_made, effect.options, problem))
-      options.own.push_back({effect.name, each, {}});
-    remember(section, effect, problem);
-  }
+  for (const Section& section : trace->tables("candidate"))
+    section.attempt([&] { read_candidate(section, channels, problem, options); });
 }
 
 std::optional<Truth> read_truth(const Section& root, const std::vector<Channel>& channels,
@@ -265,7 +286,7 @@ std::optional<Truth> read_truth(const Section& root, const std::vector<Channel>&
     truth.samples = static_cast<std::size_t>(*samples);
   truth.parameters = read_true_parameters(*section, problem);
   for (const Section& effect : section->tables("effect"))
-    read_hidden_effect(effect, channels, problem, truth);
+    effect.attempt([&] { read_hidden_effect(effect, channels, problem, truth); });
   return truth;
 }
 

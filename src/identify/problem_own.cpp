@@ -66,8 +66,10 @@ DeclaredEffect read_formula(const Section& section, const std::vector<Channel>& 
 
 /// A number, or "free"; the number, if it is one.
 std::optional<double> number_or_free(const Section& section, std::string_view key, bool& is_free) {
-  is_free = section.is_text(key) && section.one_of(key, "free").has_value();
-  return is_free ? std::nullopt : section.not_negative(key);
+  is_free = section.is_text(key);
+  if (!is_free) return section.not_negative(key);
+  static_cast<void>(section.one_of(key, "free"));
+  return std::nullopt;
 }
 
 DeclaredEffect read_channel_effect(const Section& section, const std::vector<Channel>& channels) {

@@ -4,18 +4,18 @@
 #include <cstdlib>
 #include <limits>
 
-#include "slideway/base/file.hpp"
 #include "slideway/base/units.hpp"
 
 namespace slideway {
 namespace {
 
 constexpr std::string_view kKeys =
-    "name file kind quantity position_column value_column position_unit value_unit delimiter "
-    "decimal encoding header_lines line base_mm window mask leave_out from_mm to_mm "
+    "name file kind quantity position_column value_column position_unit value_unit time_column "
+    "time_unit delimiter decimal encoding header_lines line base_mm window mask leave_out from_mm "
+    "to_mm "
     "center_mm z_mm overhang_mm feed_mm_per_min spindle_rpm cut_direction cut_radius_mm start_s "
     "traverse_mm_per_s nose_radius_mm azimuth_deg surface instrument level wavelet boundary free "
-    "loss standard_uncertainty role";
+    "loss reversed standard_uncertainty role";
 
 constexpr double kFullTurn = 360.0;
 
@@ -45,15 +45,8 @@ namespace {
 std::string checked_name(const Section& section) {
   std::string name = section.required("name", section.text("name"), "a name of its own");
   if (name.find_first_of("/\\") != std::string::npos)
-    section.fail("name", "'" + name + "' must not hold a slash: files are named after it");
+    section.refuse("name", "'" + name + "' must not hold a slash: files are named after it");
   return name;
-}
-
-// Whether the file says itself what its numbers mean.
-bool file_states_units(const std::filesystem::path& path) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored) &&
-         recognised_format(FileBytes(path).text()).states_units();
 }
 
 void read_units(const Section& section, ProfileEntry& entry) {
@@ -64,19 +57,30 @@ void read_units(const Section& section, ProfileEntry& entry) {
   const auto position = section.unit("position_unit", kPositionUnits, " for a position");
   const auto value =
       section.unit("value_unit", value_units, slope ? " for a slope" : " for a height");
-  const bool stated = !(position && value) && file_states_units(source.path);
-  if (!position && (!stated || source.window || !source.mask.empty()))
-    section.missing("position_unit", kPositionUnits);
-  if (!value && (!stated || section.has("standard_uncertainty")))
-    section.missing("value_unit", value_units);
+  const StatedUnits stated =
+      position && value ? StatedUnits{} : stated_units(source.path, source.request);
+  const auto need = [&](const char* key, std::string_view accepted) {
+    if (!section.has(key)) section.refuse(key, "missing; accepted: " + std::string(accepted));
+  };
+  if (!position && (!stated.position || source.window || !source.mask.empty()))
+    need("position_unit", kPositionUnits);
+  if (!value && (!stated.value || section.has("standard_uncertainty")))
+    need("value_unit", value_units);
   source.position_unit = position.value_or("");
   source.value_unit = value.value_or("");
+  const bool timed = section.has("time_column");
+  if (section.has("time_unit") && !timed)
+    section.missing("time_column", "a column, or no time_unit");
+  if (timed)
+    source.time_unit =
+        section.required("time_unit", section.one_of("time_unit", kTimeUnits), kTimeUnits);
 }
 
 TraceRequest read_request(const Section& section) {
   TraceRequest request;
   request.position_column = section.column("position_column").value_or(request.position_column);
   request.value_column = section.column("value_column").value_or(request.value_column);
+  request.time_column = section.column("time_column").value_or("");
   request.delimiter = section.one_of("delimiter", ", ; tab blank").value_or("");
   request.decimal = section.one_of("decimal", ". ,").value_or("");
   request.encoding = section.one_of("encoding", "utf-8 utf-16 latin-1").value_or("");
@@ -88,8 +92,10 @@ TraceRequest read_request(const Section& section) {
 void read_source(const Section& section, const ProblemRules& rules, ProfileEntry& entry) {
   ProfileSource& source = entry.source;
   if (rules.file_is_needed || section.has("file")) {
-    entry.profile.file = section.required("file", section.text("file"), "path of a data file");
-    source.path = resolved(section, "file", entry.profile.file, rules);
+    section.attempt([&] {
+      entry.profile.file = section.required("file", section.text("file"), "path of a data file");
+      source.path = resolved(section, "file", entry.profile.file, rules);
+    });
   }
   source.request = read_request(section);
   source.window = section.range("window");
@@ -110,7 +116,7 @@ void read_geometry(const Section& section, const ProfileDefaults& machine, Setup
   if (section.one_of("quantity", "height slope") == "slope") setup.quantity = Quantity::slope;
   setup.base_mm = section.magnitude("base_mm");
   if (setup.base_mm && setup.quantity != Quantity::slope)
-    section.fail("base_mm", "belongs to quantity = \"slope\" only");
+    section.refuse("base_mm", "belongs to quantity = \"slope\" only");
   setup.center_mm = section.coordinate("center_mm").value_or(0.0);
   setup.spindle_position_mm = machine.spindle_position_mm;
   setup.z_mm = section.coordinate("z_mm").value_or(0.0);
@@ -120,10 +126,10 @@ void read_geometry(const Section& section, const ProfileDefaults& machine, Setup
 
 void read_cut(const Section& section, bool position_is_time, Setup& setup) {
   setup.feed_mm_per_min = section.magnitude("feed_mm_per_min");
-  if (position_is_time && !setup.feed_mm_per_min)
-    section.missing(
-        "feed_mm_per_min",
-        "a feed greater than 0, which position_unit = \"s\" needs to become a position");
+  if (position_is_time && !section.has("feed_mm_per_min"))
+    section.refuse("feed_mm_per_min",
+                   "missing; accepted: a feed greater than 0, which position_unit = \"s\" needs to "
+                   "become a position");
   setup.spindle_rpm = section.magnitude("spindle_rpm");
   if (const auto direction = section.one_of("cut_direction", "inward outward"))
     setup.cut_direction = *direction == "inward" ? CutDirection::inward : CutDirection::outward;
@@ -132,17 +138,21 @@ void read_cut(const Section& section, bool position_is_time, Setup& setup) {
   setup.traverse_mm_per_s = section.magnitude("traverse_mm_per_s");
   setup.nose_radius_mm = section.magnitude("nose_radius_mm");
   if (setup.nose_radius_mm && setup.kind != Kind::face)
-    section.fail("nose_radius_mm", "belongs to kind = \"face\" only");
+    section.refuse("nose_radius_mm", "belongs to kind = \"face\" only");
+  setup.reversed = section.flag("reversed").value_or(false);
+  if (section.has("reversed") && setup.kind != Kind::slide)
+    section.refuse("reversed", "belongs to kind = \"slide\" only");
   setup.azimuth_deg = section.coordinate("azimuth_deg", kFullTurn).value_or(0.0);
   if (section.has("azimuth_deg") && setup.kind != Kind::face)
-    section.fail("azimuth_deg", "belongs to kind = \"face\" only");
+    section.refuse("azimuth_deg", "belongs to kind = \"face\" only");
 }
 
 std::optional<Line> read_line(const Section& section) {
+  const bool begins = section.has("from_mm");
+  if (begins != section.has("to_mm"))
+    section.missing(begins ? "to_mm" : "from_mm", "[x, y] of both ends of the line, or of none");
   const auto from = section.point("from_mm"), to = section.point("to_mm");
-  if (!from && !to) return std::nullopt;
-  if (!from || !to)
-    section.missing(from ? "to_mm" : "from_mm", "[x, y] of both ends of the line, or of none");
+  if (!from || !to) return std::nullopt;
   if (*from == *to) section.fail("to_mm", "is from_mm; accepted: the other end of the line");
   return Line{*from, *to};
 }
@@ -156,8 +166,8 @@ void read_treatment(const Section& section, ProfileEntry& entry) {
   if (const auto uncertainty = section.magnitude("standard_uncertainty")) {
     const std::string& unit = entry.source.value_unit;
     const bool slope = profile.setup.quantity == Quantity::slope;
-    profile.standard_uncertainty =
-        (slope ? slope_unit(unit) : length_unit(unit)).value()(*uncertainty);
+    if (const auto scale = slope ? slope_unit(unit) : length_unit(unit))
+      profile.standard_uncertainty = (*scale)(*uncertainty);
   }
   const auto loss = section.one_of("loss", "none huber cauchy");
   if (loss)
@@ -169,7 +179,7 @@ void read_treatment(const Section& section, ProfileEntry& entry) {
 
 void check_overhang(const Section& section, double overhang_mm, Lever lever) {
   if (overhang_mm != 0.0 && lever != Lever::split && section.has("overhang_mm"))
-    section.fail("overhang_mm", "has no meaning here; accepted: only with lever = \"split\"");
+    section.refuse("overhang_mm", "has no meaning here; accepted: only with lever = \"split\"");
 }
 
 LowBandOptions read_low_band(const Section& section, LowBandOptions defaults) {
@@ -187,12 +197,12 @@ ProfileEntry read_profile_entry(const Section& section, const ProfileDefaults& d
                                 const ProblemRules& rules) {
   section.accept(kKeys);
   ProfileEntry entry;
-  entry.profile.name = checked_name(section);
+  section.attempt([&] { entry.profile.name = checked_name(section); });
   entry.lines = section.lines();
   read_geometry(section, defaults, entry.profile.setup);
   read_source(section, rules, entry);
   read_cut(section, entry.source.position_unit == "s", entry.profile.setup);
-  entry.profile.line = read_line(section);
+  section.attempt([&] { entry.profile.line = read_line(section); });
   entry.profile.surface = section.text("surface");
   entry.profile.instrument = section.text("instrument");
   if (std::ranges::any_of(words(kLowBandKeys), [&](const auto& key) { return section.has(key); }))

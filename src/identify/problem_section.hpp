@@ -11,18 +11,48 @@
 #include <vector>
 
 #include "problem_toml.hpp"
+#include "slideway/base/error.hpp"
+#include "slideway/identify/fault.hpp"
 
 namespace slideway {
 
 /// The words of a blank-separated list.
 std::vector<std::string> words(std::string_view list);
 
-/// One table of the problem file, read key by key. Everything it refuses is a UsageError
-/// "file:line: section.key: what is wrong; accepted: ...".
+/// A fault of the problem file as an exception.
+struct FaultError : UsageError {
+  explicit FaultError(Fault what) : UsageError(what.message), fault(std::move(what)) {}
+  Fault fault;
+};
+
+/// One table of the problem file, read key by key. Everything it refuses is a FaultError
+/// "file:line: section.key: what is wrong; accepted: ...", or is kept in `faults`, if there are any
+/// to be kept: a value that was refused is then as one that is not there.
 class Section {
  public:
-  /// @param name  how messages call it: "profile", "machine.body"; empty for the root
-  Section(const std::string& file, std::string name, const TomlValue& value);
+  /// @param name    how messages call it: "profile", "machine.body"; empty for the root
+  /// @param faults  of this section and those inside it; null: the first one is thrown
+  Section(const std::string& file, std::string name, const TomlValue& value,
+          Faults* faults = nullptr);
+
+  /// Reads a part of the file on which no other depends. Where faults are kept, one that leaves the
+  /// part is kept, too, and the part has ended. @return whether nothing was refused
+  template <typename Part>
+  bool attempt(Part&& part) const {
+    if (faults_ == nullptr) return part(), true;
+    const std::size_t before = faults_->size();
+    try {
+      part();
+    } catch (const RefusedBefore&) {
+    } catch (const FaultError& error) {
+      keep(error.fault);
+    } catch (const UsageError& error) {
+      keep({.message = error.what()});
+    } catch (const DataError& error) {
+      keep({.message = error.what(), .is_of_data = true});
+    }
+    return faults_->size() == before;
+  }
 
   /// Refuses every key that is not listed.
   void accept(std::span<const std::string> keys) const;
@@ -40,6 +70,7 @@ class Section {
   [[nodiscard]] std::optional<double> coordinate(std::string_view key, double most = 1e9) const;
   [[nodiscard]] std::optional<double> magnitude(std::string_view key) const;
   [[nodiscard]] std::optional<double> not_negative(std::string_view key) const;
+  [[nodiscard]] std::optional<bool> flag(std::string_view key) const;
   [[nodiscard]] std::optional<int> integer(std::string_view key, int lowest, int highest) const;
   [[nodiscard]] std::optional<std::string> text(std::string_view key) const;  // one line, not empty
   [[nodiscard]] std::optional<std::string> column(std::string_view key) const;  // name or number
@@ -73,6 +104,7 @@ class Section {
   template <typename T>
   [[nodiscard]] T required(std::string_view key, std::optional<T> value,
                            std::string_view accepted) const {
+    if (!value && has(key)) throw RefusedBefore();
     if (!value) missing(key, accepted);
     return *std::move(value);
   }
@@ -80,16 +112,27 @@ class Section {
   [[noreturn]] void missing(std::string_view key, std::string_view accepted) const;
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 
+  /// Where faults are kept the reading goes on behind this one.
+  void refuse(std::string_view key, const std::string& what) const;
+
  private:
+  /// Ends the part that cannot do without a value that was refused.
+  struct RefusedBefore {};
+
+  void refuse_key(std::string_view key, const std::string& what) const;
+  [[nodiscard]] Fault fault(std::string_view key, const std::string& what) const;
+  void keep(const Fault& fault) const;
   [[nodiscard]] const TomlEntry* find(std::string_view key) const;
   [[nodiscard]] std::string called(std::string_view key) const;
-  void check_word(std::string_view key, const std::string& word,
-                  std::span<const std::string> accepted, std::string_view where) const;
+  [[nodiscard]] bool check_word(std::string_view key, const std::string& word,
+                                std::span<const std::string> accepted, std::string_view where,
+                                const std::string& meant) const;
 
   const std::string* file_;
   std::string name_;
   int line_ = 0;
   const TomlValue::Table* table_;
+  Faults* faults_;
 };
 
 }  // namespace slideway

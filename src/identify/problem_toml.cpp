@@ -6,10 +6,12 @@
 
 #include <toml++/toml.h>
 
+#include "problem_section.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
+#include "slideway/identify/planned_cut.hpp"
 #include "slideway/identify/problem.hpp"
 
 namespace slideway {
@@ -45,17 +47,42 @@ toml::table parsed(const std::filesystem::path& path) {
     const FileBytes bytes(path);
     return toml::parse(bytes.text(), path.string());
   } catch (const DataError& error) {
-    throw UsageError(error.what());
+    throw FaultError({.message = error.what()});
   } catch (const toml::parse_error& error) {
     std::string what(error.description());
     std::replace(what.begin(), what.end(), '\n', ' ');
-    throw UsageError(path.string() + ":" + std::to_string(line_of(error.source())) +
-                     ": no valid TOML: " + printable(what, what.size()));
+    const int line = line_of(error.source());
+    throw FaultError({.message = path.string() + ":" + std::to_string(line) +
+                                 ": no valid TOML: " + printable(what, what.size()),
+                      .file = path.string(),
+                      .line = line});
+  }
+}
+
+void add_files(const toml::node& node, std::vector<std::string>& files) {
+  if (const toml::table* table = node.as_table()) {
+    if (const auto file = (*table)["file"].value<std::string>()) files.push_back(*file);
+    for (const auto& [key, child] : *table) add_files(child, files);
+  } else if (const toml::array* array = node.as_array()) {
+    for (const toml::node& child : *array) add_files(child, files);
   }
 }
 
 std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
+}
+
+/// A path of the problem file as a file in another directory has it.
+void lead_from(const std::filesystem::path& directory, const std::filesystem::path& base,
+               toml::node& node) {
+  toml::value<std::string>* const path = node.as_string();
+  if (path == nullptr || path->get().find("${") != std::string::npos ||
+      std::filesystem::path(path->get()).is_absolute())
+    return;
+  path->get() =
+      std::filesystem::proximate(std::filesystem::absolute(base / path->get()).lexically_normal(),
+                                 std::filesystem::absolute(directory).lexically_normal())
+          .generic_string();
 }
 
 void point_to_simulation(toml::table& table, const ProfileEntry& entry, const std::string& file) {
@@ -66,6 +93,10 @@ void point_to_simulation(toml::table& table, const ProfileEntry& entry, const st
   table.insert_or_assign("position_unit", "mm");
   table.insert_or_assign("value_column", slope ? "slope_urad" : "z_um");
   table.insert_or_assign("value_unit", value_unit);
+  if (!entry.source.time_unit.empty()) {
+    table.insert_or_assign("time_column", "t_s");
+    table.insert_or_assign("time_unit", "s");
+  }
   for (const char* key :
        {"window", "mask", "leave_out", "delimiter", "decimal", "encoding", "header_lines", "line"})
     table.erase(key);
@@ -111,6 +142,39 @@ std::string simulated_problem_text(const Problem& problem, const std::vector<std
     for (toml::node& node : *channels)
       if (toml::table* table = node.as_table())
         table->insert_or_assign("file", file_name((*table)["file"].value_or("")));
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << root << '\n';
+  return text.str();
+}
+
+std::vector<std::string> files_named(const std::filesystem::path& problem) {
+  std::vector<std::string> files;
+  const FileBytes bytes(problem);
+  try {
+    const toml::table root = toml::parse(bytes.text());
+    add_files(root, files);
+    if (const toml::array* paths = root["effects"].as_array())
+      for (const toml::node& path : *paths)
+        if (const auto file = path.value<std::string>()) files.push_back(*file);
+  } catch (const toml::parse_error&) {
+    return {};
+  }
+  return files;
+}
+
+std::string moved_problem_text(const Problem& problem, const std::filesystem::path& directory) {
+  toml::table root = parsed(problem.path);
+  root.erase("truth");
+  root.erase("plan");
+  const std::filesystem::path base = problem.path.parent_path();
+  for (const char* key : {"profile", "channel"})
+    if (toml::array* tables = root[key].as_array())
+      for (toml::node& node : *tables)
+        if (toml::table* table = node.as_table())
+          if (toml::node* file = table->get("file")) lead_from(directory, base, *file);
+  if (toml::array* paths = root["effects"].as_array())
+    for (toml::node& path : *paths) lead_from(directory, base, path);
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text << root << '\n';

@@ -27,7 +27,8 @@ bool near(const std::optional<double>& a, const std::optional<double>& b, double
 /// Whether two cuts are one, as far as the setups tell, lengths to a part of a station.
 bool is_one_cut(const Setup& s, const Setup& t, double length_mm) {
   constexpr double kAsWritten = 1e-6;  // of a number that was typed in twice
-  return s.kind == t.kind && s.quantity == t.quantity && near(s.base_mm, t.base_mm, kAsWritten) &&
+  return s.kind == t.kind && s.quantity == t.quantity && s.reversed == t.reversed &&
+         near(s.base_mm, t.base_mm, kAsWritten) &&
          near(s.spindle_position_mm, t.spindle_position_mm, length_mm) &&
          near(s.azimuth_deg, t.azimuth_deg, kAsWritten) && near(s.z_mm, t.z_mm, length_mm) &&
          near(s.overhang_mm, t.overhang_mm, length_mm) &&

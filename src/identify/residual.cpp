@@ -227,21 +227,19 @@ EliminatedResidual::EliminatedResidual(const Model& model, const Linearisation& 
     : model_(model), observations_(linear.observations), noise_(noise) {
   for (const ModelTerm& term : model.terms)
     if (!term.effect->shapes().empty()) moving_.push_back(&term);
-  Eigen::Index free = 0, next = 0;
-  for (const Observation* observation : observations_) {
-    rows_ += observation->values.size();
-    free += observation->nuisances.cols();
+  for (std::size_t i = 0; i < observations_.size(); ++i) {
+    rows_ += observations_[i]->values.size();
+    Eigen::MatrixXd nuisances = observations_[i]->nuisances;
+    noise_[i].whiten(nuisances);
+    nuisances_.add(std::move(nuisances));
   }
-  const Eigen::Index a = model.amplitudes();
-  basis_.resize(rows_, 0);
-  basis_ = orthonormal(outside(free + a, [&](std::size_t i) {
-    const Observation& observation = *observations_[i];
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(observation.values.size(), free + a);
-    rows.middleCols(next, observation.nuisances.cols()) = observation.nuisances;
-    next += observation.nuisances.cols();
+  fixed_.resize(rows_, 0);
+  fixed_ = orthonormal(outside(model.amplitudes(), [&](std::size_t i) {
+    Eigen::MatrixXd rows =
+        Eigen::MatrixXd::Zero(observations_[i]->values.size(), model.amplitudes());
     for (const ModelTerm& term : model.terms)
       if (term.effect->shapes().empty())
-        rows.middleCols(free + term.first_amplitude, term.effect->amplitudes()) =
+        rows.middleCols(term.first_amplitude, term.effect->amplitudes()) =
             linear.columns[i].middleCols(term.first_amplitude, term.effect->amplitudes());
     return rows;
   }));
@@ -260,7 +258,8 @@ Eigen::MatrixXd EliminatedResidual::outside(Eigen::Index columns, Of&& of_observ
     noise_[i].whiten(rows);
     row += rows.rows();
   }
-  out -= basis_ * (basis_.transpose() * out).eval();
+  out = nuisances_.beside(std::move(out));
+  out -= fixed_ * (fixed_.transpose() * out).eval();
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "slideway/identify/profile_bases.hpp"
 #include "slideway/identify/solve.hpp"
 
 namespace slideway {
@@ -134,8 +135,9 @@ class EliminatedResidual final : public ceres::CostFunction {
   const std::vector<Noise>& noise_;
   std::vector<const ModelTerm*> moving_;
   Eigen::Index rows_ = 0;
-  Eigen::MatrixXd basis_;     // orthonormal: what levelling and the terms without shapes span
-  Eigen::VectorXd residual_;  // white values outside it
+  ProfileBases nuisances_;    // white
+  Eigen::MatrixXd fixed_;     // orthonormal: what the terms without shapes span beside them
+  Eigen::VectorXd residual_;  // white values outside both
 };
 
 }  // namespace slideway

@@ -87,7 +87,7 @@ FittedSizes fit_sizes(std::span<const ProfileInformation> profiles, const Eigen:
       const ProfileInformation& own = profiles[static_cast<std::size_t>(i)];
       const double taken =
           root.solve(own.gram.topLeftCorner(r, r)).trace() * std::exp(-2.0 * before[i]);
-      out.freedom[i] = std::max(own.freedom - taken, kLeastFreedom);
+      out.freedom[i] = std::max(kLeastFreedom, own.freedom - taken);  // also of NaN
       const double square = std::max((own.gram * change).dot(change), 1e-300);
       out.log_sizes[i] = settled(before[i], out.freedom[i], square, before.mean(),
                                  count > 1 ? likeness : INFINITY);

@@ -53,6 +53,10 @@ std::vector<Profile> empty_profiles(const Problem& problem) {
     if (std::filesystem::exists(entry.source.path)) {
       read_profile(entry.source, profile);
     } else {
+      if (!entry.source.time_unit.empty())
+        throw UsageError("profile '" + profile.name +
+                         "': nothing tells the reading times to simulate; accepted: an existing "
+                         "file, or no time_column");
       profile.positions = made_positions(entry, problem.truth->samples);
       set_ends(profile);
     }
@@ -129,6 +133,22 @@ void keep_inputs(const Problem& problem, const std::filesystem::path& directory)
     refuse_if_same(path, directory / path.filename());
 }
 
+std::string table_of(const Profile& profile) {
+  const bool slope = profile.setup.quantity == Quantity::slope;
+  const ReadingTimes* times = profile.setup.reading_times.get();
+  std::string text = slope ? "x_mm,slope_urad" : "x_mm,z_um";
+  text += times ? ",t_s\n" : "\n";
+  text.reserve(40 * profile.values.size());
+  for (std::size_t i = 0; i < profile.values.size(); ++i) {
+    text += shortest(profile.positions[i]);
+    text += ',';
+    text += significant(slope ? profile.values[i] * 1e6 : profile.values[i] / kMicrometre, 12);
+    if (times) text += ',' + shortest(times->at(profile.positions[i]));
+    text += '\n';
+  }
+  return text;
+}
+
 /// The files a problem names beside its profiles, put beside the simulated ones.
 void copy_beside(const Problem& problem, const std::filesystem::path& directory) {
   std::vector<std::string> taken{"problem.toml"};
@@ -172,17 +192,8 @@ void write_simulation(const Problem& problem, const std::filesystem::path& direc
   copy_beside(problem, directory);
   std::vector<std::string> files;
   for (const Profile& profile : profiles) {
-    const bool slope = profile.setup.quantity == Quantity::slope;
-    std::string text = slope ? "x_mm,slope_urad\n" : "x_mm,z_um\n";
-    text.reserve(40 * profile.values.size());
-    for (std::size_t i = 0; i < profile.values.size(); ++i) {
-      text += shortest(profile.positions[i]);
-      text += ',';
-      text += significant(slope ? profile.values[i] * 1e6 : profile.values[i] / kMicrometre, 12);
-      text += '\n';
-    }
     files.push_back(profile.name + ".csv");
-    write_file(directory / files.back(), text);
+    write_file(directory / files.back(), table_of(profile));
   }
   write_file(directory / "problem.toml", simulated_problem_text(problem, files));
 }

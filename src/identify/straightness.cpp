@@ -12,6 +12,7 @@ namespace {
 
 constexpr Eigen::Index kPoints = 201;
 constexpr std::size_t kMostStations = 50;
+constexpr double kRounding = 1e-9;  // relative
 
 /// Deviation of each point from the least-squares line: deviations = matrix * heights.
 Eigen::MatrixXd least_squares_deviations(const Eigen::VectorXd& x) {
@@ -118,7 +119,6 @@ class Locus {
   [[nodiscard]] bool is_determined(const Eigen::RowVectorXd& weighted) const {
     const Eigen::MatrixXd along =
         fit_.null.amplitudes.middleRows(term_.first_amplitude, weighted.size());
-    constexpr double kRounding = 1e-9;
     for (Eigen::Index j = 0; j < along.cols(); ++j)
       if (std::abs(weighted.dot(along.col(j))) > kRounding * weighted.norm() * along.col(j).norm())
         return false;
@@ -274,11 +274,16 @@ std::optional<Straightness> identified_straightness(const Model& model, const So
     out.reason = "these data do not tell the straightness from another effect";
     return out;
   }
-  if (const auto& prior = fit.estimate.curve; prior && term == curve_term(model))
-    out.form = CurveForm{prior->length_mm, prior->amplitude_mm / kMicrometre, prior->roughness};
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, travel.least, travel.greatest);
   const Reported reported(fit, more);
   const Locus slide(model, *term, fit, reported, on_slide());
+  const Eigen::MatrixXd columns = slide.columns(x), forms = least_squares_deviations(x) * columns;
+  if (forms.norm() <= kRounding * columns.norm()) {
+    out.reason = "a straightness of degree 1 is a line, which deviates from no line";
+    return out;
+  }
+  if (const auto& prior = fit.estimate.curve; prior && term == curve_term(model))
+    out.form = CurveForm{prior->length_mm, prior->amplitude_mm / kMicrometre, prior->roughness};
   out.curve.position_mm.assign(x.begin(), x.end());
   append(slide.deviations(x, travel), out.curve.deviation_um, out.curve.expanded_uncertainty_um);
   if (const Setup* const face = one_face(model))
@@ -288,10 +293,9 @@ std::optional<Straightness> identified_straightness(const Model& model, const So
   for (std::size_t i = 0; i < heights.size(); ++i)
     out.stations.push_back({stations[static_cast<Eigen::Index>(i)], *heights[i].value,
                             heights[i].expanded_uncertainty});
-  const Eigen::MatrixXd columns = slide.columns(x);
   const Eigen::VectorXd form =
-      columns * fit.estimate.amplitudes.segment(term->first_amplitude, columns.cols());
-  for (const ReferenceLine& line : reference_lines(x, least_squares_deviations(x) * form))
+      forms * fit.estimate.amplitudes.segment(term->first_amplitude, columns.cols());
+  for (const ReferenceLine& line : reference_lines(x, form))
     add_error(line, x, slide.spread(line.sensitivity * columns), out);
   return out;
 }

@@ -211,9 +211,11 @@ void add_nuisances(const Solution& fit, ModelResult& out) {
       nuisance.symbol = observation.nuisance_names[j];
       nuisance.unit = offset ? "um" : "rad";
       const double variance = fit.uncertainty.nuisance_covariances[i](j, j);
-      Reported::set(fit.estimate.nuisances[i][j],
-                    Spread{std::sqrt(std::max(variance, 0.0)), levelling_freedom(fit, i)},
-                    offset ? kMicrometre : 1.0, nuisance);
+      nuisance.identifiable = variance > 0.0;  // else the low band does not show it
+      if (nuisance.identifiable)
+        Reported::set(fit.estimate.nuisances[i][j],
+                      Spread{std::sqrt(variance), levelling_freedom(fit, i)},
+                      offset ? kMicrometre : 1.0, nuisance);
       out.nuisances.push_back(std::move(nuisance));
     }
   }

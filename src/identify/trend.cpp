@@ -68,6 +68,8 @@ std::vector<Trend> trends(const std::vector<std::vector<FittedParameter>>& items
     Trend trend{items.front()[p].name, items.front()[p].unit, known.size()};
     trend.rate = line.coefficients[1] * unit / span;
     trend.standard_uncertainty = std::sqrt(line.covariance(1, 1) * excess) * unit / span;
+    // One item may outweigh the others beyond the digits of a double.
+    if (!std::isfinite(trend.rate) || !(trend.standard_uncertainty > 0.0)) continue;
     const auto freedom = static_cast<double>(n - 2);
     trend.expanded_uncertainty = coverage_factor(freedom) * trend.standard_uncertainty;
     trend.p_value = 2.0 * student_tail(freedom, std::abs(trend.rate / trend.standard_uncertainty));

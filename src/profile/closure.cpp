@@ -13,10 +13,10 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kShort = 200;  // stations; shorter lines are pooled
-constexpr std::size_t kFewest = 8;   // second differences that tell a scatter
-constexpr double kEffective = 0.2;   // degrees of freedom of a MAD of second differences, of each
-constexpr double kKnown = 1e6;       // degrees of freedom
+constexpr std::size_t kShortLine = 200;  // stations; shorter lines are pooled
+constexpr std::size_t kFewest = 8;       // second differences that tell a scatter
+constexpr double kEffective = 0.2;  // degrees of freedom of a MAD of second differences, of each
+constexpr double kKnown = 1e6;      // degrees of freedom
 constexpr std::size_t kFar = 8;
 constexpr double kGrows = 1.19;  // scatter from next to far; 1 if white, √8 of a random walk
 constexpr double kEqual = 1e-6;
@@ -81,7 +81,7 @@ Noise noise_of(const HeightLine& line, const Scatter& scatter) {
   }
   out.bend = scale;
   std::vector<double> far = scatter.far;
-  if (profile.values.size() < kShort || kMad * median(far) > kGrows * scale)
+  if (profile.values.size() < kShortLine || kMad * median(far) > kGrows * scale)
     out.walk = std::sqrt(2.0) * scale;
   else
     out.white = scale / std::sqrt(1.5);
@@ -91,11 +91,11 @@ Noise noise_of(const HeightLine& line, const Scatter& scatter) {
 std::vector<Noise> noises_of(const std::vector<HeightLine>& lines) {
   std::map<Quantity, Scatter> pooled;
   for (const HeightLine& line : lines)
-    if (line.profile->values.size() < kShort)
+    if (line.profile->values.size() < kShortLine)
       add_scatter(line.profile->values, pooled[line.profile->setup.quantity]);
   std::vector<Noise> out;
   for (const HeightLine& line : lines) {
-    if (line.profile->values.size() < kShort) {
+    if (line.profile->values.size() < kShortLine) {
       out.push_back(noise_of(line, pooled[line.profile->setup.quantity]));
       continue;
     }

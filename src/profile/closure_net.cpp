@@ -5,12 +5,12 @@
 
 #include "outlier_level.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/signal/low_band.hpp"
 
 namespace slideway {
 namespace {
 
 constexpr double kParallel = 0.02;    // sine of the angle
-constexpr double kGap = 1.9;          // steps
 constexpr double kSameHeight = 1e-9;  // of the largest
 constexpr std::size_t kMostReadings = 1000;
 
@@ -155,7 +155,7 @@ void add_lines(const std::vector<Profile>& profiles, ClosureNet& net) {
     HeightLine line = height_line(profiles[i], i);
     note_length(line, net);
     if (profiles[i].setup.quantity == Quantity::slope &&
-        largest_step(profiles[i].positions) > kGap * median_step(profiles[i].positions))
+        largest_step(profiles[i].positions) > kGapSteps * median_step(profiles[i].positions))
       net.notes.push_back("'" + profiles[i].name +
                           "' is not closed: heights cannot be summed over a gap in its slopes");
     else
@@ -190,7 +190,7 @@ std::optional<HeightLine::Height> HeightLine::height(double t, bool beside) cons
   if (left < 0 || right >= count) return std::nullopt;
   const double gap = at[right] - at[left], share = (t - at[left]) / gap;
   const double nearest = std::min(std::abs(t - at[left]), std::abs(at[right] - t));
-  if (nearest > kGap * step || gap > 2.0 * kGap * step) return std::nullopt;
+  if (nearest > kGapSteps * step || gap > 2.0 * kGapSteps * step) return std::nullopt;
   const double off = share * (1.0 - share) * (gap / step) * (gap / step);
   return Height{(1.0 - share) * heights[left] + share * heights[right] + bend * off, std::abs(off)};
 }

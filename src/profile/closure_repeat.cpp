@@ -8,7 +8,7 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kFewest = 6;  // stations
+constexpr std::size_t kFewestStations = 6;  // stations
 
 struct Differences {
   std::vector<double> t, size;  // share of the line; mm
@@ -77,7 +77,7 @@ std::vector<Repeat> repeats(const ClosureNet& net) {
       const HeightLine& a = net.lines[first_is_coarser ? i : j];
       const HeightLine& b = net.lines[first_is_coarser ? j : i];
       const std::optional<Differences> all = differences(a, b);
-      if (!all || all->t.size() < kFewest) continue;
+      if (!all || all->t.size() < kFewestStations) continue;
       Repeat repeat{a.index, b.index, all->t.size()};
       find_worst(a, *all, repeat);
       out.push_back(repeat);

@@ -14,12 +14,13 @@ namespace {
 
 // mm or rad. Beyond it lie the marks some instruments write for a missing value (1e38).
 constexpr double kLargest = 1e9;
+constexpr double kLongest = 1e12;  // s: Unix time has 1.7e9
 
-// The unit of the file's numbers: as the file states, or as the source says and the file's header,
-// if it has one, agrees.
+// The unit of the file's numbers: as the file or its header states, and as the source says, which
+// agrees with the header.
 std::string checked_unit(const std::string& in_file, const std::string& asked, bool file_states,
                          const std::string& key) {
-  if (file_states) return in_file;
+  if (file_states || (asked.empty() && !in_file.empty())) return in_file;
   if (asked.empty())
     throw UsageError(key + " is missing: only a file that states its units needs none");
   if (!in_file.empty() && in_file != asked)
@@ -37,14 +38,24 @@ UnitScale scale_of(const std::string& unit, bool slope) {
   return *scale;
 }
 
+UnitScale time_scale(const ProfileSource& source, const std::string& in_file) {
+  const auto scale = time_unit(checked_unit(in_file, source.time_unit, false, "time_unit"));
+  if (!scale) throw UsageError("time_unit: accepted: " + std::string(kTimeUnits));
+  return *scale;
+}
+
 Conversion conversion(const ProfileSource& source, const TracePart& part, const Profile& profile) {
   const Setup& setup = profile.setup;
   const std::string unit =
       checked_unit(part.position_unit, source.position_unit, part.states_units, "position_unit");
   const std::string value_unit =
       checked_unit(part.value_unit, source.value_unit, part.states_units, "value_unit");
-  Conversion out{
-      {}, scale_of(value_unit, setup.quantity == Quantity::slope), {}, source.window, source.mask};
+  Conversion out;
+  out.value = scale_of(value_unit, setup.quantity == Quantity::slope);
+  out.window = source.window;
+  out.mask = source.mask;
+  if (!source.request.time_column.empty())
+    out.time = time_scale(source, std::string(part.time_unit));
   if (source.position_unit == "s" && unit != "s")
     throw DataError("states positions in " + unit +
                     ", the problem position_unit = \"s\"; accepted: a length");
@@ -58,8 +69,8 @@ Conversion conversion(const ProfileSource& source, const TracePart& part, const 
   }
   if (unit == source.position_unit || !(out.window || !out.mask.empty())) return out;
   const UnitScale asked = scale_of(source.position_unit, false);
-  const auto restate = [&](std::pair<double, double>& part) {
-    for (double* end : {&part.first, &part.second})
+  const auto restate = [&](std::pair<double, double>& range) {
+    for (double* end : {&range.first, &range.second})
       *end = asked(*end) * out.position.divisor / out.position.factor;
   };
   if (out.window) restate(*out.window);
@@ -109,29 +120,32 @@ void Intake::start(const TracePart& part) {
                                : source_->most_samples;
   profile_->positions.reserve(room);
   profile_->values.reserve(room);
+  if (!source_->request.time_column.empty()) times_.reserve(room);
 }
 
 void Intake::take(const TracePart& part) {
   if (!convert_) start(part);
-  const bool may_be_plain = !convert_->window && convert_->mask.empty() && left_out_rows_.empty();
+  const bool may_be_plain =
+      !convert_->window && convert_->mask.empty() && left_out_rows_.empty() && part.times.empty();
   constexpr std::size_t kCount = PlainSamples::kCount;
   for (std::size_t i = 0; i < part.positions.size();) {
     if (may_be_plain && kept_ > 1 && part.positions.size() - i >= kCount &&
         plain_.convert(*convert_, part.positions.subspan(i), part.values.subspan(i), last_mm_,
                        upwards_)) {
-      keep(plain_.positions(), plain_.values(), rows_ + 1);
+      keep(plain_.positions(), plain_.values(), {}, rows_ + 1);
       i += kCount;
       rows_ += kCount;
       last_given_ = part.positions[i - 1];
     } else {
       ++rows_;
-      take_one(part.positions[i], part.values[i]);
+      take_one(part.positions[i], part.values[i],
+               part.times.empty() ? part.times : part.times.subspan(i, 1));
       ++i;
     }
   }
 }
 
-void Intake::take_one(double given, double value_given) {
+void Intake::take_one(double given, double value_given, std::span<const double> time_given) {
   const auto refuse = [this](const std::string& what) {
     throw DataError("data row " + std::to_string(rows_) + ": " + what);
   };
@@ -158,7 +172,10 @@ void Intake::take_one(double given, double value_given) {
     refuse("position " + shortest(given) + " follows " + shortest(last_given_) +
            "; positions must strictly increase (or strictly decrease)");
   last_given_ = given;
-  keep({&position, 1}, {&value, 1}, rows_);
+  const double time = time_given.empty() ? 0.0 : convert_->time(time_given[0]);
+  if (std::isnan(time)) refuse("no reading time; accepted: a finite number in the time column");
+  if (!(std::abs(time) <= kLongest)) refuse("reading time beyond 1e12 s");
+  keep({&position, 1}, {&value, 1}, {&time, time_given.size()}, rows_);
 }
 
 void Intake::pass_over(double given) {
@@ -174,7 +191,7 @@ std::pair<double, double> Intake::reach() const {
 }
 
 void Intake::keep(std::span<const double> positions, std::span<const double> values,
-                  std::size_t first_row) {
+                  std::span<const double> times, std::size_t first_row) {
   if (runs_.empty() || runs_.back().second + (kept_ - runs_.back().first) != first_row)
     runs_.emplace_back(kept_, first_row);
   kept_ += positions.size();
@@ -187,26 +204,29 @@ void Intake::keep(std::span<const double> positions, std::span<const double> val
       const auto mm = positions.first(count), kept = values.first(count);
       profile_->positions.insert(profile_->positions.end(), mm.begin(), mm.end());
       profile_->values.insert(profile_->values.end(), kept.begin(), kept.end());
+      times_.insert(times_.end(), times.begin(), times.end());
     } else {
-      keep_mean(positions[0], values[0]);
+      keep_mean(positions[0], values[0], times);
     }
     positions = positions.subspan(count);
     values = values.subspan(count);
   }
 }
 
-void Intake::keep_mean(double position, double value) {
+void Intake::keep_mean(double position, double value, std::span<const double> time) {
   position_sum_ += position;
   value_sum_ += value;
+  for (const double each : time) time_sum_ += each;
   if (++pending_ < block_) return;
   profile_->positions.push_back(position_sum_ / static_cast<double>(block_));
   profile_->values.push_back(value_sum_ / static_cast<double>(block_));
+  if (!time.empty()) times_.push_back(time_sum_ / static_cast<double>(block_));
   pending_ = 0;
-  position_sum_ = value_sum_ = 0.0;
+  position_sum_ = value_sum_ = time_sum_ = 0.0;
 }
 
 void Intake::halve() {
-  for (std::vector<double>* series : {&profile_->positions, &profile_->values}) {
+  for (std::vector<double>* series : {&profile_->positions, &profile_->values, &times_}) {
     const std::size_t half = series->size() / 2;
     for (std::size_t i = 0; i < half; ++i)
       (*series)[i] = 0.5 * ((*series)[2 * i] + (*series)[2 * i + 1]);
@@ -239,10 +259,14 @@ void Intake::finish() {
     if (profile_->standard_uncertainty)
       *profile_->standard_uncertainty /= std::sqrt(static_cast<double>(block_));
   }
-  if (upwards_) return;
-  std::ranges::reverse(profile_->positions);
-  std::ranges::reverse(profile_->values);
-  notes.emplace_back("trace runs backwards in the file: reversed");
+  if (!upwards_) {
+    for (std::vector<double>* series : {&profile_->positions, &profile_->values, &times_})
+      std::ranges::reverse(*series);
+    notes.emplace_back("trace runs backwards in the file: reversed");
+  }
+  if (!times_.empty())
+    profile_->setup.reading_times =
+        std::make_shared<const ReadingTimes>(ReadingTimes{profile_->positions, std::move(times_)});
 }
 
 std::size_t Intake::row(std::size_t sample) const {

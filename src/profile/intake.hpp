@@ -18,7 +18,8 @@ namespace slideway {
 // What turns numbers of the file into ours.
 struct Conversion {
   UnitScale position, value;  // to mm, or s where positions are times; to mm or rad
-  UnitScale to_mm;            // of a time
+  UnitScale to_mm;            // of a position that is a time
+  UnitScale time;             // to s, of a reading time
   std::optional<std::pair<double, double>> window;  // in the file's unit
   std::vector<std::pair<double, double>> mask;      // in the file's unit
 
@@ -66,11 +67,11 @@ class Intake {
   using Run = std::pair<std::size_t, std::size_t>;  // its first sample and that one's row
 
   void start(const TracePart& part);
-  void take_one(double given, double value);
+  void take_one(double given, double value, std::span<const double> time);
   void pass_over(double given);
   void keep(std::span<const double> positions, std::span<const double> values,
-            std::size_t first_row);
-  void keep_mean(double position, double value);
+            std::span<const double> times, std::size_t first_row);
+  void keep_mean(double position, double value, std::span<const double> time);
   void halve();
   void check_left_out() const;
 
@@ -85,8 +86,9 @@ class Intake {
   double last_given_ = 0.0, last_mm_ = 0.0;  // positions
   std::pair<double, double> passed_over_{INFINITY, -INFINITY};  // smallest and largest of them, mm
   bool upwards_ = true;
-  std::size_t block_ = 1, pending_ = 0;          // samples of a mean; of the one at hand
-  double position_sum_ = 0.0, value_sum_ = 0.0;  // of that
+  std::size_t block_ = 1, pending_ = 0;  // samples of a mean; of the one at hand
+  double position_sum_ = 0.0, value_sum_ = 0.0, time_sum_ = 0.0;  // of that
+  std::vector<double> times_;  // of the profile's samples, s; empty without a time column
 };
 
 }  // namespace slideway

@@ -8,6 +8,7 @@
 #include "outlier_level.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/wide.hpp"
+#include "slideway/signal/low_band.hpp"
 
 namespace slideway {
 namespace {
@@ -17,7 +18,6 @@ constexpr std::size_t kLeast = 10;    // samples
 constexpr std::size_t kShort = 64;    // samples; fewer are held against second differences
 constexpr int kCoarsest = 4;          // means of 2^4 samples
 constexpr double kUniform = 1e-3;     // of the mean step
-constexpr double kGap = 1.9;          // steps
 constexpr double kGain = 1.4;         // of rounding in a prediction error
 
 // Pairs of means as the next means.
@@ -170,7 +170,7 @@ Level Search::level_of(int halvings) const {
   out.uniform = uniform_;
   out.block = std::size_t{1} << halvings;
   const auto block = static_cast<double>(out.block);
-  out.widest = kGap * step_ * block;
+  out.widest = kGapSteps * step_ * block;
   out.rounding = kGain * rounding_ / std::sqrt(block);
   out.samples = positions_;
   return out;

@@ -145,6 +145,26 @@ void complete(const ProfileSource& source, TraceFile file, Intake& intake, Profi
 
 }  // namespace
 
+std::vector<std::vector<std::string>> by_instrument(const std::vector<const Profile*>& profiles) {
+  std::vector<std::vector<std::string>> out;
+  std::vector<const Profile*> first;
+  const auto is_one = [](const Profile& a, const Profile& b) {
+    return a.instrument == b.instrument && a.setup.quantity == b.setup.quantity &&
+           (a.instrument || a.setup.kind == b.setup.kind);
+  };
+  for (const Profile* profile : profiles) {
+    const auto at =
+        std::ranges::find_if(first, [&](const Profile* other) { return is_one(*profile, *other); });
+    if (at == first.end()) {
+      first.push_back(profile);
+      out.push_back({profile->name});
+    } else {
+      out[static_cast<std::size_t>(at - first.begin())].push_back(profile->name);
+    }
+  }
+  return out;
+}
+
 void read_profile(const ProfileSource& source, Profile& profile, const ReadProgress& progress) {
   Intake intake(source, profile);
   TraceFile file = read_trace(source.path, source.request, [&](const TracePart& part) {
@@ -160,17 +180,26 @@ void take_profile(const ProfileSource& source, const Trace& numbers, Profile& pr
   if (positions.size() != values.size())
     throw DataError(std::to_string(positions.size()) + " positions and " +
                     std::to_string(values.size()) + " values; accepted: as many");
+  const bool timed = !source.request.time_column.empty();
+  const std::size_t times = timed ? positions.size() : 0;
+  if (numbers.times.size() != times)
+    throw DataError(std::to_string(numbers.times.size()) + " reading times, " +
+                    (timed ? "with" : "without") +
+                    " a time_column; accepted: " + std::to_string(times));
   require_finite_positions(positions);
   ProfileSource named = source;
   named.path = kArrays;
   profile.file = kArrays;
   Intake intake(named, profile);
   try {
-    intake.take({numbers.position_unit, numbers.value_unit, false, positions, values, 1.0});
+    intake.take({numbers.position_unit, numbers.value_unit, false, positions, values, 1.0,
+                 timed ? std::span(numbers.times) : std::span<const double>{}});
   } catch (const DataError& error) {
     throw DataError(std::string(kArrays) + ": " + error.what());
   }
-  std::string sum = sha256(std::string(bytes_of(positions)).append(bytes_of(values)));
+  std::string bytes = std::string(bytes_of(positions)).append(bytes_of(values));
+  if (timed) bytes.append(bytes_of(numbers.times));
+  std::string sum = sha256(bytes);
   complete(named, {kArrays, false, std::move(sum), {.decisions = numbers.decisions}}, intake,
            profile);
 }

@@ -1,5 +1,7 @@
 #include "slideway/profile/setup.hpp"
 
+#include <algorithm>
+
 namespace slideway {
 
 std::string_view symbol(IndependentVariable variable) {
@@ -18,6 +20,8 @@ std::string_view symbol(IndependentVariable variable) {
       return "X";
     case IndependentVariable::measuring_time:
       return "m";
+    case IndependentVariable::reading_time:
+      return "t_read";
   }
   return "";
 }
@@ -36,7 +40,19 @@ std::vector<std::string> missing_for(IndependentVariable variable, const Setup& 
   if (turning && !setup.spindle_rpm) missing.emplace_back("spindle_rpm");
   if (variable == IndependentVariable::measuring_time && !setup.traverse_mm_per_s)
     missing.emplace_back("traverse_mm_per_s");
+  if (variable == IndependentVariable::reading_time && !setup.reading_times)
+    missing.emplace_back("time_column");
   return missing;
+}
+
+double ReadingTimes::at(double position_mm) const {
+  const auto next = std::ranges::lower_bound(positions_mm, position_mm) - positions_mm.begin();
+  if (next == std::ssize(positions_mm)) return times_s.back();
+  const auto after = static_cast<std::size_t>(next);
+  if (next == 0 || positions_mm[after] == position_mm) return times_s[after];
+  const double share =
+      (position_mm - positions_mm[after - 1]) / (positions_mm[after] - positions_mm[after - 1]);
+  return times_s[after - 1] + share * (times_s[after] - times_s[after - 1]);
 }
 
 double Stations::time(Eigen::Index i) const {

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <tuple>
@@ -14,6 +15,7 @@
 #include "slideway/identify/problem_tree.hpp"
 #include "slideway/identify/ranking.hpp"
 #include "slideway/identify/simulate.hpp"
+#include "slideway/report/number.hpp"
 #include "slideway/report/report.hpp"
 #include "slideway/signal/bands.hpp"
 #include "slideway/trace/analysis.hpp"
@@ -78,22 +80,34 @@ py::str text(const std::string& utf8) {  // a file's name in it need not be UTF-
       PyUnicode_DecodeUTF8(utf8.data(), static_cast<py::ssize_t>(utf8.size()), "replace"));
 }
 
-void let_interrupt(const std::string& /*stage*/, double /*done*/) {
-  const py::gil_scoped_acquire lock;
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
+/// Ends a run from another thread. The run asks before it takes the interpreter's lock, so that one
+/// that is left over does not wait for an interpreter that has ended.
+class Cancellation {
+ public:
+  void cancel() { cancelled_ = true; }
+  void check() const {
+    if (cancelled_) throw DataError("cancelled");
+  }
+
+ private:
+  std::atomic<bool> cancelled_ = false;
+};
+using SharedCancellation = std::shared_ptr<Cancellation>;
 
 /// A Python function, called and let go with the interpreter's lock.
 class LockedFunction {
  public:
-  explicit LockedFunction(py::function function)
-      : function_(new py::function(std::move(function)), [](py::function* own) {
-          const py::gil_scoped_acquire lock;
-          delete own;
-        }) {}
+  LockedFunction(py::function function, SharedCancellation cancellation)
+      : function_(new py::function(std::move(function)),
+                  [](py::function* own) {
+                    const py::gil_scoped_acquire lock;
+                    delete own;
+                  }),
+        cancellation_(std::move(cancellation)) {}
 
   std::vector<double> operator()(const std::map<std::string, std::vector<double>>& variables,
                                  const std::map<std::string, double>& parameters) const {
+    cancellation_->check();
     const py::gil_scoped_acquire lock;
     py::dict arguments;
     for (const auto& [name, values] : variables) arguments[name.c_str()] = array(values);
@@ -103,6 +117,7 @@ class LockedFunction {
 
  private:
   std::shared_ptr<py::function> function_;
+  SharedCancellation cancellation_;
 };
 
 /// (name, function, variables, [(parameter, unit, lower, upper)], cause, source, typical)
@@ -111,7 +126,8 @@ using GivenEffect = std::tuple<
     std::vector<std::tuple<std::string, std::string, std::optional<double>, std::optional<double>>>,
     std::string, std::string, std::string>;
 
-std::vector<DeclaredEffect> made(const std::vector<GivenEffect>& effects) {
+std::vector<DeclaredEffect> made(const std::vector<GivenEffect>& effects,
+                                 const SharedCancellation& cancellation) {
   std::vector<DeclaredEffect> out;
   for (const auto& [name, function, variables, parameters, cause, source, typical] : effects) {
     Formula formula{.name = name, .text = "a function of " + joined(variables)};
@@ -120,7 +136,7 @@ std::vector<DeclaredEffect> made(const std::vector<GivenEffect>& effects) {
     formula.cause = cause;
     formula.source = source;
     formula.typical = typical;
-    formula.function = LockedFunction(function);
+    formula.function = LockedFunction(function, cancellation);
     formula.variables = variables;
     try {
       out.push_back({name, {.own = formula_effect(formula)}, {}});
@@ -131,30 +147,54 @@ std::vector<DeclaredEffect> made(const std::vector<GivenEffect>& effects) {
   return out;
 }
 
+GivenTraces traces_of(const std::map<std::string, std::vector<Column>>& profiles) {
+  constexpr std::size_t kUntimed = 2, kTimed = 3;
+  GivenTraces out;
+  for (const auto& [name, columns] : profiles) {
+    if (columns.size() != kUntimed && columns.size() != kTimed)
+      throw UsageError("'" + name + "': " + std::to_string(columns.size()) +
+                       " arrays; accepted: positions and values, or these and reading times");
+    Trace& trace = out[name];
+    trace.positions = numbers(columns[0], "positions of '" + name + "'");
+    trace.values = numbers(columns[1], "values of '" + name + "'");
+    if (columns.size() == kTimed) trace.times = numbers(columns[2], "times of '" + name + "'");
+  }
+  return out;
+}
+
 py::tuple analysed(const py::object& problem,
-                   const std::map<std::string, std::pair<Column, Column>>& profiles,
+                   const std::map<std::string, std::vector<Column>>& profiles,
                    const Directory& data, bool ranks_only, bool closes_loop,
-                   const std::vector<GivenEffect>& effects) {
-  const std::vector<DeclaredEffect> own = made(effects);
+                   const std::vector<GivenEffect>& effects, const py::function& progress,
+                   const SharedCancellation& cancellation) {
+  const std::vector<DeclaredEffect> own = made(effects, cancellation);
   const GivenProblem given(problem, data);
-  GivenTraces traces;
-  for (const auto& [name, columns] : profiles)
-    traces[name] = {numbers(columns.first, "positions of '" + name + "'"),
-                    numbers(columns.second, "values of '" + name + "'")};
+  const GivenTraces traces = traces_of(profiles);
   std::string json, report;
   {
     const py::gil_scoped_release unlocked;
     Problem read = given.read();
     read.own_effects.insert(read.own_effects.end(), own.begin(), own.end());
     read.trace.own.insert(read.trace.own.end(), own.begin(), own.end());
-    const Analysis analysis = analyse(
-        read, read_profiles(read, traces),
-        {ranks_only ? Scope::rank : Scope::identify, closes_loop, true, true}, let_interrupt);
+    const Analysis analysis =
+        analyse(read, read_profiles(read, traces),
+                {ranks_only ? Scope::rank : Scope::identify, closes_loop, true, true},
+                [&](const std::string& stage, double done) {
+                  cancellation->check();
+                  const py::gil_scoped_acquire lock;
+                  progress(stage, done);
+                });
     json = json_report(analysis);
     report = text_report(analysis);
   }
   return py::make_tuple(text(json), text(report));
 }
+
+constexpr const char* kReport = "report";  // what its JSON goes by in messages
+
+py::str page(const std::string& json) { return text(html_report(json, kReport)); }
+
+py::str picture(const std::string& json) { return text(svg_report(json, kReport)); }
 
 py::list simulated(const py::object& problem, std::optional<std::uint64_t> seed,
                    const Directory& data) {
@@ -256,8 +296,16 @@ PYBIND11_MODULE(_slideway, module) {
                              "The problem, or an argument, is wrong: what, and what is accepted.");
   register_error<DataError>(module, "DataError",
                             "Numbers or a data file cannot be used: what is wrong, and where.");
+  py::class_<Cancellation, SharedCancellation>(module, "Cancellation",
+                                               "Ends a run from another thread.")
+      .def(py::init<>())
+      .def("cancel", &Cancellation::cancel);
   module.def("analyse", &analysed, py::arg("problem"), py::arg("profiles"), py::arg("data"),
-             py::arg("ranks_only"), py::arg("closes_loop"), py::arg("effects"));
+             py::arg("ranks_only"), py::arg("closes_loop"), py::arg("effects"), py::arg("progress"),
+             py::arg("cancellation"));
+  module.def("page", &page, py::arg("json"));
+  module.def("picture", &picture, py::arg("json"));
+  module.def("value_text", &with_uncertainty, py::arg("value"), py::arg("expanded_uncertainty"));
   module.def("simulate", &simulated, py::arg("problem"), py::arg("seed"), py::arg("data"));
   module.def("rank_columns", &ranked, py::arg("signal"), py::arg("candidates"), py::arg("wavelet"),
              py::arg("level"), py::arg("boundary"));

@@ -16,7 +16,6 @@ namespace {
 
 using Parameters = std::vector<FittedParameter>;
 using Facts = std::vector<std::pair<std::string, std::string>>;
-using Column = TextTable::Column;
 
 /// One parameter in both; absent where a report has none or does not determine it.
 struct Pair {
@@ -142,9 +141,9 @@ std::vector<Change> changes_of(const NamedReport& a, const NamedReport& b) {
 
 std::string parameter_text(const std::vector<Pair>& pairs) {
   if (pairs.empty()) return heading("Parameters: none in either report");
-  TextTable table(
-      {"parameter", "A ± U", "B ± U", "B - A", "E_n", "unit"},
-      {Column::name, Column::text, Column::text, Column::number, Column::number, Column::text});
+  TextTable table({"parameter", "A ± U", "B ± U", "B - A", "E_n", "unit"},
+                  {TextColumn::name, TextColumn::text, TextColumn::text, TextColumn::number,
+                   TextColumn::number, TextColumn::text});
   std::vector<std::string> changed;
   const auto digits = [](const std::optional<double>& value, int count) {
     return value ? number(*value, count) : "-";

@@ -6,6 +6,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/report/number.hpp"
 #include "summary.hpp"
 
@@ -89,7 +90,7 @@ void refuse_whole(const Analysis& analysis) {
   if (!model->converged) refuse("the fit did not converge");
   if (!analysis.result.travel) refuse("the report says no travel");
   for (const FittedParameter& p : model->parameters)  // "straightness[upper].b2"
-    if (p.name.find('[') != std::string::npos)
+    if (p.name.find('[') != std::string::npos && motion_error_of(p.name) != MotionError::none)
       refuse("several carriages move along X; accepted: a machine with one");
   if (analysis.trace && analysis.trace->verdict == TraceVerdict::not_identifiable)
     refuse(

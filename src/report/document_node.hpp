@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <limits>
 #include <optional>
@@ -63,8 +64,17 @@ class Node {
     if (!json_->is_string()) fail("a text");
     return json_->get_ref<const std::string&>();
   }
-  /// Without what a terminal would obey.
-  [[nodiscard]] std::string text() const { return printable(verbatim(), std::string::npos); }
+  /// Without what a terminal would obey, its lines kept.
+  [[nodiscard]] std::string text() const {
+    std::string out;
+    for (std::string_view rest = verbatim();;) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      out += printable(rest.substr(0, end), std::string::npos);
+      if (end == rest.size()) return out;
+      out += '\n';
+      rest.remove_prefix(end + 1);
+    }
+  }
   [[nodiscard]] std::optional<std::string> text_or_null() const {
     if (is_null()) return std::nullopt;
     return text();

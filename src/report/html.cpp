@@ -7,8 +7,8 @@ namespace slideway {
 namespace {
 
 /// Elements that hold nothing and have no closing tag.
-constexpr std::array<std::string_view, 6> kEmpty{"br",      "line",     "meta",
-                                                 "polygon", "polyline", "rect"};
+constexpr std::array<std::string_view, 8> kEmpty{"br",   "circle",  "line",     "meta",
+                                                 "path", "polygon", "polyline", "rect"};
 /// Elements that end a line, so that a page can be read and compared.
 constexpr std::array<std::string_view, 12> kBlocks{
     "div", "figure", "h2", "li", "line", "nav", "p", "polygon", "polyline", "section", "svg", "tr"};
@@ -54,6 +54,16 @@ Html element(std::string_view name, const HtmlAttributes& attributes, const Html
 }
 
 Html element(std::string_view name, const Html& content) { return element(name, {}, content); }
+
+Html svg_element(const Picture& picture, const Html& content, const HtmlAttributes& more) {
+  HtmlAttributes attributes{{"role", "img"},
+                            {"aria-labelledby", picture.id + "-t " + picture.id + "-d"},
+                            {"viewBox", "0 0 " + picture.width + " " + picture.height}};
+  attributes.insert(attributes.end(), more.begin(), more.end());
+  return element("svg", attributes,
+                 element("title", {{"id", picture.id + "-t"}}, picture.title) +
+                     element("desc", {{"id", picture.id + "-d"}}, picture.description) + content);
+}
 
 Html joined(const std::vector<Html>& pieces, const Html& separator) {
   Html out;

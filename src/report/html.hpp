@@ -42,6 +42,13 @@ using HtmlAttributes = std::vector<std::pair<std::string_view, std::string>>;
 Html element(std::string_view name, const HtmlAttributes& attributes, const Html& content = {});
 Html element(std::string_view name, const Html& content = {});
 
+/// <svg> of width by height, with a title and a description that a screen reader reads.
+struct Picture {
+  std::string id, title, description;  // plain text
+  std::string width, height;           // of its view box
+};
+Html svg_element(const Picture& picture, const Html& content, const HtmlAttributes& more = {});
+
 /// The pieces in a row, with the separator between two of them.
 Html joined(const std::vector<Html>& pieces, const Html& separator);
 

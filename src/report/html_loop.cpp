@@ -6,8 +6,6 @@
 namespace slideway {
 namespace {
 
-using Column = HtmlTable::Column;
-
 Html values(const std::vector<FittedParameter>& parameters) {
   std::vector<Html> lines;
   for (const FittedParameter& p : parameters)
@@ -26,14 +24,14 @@ Html change(const std::optional<double>& before_um, const std::optional<double>&
 
 Html accepted(const TraceResult& trace) {
   HtmlTable table("Effects that entered the model",
-                  {{"effect", Column::text},
-                   {"parameters ± U", Column::text},
-                   {"residual rms", Column::number},
-                   {"on profiles left out of the fit", Column::number},
-                   {"ΔBIC", Column::number},
-                   {"p", Column::number},
-                   {"chosen by", Column::number},
-                   {"not told apart from", Column::text}});
+                  {{"effect", HtmlColumn::text},
+                   {"parameters ± U", HtmlColumn::text},
+                   {"residual rms", HtmlColumn::number},
+                   {"on profiles left out of the fit", HtmlColumn::number},
+                   {"ΔBIC", HtmlColumn::number},
+                   {"p", HtmlColumn::number},
+                   {"chosen by", HtmlColumn::number},
+                   {"not told apart from", HtmlColumn::text}});
   for (const TraceRound& round : trace.rounds)
     table.add({effect_title(names_of(round).front()), values(round.parameters),
                change(round.before_rms_um, round.after_rms_um, round.before_rms_urad,
@@ -46,12 +44,12 @@ Html accepted(const TraceResult& trace) {
 }
 
 Html tried(const TraceResult& trace) {
-  HtmlTable table("Effects tried", {{"effect", Column::text},
-                                    {"in round", Column::text},
-                                    {"ΔBIC", Column::number},
-                                    {"p", Column::number},
-                                    {"residual rms, µm", Column::number},
-                                    {"why it is not in the model", Column::text}});
+  HtmlTable table("Effects tried", {{"effect", HtmlColumn::text},
+                                    {"in round", HtmlColumn::text},
+                                    {"ΔBIC", HtmlColumn::number},
+                                    {"p", HtmlColumn::number},
+                                    {"residual rms, µm", HtmlColumn::number},
+                                    {"why it is not in the model", HtmlColumn::text}});
   const auto add = [&](const TriedEffect& effect, const std::string& round) {
     table.add({effect_title(term_name(effect.effect, effect.profiles)), round,
                html_number(effect.delta_bic), html_probability(effect.p_value),
@@ -66,7 +64,7 @@ Html tried(const TraceResult& trace) {
 
 Html untried(const TraceResult& trace) {
   HtmlTable table("Effects that left again, are not told apart or not testable with these data",
-                  {{"effect", Column::text}, {"why", Column::text}});
+                  {{"effect", HtmlColumn::text}, {"why", HtmlColumn::text}});
   for (const LeftEffect& each : trace.left)
     table.add({effect_title(each.effect), "left: " + with_titles(each.reason)});
   for (const NotSeparable& each : trace.not_separable)
@@ -76,7 +74,7 @@ Html untried(const TraceResult& trace) {
   return table.html();
 }
 
-Html extremes(const DetectionLimit& limit) {
+Html html_extremes(const DetectionLimit& limit) {
   std::vector<double> sizes;
   for (const LimitAtShape& each : limit.by_shape)
     if (each.value) sizes.push_back(*each.value);
@@ -85,19 +83,49 @@ Html extremes(const DetectionLimit& limit) {
   return html_number(least, 2) + " to " + html_number(most, 2);
 }
 
-Html limits(const TraceResult& trace) {
+Html html_limits(const TraceResult& trace) {
   HtmlTable table("Size an effect must have to be found with 80 % probability",
-                  {{"effect", Column::text},
-                   {"parameter", Column::text},
-                   {"found from", Column::number},
-                   {"unit", Column::text},
-                   {"at", Column::text},
-                   {"at other shapes", Column::text}});
+                  {{"effect", HtmlColumn::text},
+                   {"parameter", HtmlColumn::text},
+                   {"found from", HtmlColumn::number},
+                   {"unit", HtmlColumn::text},
+                   {"at", HtmlColumn::text},
+                   {"at other shapes", HtmlColumn::text}});
   for (const DetectionLimit& limit : trace.detection_limits)
     table.add({effect_title(limit.effect), limit.parameter,
                limit.value ? html_number(limit.value, 2) : "at no size", html_unit(limit.unit),
-               limit.at, extremes(limit)});
+               limit.at, html_extremes(limit)});
   return table.html();
+}
+
+/// What describes the rest, each with a block to paste.
+Html html_forms(const Unnamed& left) {
+  if (left.forms.empty()) return {};
+  HtmlTable table("Short formulas that describe what is left: no causes",
+                  {{"form", HtmlColumn::text},
+                   {"formula", HtmlColumn::text},
+                   {"parameters ± U", HtmlColumn::text},
+                   {"residual rms", HtmlColumn::number},
+                   {"on profiles left out of the fit", HtmlColumn::number},
+                   {"ΔBIC", HtmlColumn::number}});
+  Html blocks;
+  for (const UnnamedForm& form : left.forms) {
+    Html formula = element("code", form.formula);
+    if (!form.profiles.empty()) formula += " in " + Html(joined(form.profiles));
+    if (!form.instead_of.empty()) formula += " in place of " + Html(effect_title(form.instead_of));
+    table.add(
+        {form.form, formula, values(form.parameters),
+         change(form.before_rms_um, form.after_rms_um, form.before_rms_urad, form.after_rms_urad),
+         change(form.before_holdout_rms_um, form.after_holdout_rms_um),
+         html_number(form.delta_bic, 3)});
+    blocks += element("details",
+                      element("summary", "To look for it in the next run: " + Html(form.form)) +
+                          element("pre", form.candidate));
+  }
+  return table.html() +
+         element("p", "To confirm one before it is taken for a cause: " +
+                          Html(with_titles(left.to_confirm)) + ".") +
+         blocks;
 }
 
 Html unnamed(const TraceResult& trace) {
@@ -114,7 +142,7 @@ Html unnamed(const TraceResult& trace) {
     out += "; dominant period " + html_number(left.dominant_period_mm) + " mm";
   if (left.odd_share)
     out += "; " + html_number(100.0 * *left.odd_share, 2) + " % of it odd about the axis";
-  return element("p", out + ". It is not counted as an improvement.");
+  return element("p", out + ". It is not counted as an improvement.") + html_forms(left);
 }
 
 }  // namespace
@@ -124,9 +152,11 @@ HtmlSection html_loop(const Analysis& analysis) {
   const TraceResult& trace = *analysis.trace;
   std::vector<std::string> remarks;
   for (const std::string& note : trace.notes) remarks.push_back(with_titles(note));
+  if (!trace.not_looked_at.empty())
+    remarks.push_back("Not looked at within the time limit: " + joined(trace.not_looked_at) + ".");
   return {"loop", "Missing effects: found, tried, refused",
           unnamed(trace) + accepted(trace) + html_list(remarks) + tried(trace) + untried(trace) +
-              limits(trace)};
+              html_limits(trace)};
 }
 
 }  // namespace slideway

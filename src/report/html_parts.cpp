@@ -1,5 +1,6 @@
 #include "html_parts.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "slideway/report/number.hpp"
@@ -96,7 +97,7 @@ void HtmlTable::add(const std::vector<Html>& cells) {
   for (std::size_t i = 0; i < cells.size(); ++i) {
     HtmlAttributes attributes;
     if (i == 0) attributes.emplace_back("scope", "row");
-    if (columns_[i].second == Column::number) attributes.emplace_back("class", "n");
+    if (columns_[i].second == HtmlColumn::number) attributes.emplace_back("class", "n");
     row += element(i == 0 ? "th" : "td", attributes, cells[i]);
   }
   rows_ += element("tr", row);
@@ -107,12 +108,17 @@ Html HtmlTable::html() const {
   Html headings;
   for (const auto& [heading, column] : columns_) {
     HtmlAttributes attributes{{"scope", "col"}};
-    if (column == Column::number) attributes.emplace_back("class", "n");
+    if (column == HtmlColumn::number) attributes.emplace_back("class", "n");
     headings += element("th", attributes, heading);
   }
   return html_scroll(element("table", element("caption", caption_) +
                                           element("thead", element("tr", headings)) +
                                           element("tbody", rows_)));
+}
+
+bool has_face(const Result& result) {
+  return std::ranges::any_of(result.inputs,
+                             [](const InputSummary& in) { return in.kind == Kind::face; });
 }
 
 Html html_list(const std::vector<Html>& items) {

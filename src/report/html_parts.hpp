@@ -46,11 +46,12 @@ Html html_scroll(const Html& body);
 Html html_figure(const Plot& plot, const Html& caption);
 Html html_figure(const Html& picture, const Html& caption, const HtmlAttributes& attributes = {});
 
+enum class HtmlColumn { text, number };
+
 /// A table in such a box; nothing without rows.
 class HtmlTable {
  public:
-  enum class Column { text, number };
-  HtmlTable(Html caption, std::vector<std::pair<Html, Column>> columns)
+  HtmlTable(Html caption, std::vector<std::pair<Html, HtmlColumn>> columns)
       : caption_(std::move(caption)), columns_(std::move(columns)) {}
 
   /// The first cell heads the row.
@@ -60,7 +61,7 @@ class HtmlTable {
 
  private:
   Html caption_;
-  std::vector<std::pair<Html, Column>> columns_;
+  std::vector<std::pair<Html, HtmlColumn>> columns_;
   Html rows_;
 };
 
@@ -79,12 +80,26 @@ struct HtmlSection {
 };
 using HtmlSections = std::vector<HtmlSection>;
 
+/// A page of the sections that have a body, with links to them.
+std::string page_of(const std::string& title, const std::string& subtitle, const Html& about,
+                    const HtmlSections& sections);
+
+/// Who measured what, with which instrument: [about] on a line.
+Html html_about(const Result& result);
+/// False of a report on slides alone: its page speaks of no face.
+bool has_face(const Result& result);
+/// Results held against the tolerances; nothing without a tolerance.
+Html html_conformity(const Result& result);
+
 /// The sections of a report, in the order of the page.
+
 HtmlSection html_verdict(const Analysis& analysis);
 HtmlSection html_profiles(const Analysis& analysis);
 HtmlSection html_straightness(const Analysis& analysis);
 HtmlSection html_correlation(const Analysis& analysis);
 HtmlSection html_residual(const Analysis& analysis);
+HtmlSection html_face(const Analysis& analysis);
+HtmlSection html_certificate(const Analysis& analysis);
 HtmlSection html_bands(const Analysis& analysis);
 HtmlSection html_what_if(const Analysis& analysis);
 HtmlSection html_uncertainty(const Analysis& analysis);

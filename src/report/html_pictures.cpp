@@ -7,20 +7,18 @@
 namespace slideway {
 namespace {
 
-using Column = HtmlTable::Column;
-
 // --- straightness ---------------------------------------------------------------------------
 
 Html straightness_errors(const Straightness& form) {
   HtmlTable table(
       "Straightness error: largest positive minus largest negative deviation from the stated line",
-      {{"reference line", Column::text},
-       {"error ± U, µm", Column::number},
-       {"k", Column::number},
-       {"highest, µm", Column::number},
-       {"at x, mm", Column::number},
-       {"lowest, µm", Column::number},
-       {"at x, mm", Column::number}});
+      {{"reference line", HtmlColumn::text},
+       {"error ± U, µm", HtmlColumn::number},
+       {"k", HtmlColumn::number},
+       {"highest, µm", HtmlColumn::number},
+       {"at x, mm", HtmlColumn::number},
+       {"lowest, µm", HtmlColumn::number},
+       {"at x, mm", HtmlColumn::number}});
   for (const StraightnessError& e : form.errors)
     table.add({text_of(e.line), html_value(e), html_number(e.coverage_factor, 3),
                html_number(e.highest_um, 3), html_number(e.highest_at_mm),
@@ -30,7 +28,7 @@ Html straightness_errors(const Straightness& form) {
 
 Html station_table(const Straightness& form) {
   HtmlTable table("Station heights: deviation from the line through the end points",
-                  {{"x, mm", Column::number}, {"deviation ± U, µm", Column::number}});
+                  {{"x, mm", HtmlColumn::number}, {"deviation ± U, µm", HtmlColumn::number}});
   for (const StraightnessStation& at : form.stations) {
     QuantityValue height;
     height.value = at.deviation_um;
@@ -97,7 +95,7 @@ Html heat_cell(double r) {
       "td",
       {{"class", "n"},
        {"style", std::string("background:rgba(") + (r < 0.0 ? "230,159,0," : "86,180,233,") +
-                     fixed_point(0.75 * strength, 2) + ")"}},
+                     fixed_point(0.5 * strength, 2) + ")"}},
       html_number(std::round(r * 1000.0) / 1000.0, 3));
 }
 

@@ -152,6 +152,11 @@ Plot& Plot::log_y() {
   return *this;
 }
 
+Plot& Plot::markers() {
+  markers_ = true;
+  return *this;
+}
+
 Plot& Plot::line(std::string name, std::string style, std::vector<double> x,
                  std::vector<double> y) {
   require_one_length(text_, x, y);
@@ -274,23 +279,26 @@ Html Plot::drawn(const Line& line, const Axis& x, const Axis& y) {
                  {{"class", line.style}, {"points", points}});
 }
 
-Html Plot::svg() const {
+Html Plot::svg(const HtmlAttributes& more) const {
   const Legend names = legend();
   const Axis x = axis(true, 0.0), y = axis(false, 6.0 + names.height);
-  Html content = element("title", {{"id", text_.id + "-t"}}, text_.title) +
-                 element("desc", {{"id", text_.id + "-d"}}, text_.description) + grid(x, y) +
-                 ticks(x, y);
+  Html content = grid(x, y) + ticks(x, y);
   for (const Line& line : lines_)
     if (!line.high.empty()) content += drawn(line, x, y);
   for (const auto& [line, value] : levels_)
     content += straight(line.style, x.from, y(value), x.to, y(value));
-  for (const Line& line : lines_)
-    if (line.high.empty()) content += drawn(line, x, y);
-  return element("svg",
-                 {{"role", "img"},
-                  {"aria-labelledby", text_.id + "-t " + text_.id + "-d"},
-                  {"viewBox", "0 0 " + coordinate(width_) + " " + coordinate(height_)}},
-                 content + names.entries);
+  for (const Line& line : lines_) {
+    if (!line.high.empty()) continue;
+    content += drawn(line, x, y);
+    for (std::size_t i = 0; markers_ && i < line.x.size(); ++i)
+      content += element("circle", {{"class", line.style},
+                                    {"cx", coordinate(x(line.x[i]))},
+                                    {"cy", coordinate(y(line.y[i]))},
+                                    {"r", "2.2"}});
+  }
+  return svg_element(
+      {text_.id, text_.title, text_.description, coordinate(width_), coordinate(height_)},
+      content + names.entries, more);
 }
 
 }  // namespace slideway

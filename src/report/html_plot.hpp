@@ -22,6 +22,8 @@ class Plot {
   Plot& size(double width, double height);
   Plot& log_x();
   Plot& log_y();
+  /// Lines are drawn with a marker at every point: of few readings.
+  Plot& markers();
   /// Points that are not finite are left out. @throws DataError  x and y differ in length
   Plot& line(std::string name, std::string style, std::vector<double> x, std::vector<double> y);
   Plot& band(std::string name, std::string style, const std::vector<double>& x,
@@ -29,8 +31,9 @@ class Plot {
   Plot& level(std::string name, std::string style, double y);
 
   [[nodiscard]] bool empty() const { return lines_.empty(); }
+  /// @param more  attributes of the svg element
   /// @throws DataError  the range of an axis is beyond what a number holds
-  [[nodiscard]] Html svg() const;
+  [[nodiscard]] Html svg(const HtmlAttributes& more = {}) const;
 
  private:
   struct Line {
@@ -49,7 +52,7 @@ class Plot {
 
   Text text_;
   double width_ = 720.0, height_ = 300.0;
-  bool log_x_ = false, log_y_ = false;
+  bool log_x_ = false, log_y_ = false, markers_ = false;
   std::vector<Line> lines_;
   std::vector<std::pair<Line, double>> levels_;
 };

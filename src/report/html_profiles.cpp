@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "html_curves.hpp"
 #include "html_parts.hpp"
 
 /// The long profiles: as SVG, and the numbers for the page's script to draw them with zoom.
@@ -16,28 +17,26 @@ Html data_block(const Json& data) {
   return element("script", {{"type", "application/json"}}, Html::verbatim(text));
 }
 
-struct Series {
-  std::string name, style;
-  const std::vector<double>& values;
-};
-
 struct Drawing {
   Plot::Text text;
   Html caption;
-  std::vector<Series> series;
+  CurveSet shown;
 };
 
 Html drawn(const ProfileCurves& curves, const Drawing& drawing) {
+  const bool few = drawing.shown.position_mm.size() <= kFewReadings;
   Plot plot(drawing.text);
+  if (few) plot.markers();
   Json data = {{"title", drawing.text.title},
                {"x", drawing.text.x},
                {"y", drawing.text.y},
                {"unit", unit_name(curves.unit)},
-               {"position", curves.position_mm},
+               {"markers", few},
+               {"position", drawing.shown.position_mm},
                {"series", Json::array()}};
-  for (const auto& [name, style, values] : drawing.series) {
+  for (const auto& [name, style, values] : drawing.shown.curves) {
     if (values.empty()) continue;
-    plot.line(name, style, curves.position_mm, values);
+    plot.line(name, style, drawing.shown.position_mm, values);
     data["series"].push_back({{"name", name}, {"style", style}, {"values", values}});
   }
   if (plot.empty()) return {};
@@ -55,23 +54,31 @@ Html noise_of(const Result& result, const std::string& profile) {
 }
 
 Html form(const ProfileCurves& curves, const std::string& id) {
-  const bool added = !curves.residual_after.empty();
   const char* const quantity = curves.unit == MicroUnit::urad ? "slope, " : "height, ";
-  return drawn(
-      curves,
-      {{id + "-form", "Profile " + curves.profile + ": raw, low band and model",
-        "The measured profile, its low band and the model over the trace position.",
-        "trace position, mm", quantity + unit_name(curves.unit)},
-       bold(curves.profile) +
-           ": the profile, its low band (what is fitted) and the model with the levelling of the "
-           "trace. " +
-           bold("Good:") +
-           " the model lies on the low band over the whole trace, the raw profile scatters evenly "
-           "about both.",
-       {{"raw", "raw", curves.raw},
-        {"low band", "low", curves.low_band},
-        {added ? "declared model" : "model", added ? "before" : "after", curves.model_before},
-        {"final model", "after", curves.model_after}}});
+  const CurveSet shown = form_curves(curves);
+  const std::string& measured = shown.curves.front().name;
+  return drawn(curves, {{id + "-form", "Profile " + curves.profile + ": form and model",
+                         "The form of the measured profile and the model over the trace position.",
+                         "trace position, mm", quantity + unit_name(curves.unit)},
+                        bold(curves.profile) + ": the form that is fitted (" + measured +
+                            ") and the model with the levelling of the trace. " + bold("Good:") +
+                            " the model lies on the form over the whole trace.",
+                        shown});
+}
+
+Html marks(const ProfileCurves& curves, const std::string& id) {
+  if (!is_filtered(curves) || curves.raw.size() != curves.low_band.size()) return {};
+  std::vector<double> left = curves.raw;
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] -= curves.low_band[i];
+  return drawn(curves,
+               {{id + "-marks", "Profile " + curves.profile + ": what the low band leaves out",
+                 "The measured profile minus its low band over the trace position.",
+                 "trace position, mm", "raw − low band, " + unit_name(curves.unit)},
+                bold(curves.profile) +
+                    ": what the low band leaves out, at a scale of its own: feed marks, roughness, "
+                    "noise. " +
+                    bold("Good:") + " even over the whole trace, without form.",
+                {curves.position_mm, {{"raw minus low band", "raw", left}}}});
 }
 
 Html residual(const Result& result, const ProfileCurves& curves, const std::string& id) {
@@ -80,15 +87,12 @@ Html residual(const Result& result, const ProfileCurves& curves, const std::stri
                  (added ? ", of the declared and of the final model, on one scale. " : ". ") +
                  bold("Good:") + " a level band about zero without trend, waves or steps";
   if (!added) caption += noise_of(result, curves.profile);
-  return drawn(
-      curves,
-      {{id + "-residual", "Profile " + curves.profile + ": residual",
-        "Low band minus model over the trace position, of the declared and of the final "
-        "model, on one scale.",
-        "trace position, mm", "residual, " + unit_name(curves.unit)},
-       caption + ".",
-       {{added ? "declared model" : "residual", added ? "before" : "after", curves.residual_before},
-        {"final model", "after", curves.residual_after}}});
+  return drawn(curves, {{id + "-residual", "Profile " + curves.profile + ": residual",
+                         "Low band minus model over the trace position, of the declared and of the "
+                         "final model, on one scale.",
+                         "trace position, mm", "residual, " + unit_name(curves.unit)},
+                        caption + ".",
+                        residual_curves(curves)});
 }
 
 Html contributions(const ProfileCurves& curves, const std::string& id) {
@@ -147,7 +151,8 @@ Html bands(const ProfileCurves& curves, const std::string& id) {
 HtmlSection html_profiles(const Analysis& analysis) {
   Html body =
       html_each_profile(analysis, "p", [&](const ProfileCurves& curves, const std::string& id) {
-        return form(curves, id) + residual(analysis.result, curves, id) + contributions(curves, id);
+        return form(curves, id) + marks(curves, id) + residual(analysis.result, curves, id) +
+               contributions(curves, id);
       });
   if (!body.empty())
     body = element("p", {{"class", "hint"}},

@@ -9,8 +9,6 @@
 namespace slideway {
 namespace {
 
-using Column = HtmlTable::Column;
-
 Html meta(const HtmlAttributes& attributes) { return element("meta", attributes) + "\n"; }
 
 Html head(const std::string& title, bool has_charts) {
@@ -29,31 +27,6 @@ Html head(const std::string& title, bool has_charts) {
 }
 
 Html script(std::string_view text) { return element("script", "\n" + Html::verbatim(text)) + "\n"; }
-
-/// A page of the sections that have a body, with links to them.
-std::string page_of(const std::string& title, const std::string& subtitle,
-                    const HtmlSections& sections) {
-  Html links, main = "\n";
-  for (const HtmlSection& each : sections) {
-    if (each.body.empty()) continue;
-    const std::string heading = each.id + "-h";
-    links += element("li", element("a", {{"href", "#" + each.id}}, each.title));
-    main += element("section", {{"id", each.id}, {"aria-labelledby", heading}},
-                    "\n" + element("h2", {{"id", heading}}, each.title) + each.body);
-  }
-  const bool has_charts = main.markup().find("class=\"long\"") != std::string::npos;
-  const Html header = element("h1", title) + "\n" + element("p", subtitle) +
-                      element("nav", {{"aria-label", "Contents"}}, element("ol", "\n" + links));
-  Html body = "\n" +
-              element("a", {{"class", "skip"}, {"href", "#verdict"}}, "Skip to the verdict") +
-              "\n" + element("header", header) + "\n" + element("main", main) + "\n";
-  if (has_charts) body += script(page::kChartScript) + script(page::kScript);
-  return "<!DOCTYPE html>\n" +
-         element("html", {{"lang", "en"}},
-                 "\n" + head(title, has_charts) + "\n" + element("body", body) + "\n")
-             .markup() +
-         "\n";
-}
 
 std::string subject(const Result& result) {
   const auto is_slide = [](const InputSummary& in) { return in.kind == Kind::slide; };
@@ -78,11 +51,11 @@ std::vector<std::string> remarks_on_columns(const Node& low_band, bool filtered)
 std::string columns_page(const Node& document) {
   const Node low_band = document["low_band"];
   const bool filtered = low_band["level"].count() > 0;
-  std::vector<std::pair<Html, Column>> columns{{"candidate", Column::text},
-                                               {"raw", Column::number}};
-  if (filtered) columns.emplace_back("low band", Column::number);
+  std::vector<std::pair<Html, HtmlColumn>> columns{{"candidate", HtmlColumn::text},
+                                                   {"raw", HtmlColumn::number}};
+  if (filtered) columns.emplace_back("low band", HtmlColumn::number);
   for (const char* heading : {"lag, rows", "at that lag", "effective values", "p"})
-    columns.emplace_back(heading, Column::number);
+    columns.emplace_back(heading, HtmlColumn::number);
   HtmlTable table("Largest coefficient first", std::move(columns));
   const auto name = [](const Node& value) {
     return value.is_number() ? html_number(value.number(), 6) : Html(value.verbatim());
@@ -98,21 +71,46 @@ std::string columns_page(const Node& document) {
   const Node signal = document["signal"];
   const std::string of = signal.is_number() ? std::to_string(signal.count()) : signal.verbatim();
   return page_of(
-      "Correlation with column " + of, document["file"].verbatim() + " · slideway",
+      "Correlation with column " + of, document["file"].verbatim() + " · slideway", {},
       {{"verdict", "Ranking", table.html() + html_list(remarks_on_columns(low_band, filtered))}});
 }
 
 }  // namespace
 
+std::string page_of(const std::string& title, const std::string& subtitle, const Html& about,
+                    const HtmlSections& sections) {
+  Html links, main = "\n";
+  for (const HtmlSection& each : sections) {
+    if (each.body.empty()) continue;
+    const std::string heading = each.id + "-h";
+    links += element("li", element("a", {{"href", "#" + each.id}}, each.title));
+    main += element("section", {{"id", each.id}, {"aria-labelledby", heading}},
+                    "\n" + element("h2", {{"id", heading}}, each.title) + each.body);
+  }
+  const bool has_charts = main.markup().find("class=\"long\"") != std::string::npos;
+  const Html header = element("h1", title) + "\n" + element("p", subtitle) + about +
+                      element("nav", {{"aria-label", "Contents"}}, element("ol", "\n" + links));
+  Html body = "\n" +
+              element("a", {{"class", "skip"}, {"href", "#verdict"}}, "Skip to the verdict") +
+              "\n" + element("header", header) + "\n" + element("main", main) + "\n";
+  if (has_charts) body += script(page::kChartScript) + script(page::kScript);
+  return "<!DOCTYPE html>\n" +
+         element("html", {{"lang", "en"}},
+                 "\n" + head(title, has_charts) + "\n" + element("body", body) + "\n")
+             .markup() +
+         "\n";
+}
+
 std::string html_report(const Analysis& analysis) {
   const Result& result = analysis.result;
   const std::string what = subject(result);
-  return page_of(
-      result.title.empty() ? what : result.title, what + " · slideway " + result.version,
-      {html_verdict(analysis), html_profiles(analysis), html_straightness(analysis),
-       html_correlation(analysis), html_residual(analysis), html_bands(analysis),
-       html_what_if(analysis), html_uncertainty(analysis), html_identifiability(analysis),
-       html_loop(analysis), html_data(analysis), html_method(analysis)});
+  return page_of(result.title.empty() ? what : result.title, what + " · slideway " + result.version,
+                 html_about(result),
+                 {html_verdict(analysis), html_face(analysis), html_profiles(analysis),
+                  html_straightness(analysis), html_correlation(analysis), html_residual(analysis),
+                  html_bands(analysis), html_what_if(analysis), html_uncertainty(analysis),
+                  html_identifiability(analysis), html_loop(analysis), html_data(analysis),
+                  html_method(analysis), html_certificate(analysis)});
 }
 
 std::string html_report(std::string_view json, const std::string& name) {

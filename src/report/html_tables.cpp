@@ -1,5 +1,3 @@
-#include <map>
-
 #include "html_parts.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/trace/analysis_fields.hpp"
@@ -7,31 +5,29 @@
 namespace slideway {
 namespace {
 
-using Column = HtmlTable::Column;
-
 // --- data ---------------------------------------------------------------------------------------
 
 Html files(const Result& result) {
-  HtmlTable table("Files", {{"profile", Column::text},
-                            {"file", Column::text},
-                            {"format", Column::text},
-                            {"SHA-256", Column::text}});
+  HtmlTable table("Files", {{"profile", HtmlColumn::text},
+                            {"file", HtmlColumn::text},
+                            {"format", HtmlColumn::text},
+                            {"SHA-256", HtmlColumn::text}});
   for (const InputSummary& in : result.inputs)
     table.add({in.name, in.file, in.format.empty() ? "–" : in.format, element("code", in.sha256)});
   return table.html();
 }
 
 Html sizes(const Result& result) {
-  HtmlTable table("Profiles", {{"profile", Column::text},
-                               {"kind", Column::text},
-                               {"role", Column::text},
-                               {"samples", Column::number},
-                               {"from, mm", Column::number},
-                               {"to, mm", Column::number},
-                               {"rms", Column::number},
-                               {"peak to valley", Column::number},
-                               {"missing", Column::number},
-                               {"left out", Column::number}});
+  HtmlTable table("Profiles", {{"profile", HtmlColumn::text},
+                               {"kind", HtmlColumn::text},
+                               {"role", HtmlColumn::text},
+                               {"samples", HtmlColumn::number},
+                               {"from, mm", HtmlColumn::number},
+                               {"to, mm", HtmlColumn::number},
+                               {"rms", HtmlColumn::number},
+                               {"peak to valley", HtmlColumn::number},
+                               {"missing", HtmlColumn::number},
+                               {"left out", HtmlColumn::number}});
   for (const InputSummary& in : result.inputs)
     table.add({in.name, Html(text_of(in.kind)) + " " + text_of(in.quantity), text_of(in.role),
                std::to_string(in.samples), html_number(in.position_min_mm, 6),
@@ -45,12 +41,12 @@ Html outliers(const Result& result) {
   HtmlTable table(
       "Rows that their neighbours contradict (the largest of each profile); left out only where "
       "the problem file says so",
-      {{"profile", Column::text},
-       {"row", Column::number},
-       {"kind", Column::text},
-       {"value", Column::number},
-       {"expected", Column::number},
-       {"unit", Column::text}});
+      {{"profile", HtmlColumn::text},
+       {"row", HtmlColumn::number},
+       {"kind", HtmlColumn::text},
+       {"value", HtmlColumn::number},
+       {"expected", HtmlColumn::number},
+       {"unit", HtmlColumn::text}});
   for (const InputSummary& in : result.inputs)
     for (const OutlierSummary& each : in.outliers)
       table.add({in.name, std::to_string(each.row), text_of(each.kind), html_number(each.value),
@@ -58,17 +54,17 @@ Html outliers(const Result& result) {
   return table.html();
 }
 
-Html closure(const Result& result) {
+Html html_closure(const Result& result) {
   if (!result.closure) return {};
   HtmlTable table(
       "Closure between lines: what each reads where it meets others, against what they say; "
       "offsets and tilts are free",
-      {{"profile", Column::text},
-       {"x, mm", Column::number},
-       {"y, mm", Column::number},
-       {"as the data stand, µm", Column::number},
-       {"closure, µm", Column::number},
-       {"standard uncertainty, µm", Column::number}});
+      {{"profile", HtmlColumn::text},
+       {"x, mm", HtmlColumn::number},
+       {"y, mm", HtmlColumn::number},
+       {"as the data stand, µm", HtmlColumn::number},
+       {"closure, µm", HtmlColumn::number},
+       {"standard uncertainty, µm", HtmlColumn::number}});
   for (const MisclosureSummary& each : result.closure->readings)
     table.add({each.profile, html_number(each.x_mm), html_number(each.y_mm),
                html_number(each.difference_um), html_number(each.closure_um),
@@ -84,15 +80,16 @@ Html input_notes(const Result& result) {
 }
 
 Html setups(const Details& details) {
-  HtmlTable table("How each profile was cut and measured", {{"profile", Column::text},
-                                                            {"Z, mm", Column::number},
-                                                            {"overhang, mm", Column::number},
-                                                            {"spindle axis at, mm", Column::number},
-                                                            {"feed, mm/min", Column::number},
-                                                            {"spindle, rev/min", Column::number},
-                                                            {"cut", Column::text},
-                                                            {"cut radius, mm", Column::number},
-                                                            {"stylus, mm/s", Column::number}});
+  HtmlTable table("How each profile was cut and measured",
+                  {{"profile", HtmlColumn::text},
+                   {"Z, mm", HtmlColumn::number},
+                   {"overhang, mm", HtmlColumn::number},
+                   {"spindle axis at, mm", HtmlColumn::number},
+                   {"feed, mm/min", HtmlColumn::number},
+                   {"spindle, rev/min", HtmlColumn::number},
+                   {"cut", HtmlColumn::text},
+                   {"cut radius, mm", HtmlColumn::number},
+                   {"stylus, mm/s", HtmlColumn::number}});
   for (const ProfileSetup& each : details.setups) {
     const Setup& s = each.setup;
     table.add({each.profile, html_number(s.z_mm), html_number(s.overhang_mm),
@@ -103,17 +100,12 @@ Html setups(const Details& details) {
   return table.html();
 }
 
-Html assumed(const Result& result) {
-  HtmlTable table("Assumed: what the problem file does not say",
-                  {{"key", Column::text}, {"taken as", Column::text}, {"why", Column::text}});
+Html html_assumed(const Result& result) {
+  HtmlTable table(
+      "Assumed: what the problem file does not say",
+      {{"key", HtmlColumn::text}, {"taken as", HtmlColumn::text}, {"why", HtmlColumn::text}});
   for (const Assumption& each : result.assumed)
     table.add({element("code", each.key), each.value.empty() ? "–" : value_of(each), each.why});
-  return table.html();
-}
-
-Html about(const Result& result) {
-  HtmlTable table("About the measurement", {{"", Column::text}, {"", Column::text}});
-  for (const auto& [key, value] : result.about) table.add({effect_title(key), value});
   return table.html();
 }
 
@@ -121,13 +113,13 @@ Html about(const Result& result) {
 
 Html model(const Details& details) {
   HtmlTable table("height = sum of these effects + levelling of the trace + noise",
-                  {{"effect", Column::text},
-                   {"formula", Column::text},
-                   {"source", Column::text},
-                   {"standard term", Column::text},
-                   {"cause", Column::text},
-                   {"confounded with", Column::text},
-                   {"separated by", Column::text}});
+                  {{"effect", HtmlColumn::text},
+                   {"formula", HtmlColumn::text},
+                   {"source", HtmlColumn::text},
+                   {"standard term", HtmlColumn::text},
+                   {"cause", HtmlColumn::text},
+                   {"confounded with", HtmlColumn::text},
+                   {"separated by", HtmlColumn::text}});
   for (const EffectInModel& e : details.effects)
     table.add({Html(effect_title(e.name)) + (e.added ? small(" (added by the loop)") : Html()),
                e.formula, e.source, e.standard_name, e.cause, with_titles(e.confounded_with),
@@ -162,7 +154,8 @@ void add_options(const Analysis& analysis, HtmlTable& table) {
 
 Html options(const Analysis& analysis) {
   const Result& result = analysis.result;
-  HtmlTable table("Software and options", {{"option", Column::text}, {"value", Column::text}});
+  HtmlTable table("Software and options",
+                  {{"option", HtmlColumn::text}, {"value", HtmlColumn::text}});
   table.add({"software", "slideway " + result.version + ", " + analysis.schema});
   for (const LowBandSummary& low : result.low_band)
     table.add({"low band of " + low.profile,
@@ -177,7 +170,7 @@ Html options(const Analysis& analysis) {
 Html gates(const Analysis& analysis) {
   if (!analysis.trace) return {};
   HtmlTable table("Gates of the closed loop, [trace] of the problem file",
-                  {{"gate", Column::text}, {"value", Column::number}});
+                  {{"gate", HtmlColumn::text}, {"value", HtmlColumn::number}});
   for (const auto& [gate, value] : analysis.trace->gates)
     table.add({element("code", gate), html_number(value)});
   Html out = table.html();
@@ -188,81 +181,43 @@ Html gates(const Analysis& analysis) {
   return out;
 }
 
-Html conventions() {
-  return element("h3", "Units and signs") +
-         element(
-             "p",
-             "Positions in mm, heights and deviations in µm, angles in rad; 1 µm/m = 10" +
-                 element("sup", "−6") +
-                 " rad = 0.206″. Heights are positive out of the workpiece, along +Z (ISO 841). " +
-                 html_symbol("Δβ_xz") + " turns the X motion about +Y and enters the height as −" +
-                 html_symbol("Δβ_xz") + " " + html_symbol("p_x") +
-                 ", Eq. (15): where it is positive, the face falls from the centre to the rim. "
-                 "Straightness is positive along +Z, from the stated reference line. A run-out "
-                 "tells the size of the squareness, not its sign. " +
-                 html_symbol("U") + " = " + html_symbol("k") + " " + html_symbol("u") +
-                 " covers 95.45 %; " + html_symbol("k") +
-                 " is Student's factor for the effective degrees of freedom (GUM G.4.1) and 2 for "
-                 "many.");
-}
-
-Html to_fill_in() {
-  Html rows;
-  for (const char* what :
-       {"Machine: type, serial number, axis configuration", "Date, operator, laboratory",
-        "Instrument: make, serial number, calibration due, tip, filter",
-        "Workpiece, clamping, tool; when measured after cutting",
-        "Temperature at start and end, warm-up", "Compensation active in the control (yes/no)"})
-    rows += element("tr", element("th", {{"scope", "row"}}, what) + element("td"));
-  return html_scroll(
-      element("table", {{"class", "fill"}},
-              element("caption", "Not in the files, to be filled in (ISO 230-1, ISO/IEC 17025)") +
-                  element("tbody", rows)));
-}
-
-std::string corrected(const std::string& effect) {
-  if (effect.empty()) return "nothing (as measured)";
-  return effect == "all" ? "all sources of the final model" : effect_title(effect);
+Html conventions(const Result& result) {
+  Html text = "Positions in mm, heights and deviations in µm, angles in rad; 1 µm/m = 10" +
+              element("sup", "−6") + " rad = 0.206″. ";
+  if (has_face(result))
+    text += "Heights are positive out of the workpiece, along +Z (ISO 841). " +
+            html_symbol("Δβ_xz") + " turns the X motion about +Y and enters the height as −" +
+            html_symbol("Δβ_xz") + " " + html_symbol("p_x") +
+            ", Eq. (15): where it is positive, the face falls from the centre to the rim. A "
+            "run-out tells the size of the squareness, not its sign. ";
+  text += "Straightness is positive along +Z, from the stated reference line. " + html_symbol("U") +
+          " = " + html_symbol("k") + " " + html_symbol("u") + " covers 95.45 %; " +
+          html_symbol("k") +
+          " is Student's factor for the effective degrees of freedom (GUM G.4.1) and 2 for many.";
+  return element("h3", "Units and signs") + element("p", text);
 }
 
 }  // namespace
 
-HtmlSection html_what_if(const Analysis& analysis) {
-  HtmlTable table("Flatness predicted if one source alone were corrected",
-                  {{"profile", Column::text},
-                   {"corrected", Column::text},
-                   {"peak to valley", Column::number},
-                   {"rms", Column::number},
-                   {"peak to valley, of the measured", Column::number}});
-  std::map<std::string, double> measured;
-  for (const PredictedFlatness& each : analysis.details.what_if) {
-    const double pv = (each.pv_um ? each.pv_um : each.pv_urad).value_or(0.0);
-    if (each.corrected.empty()) measured[each.profile] = pv;
-    const double whole = measured[each.profile];
-    table.add({each.profile, corrected(each.corrected), html_size(each.pv_um, each.pv_urad),
-               html_size(each.rms_um, each.rms_urad),
-               whole > 0.0 ? html_number(100.0 * pv / whole, 3) + " %" : "–"});
-  }
-  const Html hint = element(
-      "p", {{"class", "hint"}},
-      "In the low band, each trace levelled anew as the problem file allows. A source whose "
-      "correction makes the form larger hides another one: correct both or neither. Where a "
-      "parameter is not determined, the share of its effect is a convention.");
-  return {"what-if", "What correcting each source would bring",
-          table.empty() ? Html() : table.html() + hint};
+Html html_about(const Result& result) {
+  std::vector<Html> out;
+  for (const auto& [key, value] : result.about)
+    out.push_back(Html(effect_title(key)) + " " + bold(value));
+  return out.empty() ? Html() : element("p", joined(out, " · "));
 }
 
 HtmlSection html_data(const Analysis& analysis) {
   const Result& result = analysis.result;
   return {"data", "Data",
-          about(result) + files(result) + sizes(result) + outliers(result) + input_notes(result) +
-              closure(result) + setups(analysis.details) + assumed(result)};
+          files(result) + sizes(result) + outliers(result) + input_notes(result) +
+              html_closure(result) + (has_face(result) ? setups(analysis.details) : Html()) +
+              html_assumed(result)};
 }
 
 HtmlSection html_method(const Analysis& analysis) {
-  return {"model", "Model and options",
-          model(analysis.details) + options(analysis) + gates(analysis) + conventions() +
-              (analysis.result.about.empty() ? to_fill_in() : Html())};
+  return {
+      "model", "Model and options",
+      model(analysis.details) + options(analysis) + gates(analysis) + conventions(analysis.result)};
 }
 
 }  // namespace slideway

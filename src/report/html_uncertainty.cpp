@@ -11,18 +11,18 @@
 namespace slideway {
 namespace {
 
-using Column = HtmlTable::Column;
-constexpr std::size_t kLargest = 20;  // correlations listed
+constexpr std::size_t kMostCorrelations = 20;  // correlations listed
 
 /// A parameter a row, a source a column; every parameter has the same sources.
-Html budget(const ModelResult& model) {
+Html html_budget(const ModelResult& model) {
   if (model.budget.empty()) return {};
   const std::vector<BudgetLine>& sources = model.budget.front().lines;
-  std::vector<std::pair<Html, Column>> columns{{"parameter", Column::text}, {"unit", Column::text}};
+  std::vector<std::pair<Html, HtmlColumn>> columns{{"parameter", HtmlColumn::text},
+                                                   {"unit", HtmlColumn::text}};
   for (const BudgetLine& line : sources)
     columns.emplace_back(Html(line.source) + " " + small("(type " + Html(text_of(line.type)) + ")"),
-                         Column::number);
-  columns.emplace_back("combined u", Column::number);
+                         HtmlColumn::number);
+  columns.emplace_back("combined u", HtmlColumn::number);
   HtmlTable table("Uncertainty budget: contribution to u, and its share of u²", columns);
   for (const Budget& each : model.budget) {
     double total = 0.0;
@@ -40,16 +40,16 @@ Html budget(const ModelResult& model) {
   return table.html();
 }
 
-Html noise(const ModelResult& model) {
+Html html_noise(const ModelResult& model) {
   HtmlTable table(
       "How the uncertainties were scaled: noise of one low-band value, correlation of the residual",
-      {{"profile", Column::text},
-       {"standard uncertainty", Column::text},
-       {"correlated", Column::text},
-       {"standard deviation", Column::number},
-       {"correlation length, mm", Column::number},
-       {"effective values", Column::number},
-       {"Ljung-Box p", Column::number}});
+      {{"profile", HtmlColumn::text},
+       {"standard uncertainty", HtmlColumn::text},
+       {"correlated", HtmlColumn::text},
+       {"standard deviation", HtmlColumn::number},
+       {"correlation length, mm", HtmlColumn::number},
+       {"effective values", HtmlColumn::number},
+       {"Ljung-Box p", HtmlColumn::number}});
   for (const NoiseSummary& n : model.noise)
     table.add({n.profile, text_of(n.scaling), n.correlated ? "yes" : "no",
                html_size(n.standard_deviation_um, n.standard_deviation_urad),
@@ -63,30 +63,34 @@ Html correlations(const ModelResult& model) {
   std::ranges::stable_sort(pairs, std::greater(), [](const ParameterCorrelation& pair) {
     return std::abs(std::get<2>(pair));
   });
-  const std::size_t listed = std::min(kLargest, pairs.size());
-  HtmlTable table(
-      "Correlation of the estimates, the " + std::to_string(listed) + " largest of " +
-          std::to_string(pairs.size()) + " above 0.1",
-      {{"parameter", Column::text}, {"parameter", Column::text}, {"ρ", Column::number}});
+  const std::size_t listed = std::min(kMostCorrelations, pairs.size());
+  HtmlTable table("Correlation of the estimates, the " + std::to_string(listed) + " largest of " +
+                      std::to_string(pairs.size()) + " above 0.1",
+                  {{"parameter", HtmlColumn::text},
+                   {"parameter", HtmlColumn::text},
+                   {"ρ", HtmlColumn::number}});
   for (const auto& [a, b, coefficient] : std::span(pairs).first(listed))
     table.add({a, b, html_number(coefficient, 4)});
   return table.html();
 }
 
-Html covered() {
+Html covered(const Result& result) {
+  const char* const change =
+      has_face(result) ? "change of the workpiece between cutting and measuring, " : "";
   return element("p", {{"class", "hint"}},
                  "Covered: noise of the profiles, its correlation, and the priors of the problem "
                  "file. " +
                      bold("Not covered:") +
-                     " calibration of the instrument (scale, datum, tip), temperature, clamping, "
-                     "change of the workpiece between cutting and measuring, and whatever the "
-                     "model leaves out without a trace in the residual. Put these into the "
-                     "combined uncertainty by hand (GUM 5; ISO/TR 230-9).");
+                     " calibration of the instrument (scale, datum, tip), temperature, clamping, " +
+                     change +
+                     "and whatever the model leaves out without a trace in the residual. Put these "
+                     "into the combined uncertainty by hand (GUM 5; ISO/TR 230-9).");
 }
 
 Html levelling(const ModelResult& model) {
-  HtmlTable table("Levelling of the traces, found with the parameters",
-                  {{"trace", Column::text}, {"value ± U", Column::number}, {"unit", Column::text}});
+  HtmlTable table(
+      "Levelling of the traces, found with the parameters",
+      {{"trace", HtmlColumn::text}, {"value ± U", HtmlColumn::number}, {"unit", HtmlColumn::text}});
   for (const FittedParameter& p : model.nuisances)
     table.add({p.name, html_value(p), html_unit(p.unit)});
   return table.html();
@@ -94,27 +98,29 @@ Html levelling(const ModelResult& model) {
 
 Html held_out(const Crosscheck& checks) {
   HtmlTable table("Profiles held out: measured against predicted",
-                  {{"profile", Column::text},
-                   {"chi-square per value", Column::number},
-                   {"correlated", Column::text},
-                   {"largest difference", Column::number},
-                   {"at, mm", Column::number},
-                   {"verdict", Column::text}});
+                  {{"profile", HtmlColumn::text},
+                   {"chi-square per value", HtmlColumn::number},
+                   {"correlated", HtmlColumn::text},
+                   {"largest difference", HtmlColumn::number},
+                   {"at, mm", HtmlColumn::number},
+                   {"verdict", HtmlColumn::text}});
   for (const HeldOutCheck& check : checks.held_out)
     table.add({check.profile, html_number(check.chi2, 3), html_probability(check.p_value),
                html_size(check.largest_um, check.largest_urad), html_number(check.at_mm),
                bold(text_of(check.verdict))});
-  HtmlTable among("The same quantity from several profiles", {{"what", Column::text},
-                                                              {"profiles", Column::text},
-                                                              {html_symbol("E_n"), Column::number},
-                                                              {"verdict", Column::text}});
+  HtmlTable among("The same quantity from several profiles",
+                  {{"what", HtmlColumn::text},
+                   {"profiles", HtmlColumn::text},
+                   {html_symbol("E_n"), HtmlColumn::number},
+                   {"verdict", HtmlColumn::text}});
   for (const ProfileCheck& check : checks.profiles)
     among.add({check.what, joined(check.profiles, " and "), html_number(check.En, 2),
                bold(text_of(check.verdict))});
-  HtmlTable repeats("What repeats have in common and the model lacks", {{"profiles", Column::text},
-                                                                        {"F", Column::number},
-                                                                        {"p", Column::number},
-                                                                        {"verdict", Column::text}});
+  HtmlTable repeats("What repeats have in common and the model lacks",
+                    {{"profiles", HtmlColumn::text},
+                     {"F", HtmlColumn::number},
+                     {"p", HtmlColumn::number},
+                     {"verdict", HtmlColumn::text}});
   for (const PureErrorCheck& check : checks.repeats)
     repeats.add({joined(check.profiles, " and "), html_number(check.F, 3),
                  html_probability(check.p_value), bold(text_of(check.verdict))});
@@ -130,8 +136,8 @@ HtmlSection html_uncertainty(const Analysis& analysis) {
   std::vector<std::string> remarks = result.notes;
   remarks.insert(remarks.end(), model.notes.begin(), model.notes.end());
   for (std::string& each : remarks) each = with_titles(each);
-  Html body = budget(model) + noise(model) + correlations(model) + levelling(model) +
-              held_out(result.crosscheck) + covered();
+  Html body = html_budget(model) + html_noise(model) + correlations(model) + levelling(model) +
+              held_out(result.crosscheck) + covered(result);
   if (!remarks.empty()) body += element("h3", "Notes") + html_list(remarks);
   return {"uncertainty", "Uncertainty", body};
 }
@@ -140,13 +146,14 @@ HtmlSection html_identifiability(const Analysis& analysis) {
   if (!analysis.result.final) return {};
   const ModelResult& model = *analysis.result.final;
   const Identifiability& what = model.identifiability;
-  HtmlTable lost("Directions in which no prediction changes",
-                 {{"combination", Column::text}, {"what would determine it", Column::text}});
+  HtmlTable lost(
+      "Directions in which no prediction changes",
+      {{"combination", HtmlColumn::text}, {"what would determine it", HtmlColumn::text}});
   for (const UndeterminedDirection& direction : what.unidentifiable)
     lost.add({in_words(direction.combination, model), with_titles(direction.advice)});
-  HtmlTable found(
-      "What the data determine instead",
-      {{"combination", Column::text}, {"value ± U", Column::number}, {"unit", Column::text}});
+  HtmlTable found("What the data determine instead", {{"combination", HtmlColumn::text},
+                                                      {"value ± U", HtmlColumn::number},
+                                                      {"unit", HtmlColumn::text}});
   for (const DeterminedCombination& sum : what.determined)
     found.add({in_words(sum.combination, model), html_value(sum), html_unit(sum.unit)});
   const std::string rank = std::to_string(what.rank) + " of " + std::to_string(what.parameters);

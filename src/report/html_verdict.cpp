@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "html_curves.hpp"
 #include "html_parts.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
@@ -8,11 +9,11 @@
 #include "slideway/identify/result_fields.hpp"
 #include "slideway/report/number.hpp"
 #include "summary.hpp"
+#include "text_parts.hpp"
 
 namespace slideway {
 namespace {
 
-using Column = HtmlTable::Column;
 constexpr double kWorthTelling = 0.01;  // of U, a shift
 
 Html cards(const std::vector<std::pair<Html, Html>>& facts) {
@@ -75,6 +76,7 @@ Html all_cards(const Analysis& analysis, const Summary& summary) {
       facts.emplace_back("Straightness error " + html_symbol("E_ZX"),
                          straightness_card(*result.final->straightness));
   }
+  if (!summary.conformity.empty()) facts.emplace_back("Tolerance", in_sentence(summary.conformity));
   if (const Html name = dominant_card(result.dominant); !name.empty())
     facts.emplace_back("Dominates", name);
   if (summary.has_crosscheck) facts.emplace_back("Cross-check", summary.crosscheck);
@@ -83,28 +85,33 @@ Html all_cards(const Analysis& analysis, const Summary& summary) {
   return cards(facts);
 }
 
+/// "thermal drift A", the name in the report in small.
+Html named(const FittedParameter& p) {
+  const std::string effect = p.name.substr(0, p.name.rfind('.'));
+  return effect_title(effect) + " " + html_symbol(p.symbol) + " " + small(p.name);
+}
+
 /// The final parameters; where the loop has changed them, those of the declared model beside them.
 Html parameters(const Analysis& analysis) {
   const Result& result = analysis.result;
   if (!result.final) return {};
   const bool extended = was_extended(analysis);
-  std::vector<std::pair<Html, Column>> columns{{"parameter", Column::text},
-                                               {"value ± U", Column::number},
-                                               {"unit", Column::text},
-                                               {"k", Column::number},
-                                               {"u", Column::number}};
+  std::vector<std::pair<Html, HtmlColumn>> columns{{"parameter", HtmlColumn::text},
+                                                   {"value ± U", HtmlColumn::number},
+                                                   {"unit", HtmlColumn::text},
+                                                   {"k", HtmlColumn::number},
+                                                   {"u", HtmlColumn::number}};
   if (extended) {
-    columns.emplace_back("declared model", Column::number);
-    columns.emplace_back("shift / U", Column::number);
+    columns.emplace_back("declared model", HtmlColumn::number);
+    columns.emplace_back("shift / U", HtmlColumn::number);
   }
   HtmlTable table("Parameters of the final model, expanded uncertainty U = k u (95.45 % coverage)",
                   columns);
   for (const FittedParameter& p : result.final->parameters) {
-    std::vector<Html> cells{html_symbol(p.symbol) + " " + small(p.name),
-                            html_value(p) + (p.at_bound ? ", at the end of its range" : ""),
-                            html_unit(p.unit),
-                            is_known(p) ? html_number(p.coverage_factor, 3) : Html(),
-                            is_known(p) ? html_number(p.standard_uncertainty, 2) : Html()};
+    std::vector<Html> cells{
+        named(p), html_value(p) + (p.at_bound ? ", at the end of its range" : ""),
+        html_unit(p.unit), is_known(p) ? html_number(p.coverage_factor, 3) : Html(),
+        is_known(p) ? html_number(p.standard_uncertainty, 2) : Html()};
     if (extended) {
       const FittedParameter* const before = result.declared->find(p.name);
       cells.push_back(before != nullptr ? html_value(*before) : Html());
@@ -116,25 +123,6 @@ Html parameters(const Analysis& analysis) {
       cells.push_back(shift);
     }
     table.add(cells);
-  }
-  return table.html();
-}
-
-Html conformity(const Result& result) {
-  HtmlTable table("Conformity with the tolerances, ISO 14253-1 (U as guard band)",
-                  {{"what", Column::text},
-                   {"value ± U", Column::number},
-                   {"limit", Column::number},
-                   {"unit", Column::text},
-                   {"verdict", Column::text}});
-  for (const Conformity& each : result.conformity) {
-    const bool angle = each.limit_um_per_m.has_value();
-    QuantityValue value;
-    value.value = angle ? each.value_um_per_m : each.value_um;
-    value.expanded_uncertainty = angle ? each.U_um_per_m : each.U_um;
-    table.add({each.what, html_value(value),
-               html_number(angle ? each.limit_um_per_m : each.limit_um), angle ? "µm/m" : "µm",
-               bold(text_of(each.verdict))});
   }
   return table.html();
 }
@@ -188,7 +176,44 @@ Html listed(const char* title, const std::vector<Html>& items) {
   return items.empty() ? Html() : element("h3", title) + html_list(items);
 }
 
+/// The profile in which most was missing, the model, and what is left before and after.
+Html picture(const Analysis& analysis) {
+  const std::optional<Curves>& curves = analysis.details.curves;
+  if (!curves || curves->profiles.empty()) return {};
+  const ProfileCurves& shown = profile_to_show(*curves);
+  constexpr double kWidth = 480.0, kHeight = 220.0;  // legible on a telephone too
+  Plot form = form_panel(shown), rest = residual_panel(shown);
+  form.size(kWidth, kHeight);
+  rest.size(kWidth, kHeight);
+  if (form.empty() || rest.empty()) return {};
+  const Html caption = "Profile " + bold(shown.profile) +
+                       " with the final model, and what is left of it" +
+                       (shown.residual_after.empty() ? "." : " before and after the loop.");
+  return element("figure", {{"class", "first"}},
+                 element("div", {{"class", "panels"}}, form.svg() + rest.svg()) +
+                     element("figcaption", caption));
+}
+
 }  // namespace
+
+Html html_conformity(const Result& result) {
+  HtmlTable table("Conformity with the tolerances, ISO 14253-1 (U as guard band)",
+                  {{"what", HtmlColumn::text},
+                   {"value ± U", HtmlColumn::number},
+                   {"limit", HtmlColumn::number},
+                   {"unit", HtmlColumn::text},
+                   {"verdict", HtmlColumn::text}});
+  for (const Conformity& each : result.conformity) {
+    const bool angle = each.limit_um_per_m.has_value();
+    QuantityValue value;
+    value.value = angle ? each.value_um_per_m : each.value_um;
+    value.expanded_uncertainty = angle ? each.U_um_per_m : each.U_um;
+    table.add({each.what, html_value(value),
+               html_number(angle ? each.limit_um_per_m : each.limit_um), angle ? "µm/m" : "µm",
+               bold(text_of(each.verdict))});
+  }
+  return table.html();
+}
 
 HtmlSection html_verdict(const Analysis& analysis) {
   constexpr const char* kKinds[] = {"good", "plain", "warn", "bad"};  // as in Alarm
@@ -199,8 +224,9 @@ HtmlSection html_verdict(const Analysis& analysis) {
               summary.badge);
   return {"verdict", "Verdict",
           element("p", {{"class", "verdict"}}, badge + " " + in_sentence(summary.verdict)) +
-              all_cards(analysis, summary) + parameters(analysis) + conformity(analysis.result) +
-              listed("Warnings", warnings(analysis)) + listed("Next steps", next_steps(analysis))};
+              all_cards(analysis, summary) + picture(analysis) + parameters(analysis) +
+              html_conformity(analysis.result) + listed("Warnings", warnings(analysis)) +
+              listed("Next steps", next_steps(analysis))};
 }
 
 }  // namespace slideway

@@ -10,9 +10,9 @@ namespace {
 constexpr std::size_t kGap = 2;
 
 /// Width a column can be cut down to, or none.
-std::optional<std::size_t> shortest_width(TextTable::Column column) {
-  if (column == TextTable::Column::name) return 8;
-  if (column == TextTable::Column::effect) return 21;
+std::optional<std::size_t> shortest_width(TextColumn column) {
+  if (column == TextColumn::name) return 8;
+  if (column == TextColumn::effect) return 21;
   return std::nullopt;
 }
 
@@ -77,7 +77,7 @@ std::string paragraph(std::string_view first, std::string_view words) {
   return text + "\n";
 }
 
-TextTable::TextTable(std::vector<std::string> headings, std::vector<Column> columns)
+TextTable::TextTable(std::vector<std::string> headings, std::vector<TextColumn> columns)
     : columns_(std::move(columns)), rows_{std::move(headings)} {}
 
 std::vector<std::size_t> TextTable::widths() const {
@@ -109,7 +109,7 @@ std::string TextTable::text() const {
       const std::string cell = shortened(row[i], width[i]);
       const std::string blanks(width[i] - std::min(width[i], code_points(cell)), ' ');
       line += std::string(kGap, ' ');
-      line += columns_[i] == Column::number ? blanks + cell : cell + blanks;
+      line += columns_[i] == TextColumn::number ? blanks + cell : cell + blanks;
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += code_points(line) <= kLineWidth ? line + "\n" : paragraph("  ", line);

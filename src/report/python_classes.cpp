@@ -26,17 +26,18 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from slideway._shown import Shown
 )py";
 
 constexpr std::string_view kEndOfReport =
     R"py(    text: str = dataclasses.field(default="", repr=False, compare=False)
     """what the program prints"""
-
-    def __str__(self) -> str:
-        return self.text
+    json: str = dataclasses.field(default="", repr=False, compare=False)
+    """what the program writes"""
 )py";
 
-constexpr std::size_t kWidth = 99;
+constexpr std::size_t kSourceWidth = 99;
 
 /// Classes, each behind those it is made of.
 class ClassMaker {
@@ -52,8 +53,10 @@ class ClassMaker {
       members += "    " + std::string(field.key) + ": " + folded(type, field.key.size() + 6) + "\n";
       if (!field.doc.empty()) members.append("    \"\"\"").append(field.doc).append("\"\"\"\n");
     });
+    constexpr bool kIsReport = std::is_same_v<T, Analysis>;
     text_.append("\n\n@dataclass(frozen=True").append(has_array ? ", eq=False" : "");
-    text_.append(")\nclass ").append(kRecord<T>.name).append(":\n    \"\"\"");
+    text_.append(kIsReport ? ", repr=False" : "").append(")\nclass ").append(kRecord<T>.name);
+    text_.append(kIsReport ? "(Shown)" : "").append(":\n    \"\"\"");
     text_.append(kRecord<T>.doc).append("\"\"\"\n\n").append(members);
   }
 
@@ -102,7 +105,7 @@ class ClassMaker {
 
   /// Behind so many columns, over several lines where it is too long for one.
   static std::string folded(const std::string& type, std::size_t columns) {
-    if (columns + type.size() <= kWidth) return type;
+    if (columns + type.size() <= kSourceWidth) return type;
     const std::size_t open = type.find('['), close = type.rfind(']');
     return type.substr(0, open + 1) + "\n        " + type.substr(open + 1, close - open - 1) +
            "\n    " + type.substr(close);

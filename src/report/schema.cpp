@@ -2,6 +2,7 @@
 #include "json_parts.hpp"
 #include "slideway/report/contract.hpp"
 #include "slideway/trace/analysis_fields.hpp"
+#include "slideway/trace/plan_fields.hpp"
 
 namespace slideway {
 namespace {
@@ -85,18 +86,22 @@ class SchemaMaker {
   Json definitions_ = Json::object();
 };
 
-}  // namespace
-
-std::string report_schema() {
+template <Recorded T>
+std::string schema_of(const char* id, std::string_view name) {
   SchemaMaker maker;
-  Json report = maker.object<Analysis>();
-  report["properties"]["schema"] = {{"const", kReportSchema}};
-  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                 {"$id", "urn:slideway:report:2"},
-                 {"title", kReportSchema}};
-  schema.update(report);
+  Json document = maker.object<T>();
+  document["properties"]["schema"] = {{"const", name}};
+  Json schema = {
+      {"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"$id", id}, {"title", name}};
+  schema.update(document);
   schema["$defs"] = maker.definitions();
   return laid_out(schema) + "\n";
 }
+
+}  // namespace
+
+std::string report_schema() { return schema_of<Analysis>("urn:slideway:report:2", kReportSchema); }
+
+std::string plan_schema() { return schema_of<Plan>("urn:slideway:plan:1", kPlanSchema); }
 
 }  // namespace slideway

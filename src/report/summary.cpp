@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/effects/catalogue.hpp"
-#include "slideway/identify/identifiability.hpp"
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "text_parts.hpp"
@@ -18,6 +16,7 @@ namespace {
 constexpr std::size_t kFewLetters = 38;            // names that leave room for a sentence
 constexpr std::size_t kShortNames = 30;            // and for its end
 constexpr std::size_t kBoxText = kLineWidth - 11;  // beside the label
+constexpr const char* kNothingToDo = "none is needed for these numbers";
 
 /// Of the declared numbers, in U: what is no alarm.
 double harmless_shift(const TraceResult& trace) {
@@ -82,26 +81,49 @@ std::string left_over(const TraceResult& trace) {
   return ": " + size_text(left.rms_um, left.rms_urad) + " rms on " + left.profile;
 }
 
-void say_verdict(const Analysis& analysis, Summary& out) {
-  const auto say = [&](Alarm alarm, const char* badge, std::string sentence) {
+std::string moved_by(const Shift& shift) {
+  return shift.what + " by " + in_expanded_uncertainties(shift.in_expanded_uncertainties);
+}
+
+std::string what_was_missing(const Analysis& analysis) {
+  const TraceResult& trace = *analysis.trace;
+  const std::size_t count = trace.rounds.size();
+  const std::string names = found(trace);
+  const std::string were = (names.size() <= kFewLetters ? names : counted(count, "effect")) +
+                           (count > 1 ? " were missing" : " was missing");
+  const std::optional<Shift> shift = largest_shift(analysis.result);
+  if (!shift) return were + (count > 1 ? " and are" : " and is") + " in the model now";
+  if (is_harmless(analysis)) return were + ", which changes none of these numbers";
+  return were + " and had moved " + moved_by(*shift);
+}
+
+std::string what_may_be_missing(const Analysis& analysis) {
+  const std::string names = found(*analysis.trace);
+  const std::string open =
+      names.size() <= kFewLetters
+          ? names + " is missing" +
+                (names.size() < kShortNames ? ": the data cannot tell which" : "")
+          : "the data cannot tell which effect is missing";
+  const std::optional<Shift> shift = largest_shift(analysis.result);
+  return shift ? open + ", and it moves " + moved_by(*shift) : open;
+}
+
+/// What the closed loop says, with the verdict in a word or two.
+std::string say_finding(const Analysis& analysis, Summary& out) {
+  const auto say = [&](Alarm alarm, const char* badge, std::string clause) {
     out.alarm = alarm;
     out.badge = badge;
-    out.verdict = std::move(sentence);
+    return clause;
   };
-  const std::optional<ModelResult>& model = analysis.result.final;
-  if (!model)
-    return say(Alarm::plain, "Ranking only", "effects were ranked by correlation, none was fitted");
-  if (!model->converged)
-    return say(Alarm::bad, "Not converged", "no number of this report can be relied on");
-  if (!analysis.trace)
-    return say(Alarm::plain, "Fitted", "the declared model; no missing effect was looked for");
   const TraceResult& trace = *analysis.trace;
   if (!trace.blunders.empty())
     return say(Alarm::bad, "Blunder",
                "profile " + trace.blunders.front().profile + " disagrees with the others: " +
                    std::string(text_of(trace.blunders.front().what)));
-  const std::string names = found(trace);
-  const bool few = names.size() <= kFewLetters;
+  if (trace.unfinished)
+    return say(
+        Alarm::bad, "Not finished",
+        "the time limit ended the search before an effect could be named" + left_over(trace));
   switch (trace.verdict) {
     case TraceVerdict::nothing_missing:
       return say(Alarm::good, "Nothing missing", "the model explains the profiles down to noise");
@@ -109,23 +131,21 @@ void say_verdict(const Analysis& analysis, Summary& out) {
       if (!trace.rounds.empty() && trace.rounds.front().accepted == kInstrument)
         return say(Alarm::warn, "Instrument",
                    "surfaces share a residual: the instrument's error, not the slide's");
-      return say(
-          Alarm::good, "Explained",
-          (few ? names + " was" : "what is named below was") + " missing and is in the model now");
+      return say(Alarm::good, "Explained", what_was_missing(analysis));
     case TraceVerdict::ambiguous:
-      if (is_harmless(analysis))
-        return say(Alarm::plain, "Ambiguous, without harm",
-                   "what is missing moves nothing by " + number(harmless_shift(trace), 2) + " U");
-      return say(Alarm::warn, "Ambiguous",
-                 few ? names + " is missing" +
-                           (names.size() < kShortNames ? ": the data cannot tell which" : "")
-                     : "the data cannot tell which effect is missing");
+      if (is_harmless(analysis)) {
+        const std::string size = size_of_missing(analysis.result);
+        return say(
+            Alarm::plain, "Ambiguous, without harm",
+            "a possible effect" + (size.empty() ? "" : size + ",") + " does not change this");
+      }
+      return say(Alarm::warn, "Ambiguous", what_may_be_missing(analysis));
     case TraceVerdict::not_identifiable:
       return say(Alarm::bad, "Not identifiable", "the data cannot tell what made this form");
     case TraceVerdict::unnamed:
       break;
   }
-  say(Alarm::bad, "Unnamed", "no known effect explains what is left" + left_over(trace));
+  return say(Alarm::bad, "Unnamed", "no known effect explains what is left" + left_over(trace));
 }
 
 std::string straightness_of(const Result& result) {
@@ -148,6 +168,78 @@ std::string squareness_of(const Result& result) {
     return is_known(*p) ? value_text(*p, kMicroradian) + " µm/m" : "not determined by these data";
   const auto is_face = [](const InputSummary& in) { return in.kind == Kind::face; };
   return std::ranges::any_of(result.inputs, is_face) ? "not in the model" : "needs a face";
+}
+
+/// The error that dominates, with its size; "" where nothing was determined.
+std::string lead_of(const Result& result) {
+  const FittedParameter* const angle = squareness_parameter(result);
+  const bool has_angle = angle != nullptr && is_known(*angle);
+  const std::optional<double> form =
+      result.final->straightness ? result.final->straightness->end_point_um : std::nullopt;
+  const std::string straightness = straightness_of(result), squareness = squareness_of(result);
+  if (!angle && form)
+    return "the slide is straight to " + straightness.substr(std::string("E_ZX ").size());
+  const Dominant& dominant = result.dominant;
+  const auto& leader = dominant.by_fit ? dominant.by_fit : dominant.by_correlation;
+  if (!dominant.doubt.empty() || !leader)
+    return has_angle && form ? "no error clearly dominates" : "";
+  const auto named = [](bool is_clear, const std::string& error) {
+    return is_clear ? error + ", dominates" : "no error clearly dominates";
+  };
+  if (motion_error_of(*leader) == MotionError::squareness && has_angle)
+    return named(std::abs(*angle->value) > *angle->expanded_uncertainty,
+                 "squareness, " + squareness);
+  if (motion_error_of(*leader) == MotionError::straightness && form)
+    return named(*form > result.final->straightness->expanded_uncertainty_um.value_or(0.0),
+                 "straightness, " + straightness);
+  return effect_title(*leader) + " dominates";
+}
+
+/// What speaks against the numbers: they break a tolerance or disagree with a check.
+std::vector<std::string> objections(const Result& result) {
+  std::vector<std::string> out;
+  for (const Conformity& each : result.conformity)
+    if (each.verdict == ConformityVerdict::does_not_conform)
+      out.push_back(each.what + " does not conform");
+  const auto& angle = result.crosscheck.squareness;
+  if (angle && angle->verdict == Consistency::inconsistent)
+    out.emplace_back("the run-out contradicts the squareness");
+  for (const ProfileCheck& check : result.crosscheck.profiles)
+    if (check.verdict == Consistency::inconsistent)
+      out.push_back(joined(check.profiles, " and ") + " disagree in " + check.what);
+  for (const HeldOutCheck& check : result.crosscheck.held_out)
+    if (check.verdict == HeldOutVerdict::does_not_fit)
+      out.push_back(check.profile + ", held out, does not fit");
+  return out;
+}
+
+/// Badge and sentence; what harms most comes first.
+void say_verdict(const Analysis& analysis, Summary& out) {
+  const auto say = [&](Alarm alarm, const char* badge, const char* sentence) {
+    out.alarm = alarm;
+    out.badge = badge;
+    out.verdict = sentence;
+  };
+  const Result& result = analysis.result;
+  if (!result.final)
+    return say(Alarm::plain, "Ranking only", "effects were ranked by correlation, none was fitted");
+  if (!result.final->converged)
+    return say(Alarm::bad, "Not converged", "no number of this report can be relied on");
+  say(Alarm::plain, "Fitted", "no missing effect was looked for");
+  const std::string finding = analysis.trace ? say_finding(analysis, out) : out.verdict;
+  std::vector<std::string> clauses = objections(result);
+  if (!clauses.empty()) out.alarm = std::max(out.alarm, Alarm::warn);
+  const bool harms = out.alarm == Alarm::warn || out.alarm == Alarm::bad;
+  if (harms) clauses.push_back(finding);
+  if (const std::string lead = lead_of(result); out.alarm != Alarm::bad && !lead.empty())
+    clauses.push_back(lead);
+  const auto& angle = result.crosscheck.squareness;
+  if (angle && angle->verdict == Consistency::consistent)
+    clauses.emplace_back("the run-out agrees");
+  if (!harms) clauses.push_back(finding);
+  out.verdict = joined(clauses, "; ");
+  out.verdict_names_missing = analysis.trace && was_extended(analysis) &&
+                              out.verdict.find(found(*analysis.trace)) != std::string::npos;
 }
 
 void say_crosscheck(const Result& result, Summary& out) {
@@ -185,6 +277,8 @@ void say_missing(const Analysis& analysis, Summary& out) {
   out.missing = analysis.trace ? "nothing that these data show" : "not looked for";
   if (analysis.trace && analysis.trace->verdict == TraceVerdict::unnamed)
     out.missing = "nothing that has a name";
+  if (analysis.trace && analysis.trace->unfinished)
+    out.missing = "not known: the time limit ended the search";
   if (analysis.trace && !analysis.trace->blunders.empty())
     out.missing = "not looked for while a profile has a blunder";
   out.missing_in_brief = out.missing;
@@ -193,8 +287,7 @@ void say_missing(const Analysis& analysis, Summary& out) {
   std::string moved, size;
   const auto shift = largest_shift(analysis.result);
   if (shift && std::abs(shift->in_expanded_uncertainties) > harmless_shift(*analysis.trace))
-    moved = "moved " + shift->what + " by " +
-            in_expanded_uncertainties(shift->in_expanded_uncertainties) + ": ";
+    moved = "moved " + moved_by(*shift) + ": ";
   else
     size = size_of_missing(analysis.result);
   const std::size_t left = kBoxText - std::min(kBoxText, code_points(moved + size));
@@ -207,149 +300,40 @@ std::string next_step(const Analysis& analysis) {
   if (!result.final) return "slideway identify, which fits and looks for what is missing";
   if (analysis.trace && !analysis.trace->blunders.empty()) return analysis.trace->advice.front();
   for (const UndeterminedDirection* direction : open_directions(*result.final))
-    if (!direction->advice.empty()) return with_titles(direction->advice);
+    if (!direction->advice.empty())
+      return with_titles(direction->advice) + "; slideway plan tries further cuts on paper";
   if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(analysis))
-    return "none is needed for these numbers";
+    return kNothingToDo;
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::inconsistent)
     return "look for another cause: the squareness cannot have made this form";
+  if (analysis.trace && analysis.trace->unfinished) return "run it again with a longer time limit";
   if (analysis.trace && !analysis.trace->advice.empty())
     return with_titles(analysis.trace->advice.front());
   if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
   if (analysis.trace->verdict == TraceVerdict::unnamed)
     return "look at the residual on the page: where the structure is, and over what it repeats";
-  return "none is needed for these numbers";
+  return kNothingToDo;
 }
 
 }  // namespace
 
-std::vector<std::string> names_of(const TraceRound& round) {
-  std::vector<std::string> names{term_name(round.accepted, round.profiles)};
-  names.insert(names.end(), round.ambiguous_with.begin(), round.ambiguous_with.end());
-  return names;
-}
-
-std::string effect_title(const std::string& name) {
-  if (name == kUnnamedRival) return "something without a name";
-  std::string title = name;
-  std::replace(title.begin(), std::ranges::find(title, '['), '_', ' ');
-  return title;
-}
-
-std::string effect_titles(const std::vector<std::string>& names, const std::string& separator) {
-  std::vector<std::string> out;
-  for (const std::string& name : names) out.push_back(effect_title(name));
-  return joined(out, separator);
-}
-
-std::string parameter_title(const FittedParameter& parameter) {
-  const std::size_t dot = parameter.name.rfind('.');
-  if (dot == std::string::npos) return parameter.name;
-  return effect_title(parameter.name.substr(0, dot)) + " " +
-         (parameter.symbol.empty() ? parameter.name.substr(dot + 1) : parameter.symbol);
-}
-
-std::string with_titles(std::string text) {
-  const auto is_word = [](char c) { return c == '_' || c == '.' || (c >= 'a' && c <= 'z'); };
-  for (const std::string& name : effect_names()) {
-    if (name.find('_') == std::string::npos) continue;
-    for (std::size_t at = 0; (at = text.find(name, at)) != std::string::npos; at += name.size()) {
-      const std::size_t end = at + name.size();
-      const bool alone = (at == 0 || !is_word(text[at - 1])) &&
-                         (end == text.size() || text[end] != '_') &&
-                         (end + 1 >= text.size() || text[end] != '.' || !is_word(text[end + 1]));
-      if (alone) text.replace(at, name.size(), effect_title(name));
-    }
-  }
-  return text;
-}
-
-bool is_squareness(const FittedParameter& parameter) {
-  return motion_error_of(parameter.name) == MotionError::squareness;
-}
-
-bool is_vertical(const std::string& effect) {
-  return motion_error_of(effect) == MotionError::vertical_straightness;
-}
-
-std::string likeness(const Unnamed& left) {
-  constexpr const char* kVariables[][2] = {{"r", "the slide coordinate"},
-                                           {"t", "the cutting time"},
-                                           {"s", "the cutting distance"},
-                                           {"X", "the trace position"}};
-  for (const auto& [symbol, variable] : kVariables)
-    if (left.clock == symbol) return std::string("a curve over ") + variable;
-  return left.clock == "per profile" ? "a curve of its own in every profile"
-                                     : "a curve in " + left.clock;
-}
-
-std::string in_sentence(std::string text) {
-  if (text.empty()) return text;
-  if (text.front() >= 'a' && text.front() <= 'z') text.front() += 'A' - 'a';
-  return text.back() == '.' ? text : text + ".";
-}
-
-std::string value_of(const Assumption& assumption) {
-  if (!nlohmann::json::accept(assumption.value)) return assumption.value;
-  return nlohmann::ordered_json::parse(assumption.value).dump();
-}
-
-std::optional<Shift> largest_shift(const Result& result) {
-  if (!result.declared || !result.final) return std::nullopt;
-  std::optional<Shift> most;
-  const auto compare = [&](const std::string& what, const QuantityValue& before,
-                           const QuantityValue& after) {
-    if (!is_known(after) || !before.value || !(*after.expanded_uncertainty > 0.0)) return;
-    const double shift = (*before.value - *after.value) / *after.expanded_uncertainty;
-    if (!most || std::abs(shift) > std::abs(most->in_expanded_uncertainties)) most = {what, shift};
-  };
-  for (const FittedParameter& before : result.declared->parameters)
-    if (const FittedParameter* const after = result.final->find(before.name))
-      compare(parameter_title(before), before, *after);
-  if (result.declared->straightness && result.final->straightness) {
-    const auto &before = result.declared->straightness->errors,
-               &after = result.final->straightness->errors;
-    for (std::size_t i = 0; i < std::min(before.size(), after.size()); ++i)
-      if (after[i].line == ReferenceLineKind::end_point) compare("E_ZX", before[i], after[i]);
-  }
-  return most;
-}
-
-bool was_extended(const Analysis& analysis) {
-  return analysis.trace && !analysis.trace->rounds.empty() && analysis.result.declared &&
-         analysis.result.final;
-}
-
-std::string residual_change(const std::optional<double>& before_um,
-                            const std::optional<double>& after_um,
-                            const std::optional<double>& before_urad,
-                            const std::optional<double>& after_urad) {
-  const auto change = [](double before, double after, const char* unit) {
-    return number(before, 3) + " → " + number(after, 3) + unit;
-  };
-  std::vector<std::string> out;
-  if (before_um && after_um) out.push_back(change(*before_um, *after_um, " µm"));
-  if (before_urad && after_urad) out.push_back(change(*before_urad, *after_urad, " µrad"));
-  return joined(out);
-}
-
-std::vector<const UndeterminedDirection*> open_directions(const ModelResult& model) {
-  std::vector<const UndeterminedDirection*> out;
-  for (const UndeterminedDirection& direction : model.identifiability.unidentifiable)
-    if (!std::ranges::all_of(direction.combination,
-                             [](const auto& term) { return fixed_by_convention(term.first); }))
-      out.push_back(&direction);
-  return out;
-}
-
 Summary summary_of(const Analysis& analysis) {
   Summary out;
+  std::vector<std::string> held;
+  for (const Conformity& each : analysis.result.conformity)
+    held.push_back(each.what + " " +
+                   (each.verdict == ConformityVerdict::does_not_conform
+                        ? "DOES NOT CONFORM"
+                        : std::string(text_of(each.verdict))));
+  out.conformity = joined(held, "; ");
   say_verdict(analysis, out);
   out.straightness = straightness_of(analysis.result);
   out.squareness = squareness_of(analysis.result);
   say_crosscheck(analysis.result, out);
   say_missing(analysis, out);
   out.next = next_step(analysis);
+  out.has_next = out.next != kNothingToDo;
   out.next_in_brief =
       code_points(out.next) > kBoxText ? out.next.substr(0, out.next.find("; ")) : out.next;
   return out;

@@ -15,20 +15,21 @@ enum class Alarm { good, plain, warn, bad };
 struct Summary {
   Alarm alarm = Alarm::plain;
   std::string badge;         // the verdict in a word or two
-  std::string verdict;       // in a sentence
+  std::string verdict;       // in a sentence, what harms most first
   std::string straightness;  // "E_ZX 24.4 ± 6.8 µm", or why there is none
   std::string squareness;    // "2.797 ± 0.029 µm/m", or why there is none
+  std::string conformity;    // "flatness conforms", "" without a tolerance
   std::string crosscheck;
   std::string missing;  // what was missing and what that had done
   std::string next;
   std::string missing_in_brief, next_in_brief;  // in a line of the box, if it can be
-  bool has_crosscheck = false, has_missing = false;
+  bool has_crosscheck = false, has_missing = false, has_next = false;
+  bool verdict_names_missing = false;  // what was missing, and what that had done
 };
 
 Summary summary_of(const Analysis& analysis);
 
-/// An effect's name for people: "thermal_drift" as "thermal drift", "unnamed" as "something without
-/// a name".
+/// An effect's plain name; "unnamed" is "something without a name".
 std::string effect_title(const std::string& name);
 // An accepted effect, with the profiles it is confined to, and its rivals.
 std::vector<std::string> names_of(const TraceRound& round);

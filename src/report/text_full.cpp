@@ -14,7 +14,6 @@
 namespace slideway {
 namespace {
 
-using Column = TextTable::Column;
 constexpr std::size_t kLargest = 3;  // correlations listed
 constexpr double kBetter = 0.05;     // a coefficient at a lag worth telling
 
@@ -24,7 +23,7 @@ std::string coefficient(double value) {
   return (value < 0.0 ? "-" : "+") + fixed_point(std::abs(value), 4);
 }
 
-std::string assumed(const Result& result) {
+std::string assumed_in_full(const Result& result) {
   std::string out;
   for (const Assumption& each : result.assumed)
     out += note(each.key + (each.value.empty() ? "" : " = " + value_of(each)) + ": " + each.why);
@@ -33,8 +32,8 @@ std::string assumed(const Result& result) {
 
 std::string inputs(const Result& result) {
   TextTable table({"profile", "kind", "role", "samples", "range, mm", "rms", "p-v"},
-                  {Column::name, Column::text, Column::text, Column::number, Column::number,
-                   Column::number, Column::number});
+                  {TextColumn::name, TextColumn::text, TextColumn::text, TextColumn::number,
+                   TextColumn::number, TextColumn::number, TextColumn::number});
   std::string notes;
   for (const InputSummary& in : result.inputs) {
     table.add({in.name, text(in.kind) + " " + text(in.quantity), text(in.role),
@@ -59,7 +58,8 @@ std::string closure(const Result& result) {
 std::string low_band(const Result& result) {
   if (result.low_band.empty()) return "";
   TextTable table({"profile", "wavelet", "level", "ends", "values"},
-                  {Column::name, Column::text, Column::number, Column::text, Column::number});
+                  {TextColumn::name, TextColumn::text, TextColumn::number, TextColumn::text,
+                   TextColumn::number});
   for (const LowBandSummary& low : result.low_band)
     table.add({low.profile, low.level == 0 ? "none, as it is" : low.wavelet,
                std::to_string(low.level), low.level == 0 ? "" : text(low.boundary),
@@ -74,7 +74,7 @@ std::string candidate_correlations(std::vector<CandidateCorrelation> pairs) {
   std::ranges::stable_sort(pairs, larger);
   if (pairs.empty()) return "";
   TextTable table({"effect", "effect", "profile", "r"},
-                  {Column::effect, Column::effect, Column::name, Column::number});
+                  {TextColumn::effect, TextColumn::effect, TextColumn::name, TextColumn::number});
   for (std::size_t i = 0; i < std::min(kLargest, pairs.size()); ++i)
     table.add({effect_title(pairs[i].a), effect_title(pairs[i].b), pairs[i].profile,
                coefficient(pairs[i].coefficient)});
@@ -93,8 +93,8 @@ std::string better_when_shifted(const std::vector<Ranking>& entries) {
 std::string ranking(const RankingResult& ranking) {
   if (ranking.entries.empty()) return "";
   TextTable table({"effect", "profile", "raw", "low band", "N_eff", "p"},
-                  {Column::effect, Column::name, Column::number, Column::number, Column::number,
-                   Column::number});
+                  {TextColumn::effect, TextColumn::name, TextColumn::number, TextColumn::number,
+                   TextColumn::number, TextColumn::number});
   for (const Ranking& entry : ranking.entries)
     table.add({effect_title(entry.effect), entry.profile, coefficient(entry.raw),
                coefficient(entry.low_band), number(entry.effective_observations, 3),
@@ -131,7 +131,7 @@ std::string standard_terms(const ModelResult& model) {
 std::string nuisances(const ModelResult& model) {
   if (model.nuisances.empty()) return "";
   TextTable table({"levelling of the traces", "value ± U", "unit"},
-                  {Column::name, Column::text, Column::text});
+                  {TextColumn::name, TextColumn::text, TextColumn::text});
   for (const FittedParameter& p : model.nuisances)
     table.add({p.name, value_text(p), unit_text(p.unit)});
   return table.text();
@@ -172,8 +172,8 @@ std::string noise(const ModelResult& model) {
   if (model.noise.empty()) return "";
   TextTable table(
       {"profile", "uncertainty", "correlated", "std. dev.", "corr., mm", "N_eff", "Ljung-Box p"},
-      {Column::name, Column::text, Column::text, Column::number, Column::number, Column::number,
-       Column::number});
+      {TextColumn::name, TextColumn::text, TextColumn::text, TextColumn::number, TextColumn::number,
+       TextColumn::number, TextColumn::number});
   std::string notes;
   for (const NoiseSummary& n : model.noise) {
     const std::string scaling = text(n.scaling);
@@ -211,8 +211,9 @@ std::string identifiability(const ModelResult& model) {
 std::string residuals(const ModelResult& model) {
   std::string out;
   if (!model.contributions.empty()) {
-    TextTable shares({"effect", "profile", "rms", "share"},
-                     {Column::effect, Column::name, Column::number, Column::number});
+    TextTable shares(
+        {"effect", "profile", "rms", "share"},
+        {TextColumn::effect, TextColumn::name, TextColumn::number, TextColumn::number});
     for (const Contribution& c : model.contributions)
       shares.add({effect_title(c.effect), c.profile, size_text(c.rms_um, c.rms_urad),
                   fixed_point(100.0 * c.share, 1) + " %"});
@@ -220,7 +221,7 @@ std::string residuals(const ModelResult& model) {
   }
   if (!model.residuals.empty()) {
     TextTable table({"profile", "role", "rms", "p-v"},
-                    {Column::name, Column::text, Column::number, Column::number});
+                    {TextColumn::name, TextColumn::text, TextColumn::number, TextColumn::number});
     for (const ResidualSummary& r : model.residuals)
       table.add({r.profile, r.role == Role::holdout ? "held out" : "fit",
                  size_text(r.rms_um, r.rms_urad, 4), size_text(r.pv_um, r.pv_urad, 4)});
@@ -296,12 +297,12 @@ std::string in_words(const Combination& terms, const ModelResult& model) {
 
 std::string data_text(const Result& result) {
   return heading("slideway " + result.version + ": " + result.title).substr(1) + inputs(result) +
-         low_band(result) + assumed(result) + closure(result);
+         low_band(result) + assumed_in_full(result) + closure(result);
 }
 
 std::string full_text(const Analysis& analysis) {
   const Result& result = analysis.result;
-  std::string out = assumed(result) + inputs(result) + closure(result) + low_band(result) +
+  std::string out = assumed_in_full(result) + inputs(result) + closure(result) + low_band(result) +
                     ranking(result.ranking) + dominant(result.dominant);
   if (result.final)
     out += fit(*result.final) + noise(*result.final) + identifiability(*result.final) +

@@ -34,6 +34,9 @@ std::string full_text(const Analysis& analysis);
 /// The closed loop of `--full`.
 std::string trace_text(const TraceResult& trace);
 
+/// The profile whose residual the loop has lowered most, else the first. REQUIRES one.
+const ProfileCurves& profile_to_show(const Curves& curves);
+
 /// The residual of the profile in which the loop has lowered it most, before and after; "" where it
 /// has not.
 std::string residual_pictures(const Curves& curves);

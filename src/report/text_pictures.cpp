@@ -22,17 +22,21 @@ double fall(const ProfileCurves& curves) {
 
 }  // namespace
 
+const ProfileCurves& profile_to_show(const Curves& curves) {
+  return *std::ranges::max_element(curves.profiles, {}, [](const auto& p) { return fall(p); });
+}
+
 std::string residual_pictures(const Curves& curves) {
-  const auto most =
-      std::ranges::max_element(curves.profiles, {}, [](const auto& p) { return fall(p); });
-  if (most == curves.profiles.end() || !(fall(*most) > 0.0)) return "";
-  const auto [low, high] = std::ranges::minmax(most->residual_before);
+  if (curves.profiles.empty()) return "";
+  const ProfileCurves& most = profile_to_show(curves);
+  if (!(fall(most) > 0.0)) return "";
+  const auto [low, high] = std::ranges::minmax(most.residual_before);
   const PictureFrame frame{4, low, high};
-  return heading("Residual of " + most->profile + " in the low band, " +
-                 (most->unit == MicroUnit::urad ? "µrad" : "µm") +
+  return heading("Residual of " + most.profile + " in the low band, " +
+                 (most.unit == MicroUnit::urad ? "µrad" : "µm") +
                  ", over the trace in mm, before") +
-         picture(most->position_mm, most->residual_before, frame) +
-         "and after, on the same scale\n" + picture(most->position_mm, most->residual_after, frame);
+         picture(most.position_mm, most.residual_before, frame) + "and after, on the same scale\n" +
+         picture(most.position_mm, most.residual_after, frame);
 }
 
 }  // namespace slideway

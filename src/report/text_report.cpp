@@ -39,7 +39,6 @@ std::string size_text(const std::optional<double>& um, const std::optional<doubl
 
 namespace {
 
-using Column = TextTable::Column;
 constexpr std::size_t kBoxLines = 6, kAllLines = 40;
 constexpr std::size_t kParameterRows = 18, kAssumedLines = 3, kStations = 11;
 
@@ -84,7 +83,8 @@ std::string box(const Summary& summary, const std::string& page) {
   };
   add("Verdict", summary.badge + ": " + summary.verdict + ".");
   add("Result", summary.straightness + "; squareness " + summary.squareness);
-  add("Check", summary.crosscheck);
+  const bool has_limit = !summary.conformity.empty();
+  add("Check", summary.conformity + (has_limit ? "; " : "") + summary.crosscheck);
   add("Missing", summary.missing_in_brief);
   add("Next", summary.next_in_brief);
   add("Page", page.empty() ? "none was written; --html FILE writes it" : page);
@@ -95,8 +95,9 @@ std::string box(const Summary& summary, const std::string& page) {
     count -= entries[entry].size();
     entries[entry].clear();
   };
+  leave(3, !summary.has_missing || summary.verdict_names_missing);
+  leave(4, !summary.has_next);
   leave(5, page.empty());
-  leave(3, !summary.has_missing);
   for (const std::size_t give : {4U, 5U, 3U, 2U, 0U, 1U})
     while (count > kBoxLines && entries[give].size() > 1) {
       entries[give] = first_lines(entries[give], entries[give].size() - 1);
@@ -149,7 +150,7 @@ std::string stations(const Result& result) {
     deviation.push_back(pair.uncertainty == "0" ? number(at.deviation_um, 3) : pair.value);
     U.push_back(pair.uncertainty);
   }
-  TextTable table(std::move(x), std::vector<Column>(count + 1, Column::number));
+  TextTable table(std::move(x), std::vector<TextColumn>(count + 1, TextColumn::number));
   table.add(std::move(deviation));
   table.add(std::move(U));
   return heading("Station heights from the line through the end points" +
@@ -265,8 +266,8 @@ std::string parameter_table(const Result& result, std::size_t most) {
   if (all.empty()) return "";
   std::vector<std::string> headings{"parameter", "value ± U", "unit", has_k ? "k" : "",
                                     has_declared ? "declared model" : ""};
-  TextTable table(std::move(headings),
-                  {Column::name, Column::text, Column::text, Column::text, Column::text});
+  TextTable table(std::move(headings), {TextColumn::name, TextColumn::text, TextColumn::text,
+                                        TextColumn::text, TextColumn::text});
   for (std::vector<std::string>& row : rows) table.add(std::move(row));
   if (rows.size() == all.size()) return table.text();
   return table.text() + item(counted(all.size() - rows.size(), "more parameter") + ": --full");

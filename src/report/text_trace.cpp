@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "slideway/base/text.hpp"
 #include "slideway/report/layout.hpp"
@@ -11,14 +12,13 @@
 namespace slideway {
 namespace {
 
-using Column = TextTable::Column;
-
 std::string last_name(const std::string& name) { return name.substr(name.rfind('.') + 1); }
 
 std::string verdict(const TraceResult& trace) {
   if (!trace.blunders.empty())
     return "profile " + trace.blunders.front().profile +
            " disagrees with the others; no effect was looked for.";
+  if (trace.unfinished) return "the time limit ended the search before an effect could be named.";
   switch (trace.verdict) {
     case TraceVerdict::nothing_missing:
       return "nothing is missing that these data tell from noise (lack of fit p = " +
@@ -69,6 +69,37 @@ std::string left_over(const Unnamed& left) {
   return item(text + ". It is not counted as an improvement.");
 }
 
+std::string form(const UnnamedForm& form, std::size_t index) {
+  std::string text =
+      item("Form " + std::to_string(index + 1) + ", " + form.form + ": " + form.formula +
+           (form.profiles.empty() ? "" : ", in " + joined(form.profiles)) +
+           (form.instead_of.empty() ? "" : ", in place of " + effect_title(form.instead_of)) +
+           ": residual " +
+           residual_change(form.before_rms_um, form.after_rms_um, form.before_rms_urad,
+                           form.after_rms_urad) +
+           ", difference in BIC " + number(form.delta_bic, 3));
+  if (const std::string change =
+          residual_change(form.before_holdout_rms_um, form.after_holdout_rms_um, {}, {});
+      !change.empty())
+    text += paragraph("     ", "on profiles left out of the fit " + change);
+  for (const FittedParameter& p : form.parameters)
+    text += paragraph("     ", last_name(p.name) + " = " + value_text(p) + " " + unit_text(p.unit));
+  return text;
+}
+
+/// What describes the rest, and the block of the best to paste.
+std::string forms(const Unnamed& left) {
+  if (left.forms.empty()) return "";
+  std::string text;
+  for (std::size_t i = 0; i < left.forms.size(); ++i) text += form(left.forms[i], i);
+  text += note("A form describes what is left and is no cause. To confirm one: " +
+               with_titles(left.to_confirm) + ".");
+  text += item("To look for form 1 in the next run, as a cause of your own:");
+  std::istringstream lines(left.forms.front().candidate);
+  for (std::string line; std::getline(lines, line);) text += "    " + line + "\n";
+  return text;
+}
+
 std::string extremes(const DetectionLimit& limit) {
   std::vector<double> sizes;
   for (const LimitAtShape& each : limit.by_shape)
@@ -81,7 +112,7 @@ std::string extremes(const DetectionLimit& limit) {
 std::string limits(const TraceResult& trace) {
   if (trace.detection_limits.empty()) return "";
   TextTable table({"effect", "found from", "other shapes", "at"},
-                  {Column::effect, Column::number, Column::number, Column::name});
+                  {TextColumn::effect, TextColumn::number, TextColumn::number, TextColumn::name});
   for (const DetectionLimit& limit : trace.detection_limits)
     table.add({effect_title(limit.effect),
                limit.value ? number(*limit.value, 2) + " " + unit_text(limit.unit) : "at no size",
@@ -131,7 +162,7 @@ std::string trace_text(const TraceResult& trace) {
   std::string text = heading("Closed loop: " + verdict(trace));
   for (std::size_t i = 0; i < trace.rounds.size(); ++i) text += round(trace.rounds[i], i);
   text += cross_validation(trace);
-  if (trace.unnamed) text += left_over(*trace.unnamed);
+  if (trace.unnamed) text += left_over(*trace.unnamed) + forms(*trace.unnamed);
   for (const std::string& line : trace.advice) text += note(with_titles(line));
   for (const NotSeparable& each : trace.not_separable)
     text += note(effect_title(each.effect) + " and " + with_titles(each.same_as) +
@@ -140,6 +171,8 @@ std::string trace_text(const TraceResult& trace) {
     if (tried.refused && tried.delta_bic < -10.0)
       text += note(effect_title(term_name(tried.effect, tried.profiles)) +
                    " was refused: " + with_titles(*tried.refused));
+  if (!trace.not_looked_at.empty())
+    text += note("Not looked at within the time limit: " + joined(trace.not_looked_at) + ".");
   return text + untestable(trace) + limits(trace) + gates(trace);
 }
 

@@ -2,7 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
+#include <map>
+#include <type_traits>
 
 #include "slideway/base/units.hpp"
 #include "slideway/base/wide.hpp"
@@ -55,47 +56,55 @@ Terms ExponentialMixture::spread_lengths(double first, double last) {
   return Terms::LinSpaced(std::log(first), std::log(last)).exp();
 }
 
-MixtureFactor::MixtureFactor(const ExponentialMixture& noise, Eigen::Index n)
-    : MixtureFactor(noise, std::vector<double>{}, n) {}
+MixtureFactor::MixtureFactor(const ExponentialMixture& noise, Eigen::Index n) : deviation_(n) {
+  factorise(noise, {});
+}
 
 MixtureFactor::MixtureFactor(const ExponentialMixture& noise, std::span<const double> stations)
-    : MixtureFactor(noise, steps_between(stations), std::ssize(stations)) {}
+    : deviation_(std::ssize(stations)) {
+  factorise(noise, steps_between(stations));
+}
 
-MixtureFactor::MixtureFactor(const ExponentialMixture& noise, std::vector<double> steps,
-                             Eigen::Index n)
-    : steps_(std::move(steps)),
-      rates_(noise.lengths.inverse()),
-      amplitudes_(continued(noise)),
-      deviation_(n) {
+void MixtureFactor::factorise(const ExponentialMixture& noise, const std::vector<double>& steps) {
+  Terms rates = noise.lengths.inverse(), amplitudes = continued(noise);
   const double variance = noise.variance();
   const Eigen::Index terms = (noise.variances != 0.0).count();
   if (terms == 0) {
     deviation_.setConstant(std::sqrt(variance));
-  } else if (terms == 1) {
+    return;
+  }
+  if (terms == 1) {
     Eigen::Index which = 0;
-    amplitudes_.maxCoeff(&which);
-    rates_[0] = rates_[which];
-    amplitudes_[0] = amplitudes_[which];
-    factorise<1>(variance);
-  } else {
-    factorise<kTerms>(variance);
+    amplitudes.maxCoeff(&which);
+    rates[0] = rates[which];
+    amplitudes[0] = amplitudes[which];
+  }
+  set_decays(rates, steps);
+  terms == 1 ? factorise<1>(variance, amplitudes) : factorise<kTerms>(variance, amplitudes);
+}
+
+void MixtureFactor::set_decays(const Terms& rates, const std::vector<double>& steps) {
+  if (steps.empty()) decays_.emplace_back((-rates).exp());
+  std::map<double, std::uint32_t> known;
+  decay_of_.reserve(steps.size());
+  for (const double step : steps) {
+    const auto [found, is_new] =
+        known.try_emplace(step, static_cast<std::uint32_t>(decays_.size()));
+    if (is_new) decays_.emplace_back((-step * rates).exp());
+    decay_of_.push_back(found->second);
   }
 }
 
-Terms MixtureFactor::decay(Eigen::Index row) const {
-  return (-(steps_.empty() ? 1.0 : steps_[static_cast<std::size_t>(row)]) * rates_).exp();
-}
-
 template <int Count>
-void MixtureFactor::factorise(double variance) {
+void MixtureFactor::factorise(double variance, const Terms& all) {
   count_ = Count;
   gains_.resize(static_cast<std::size_t>(rows() * Count));
   using Square = Eigen::Matrix<double, Count, Count>;
   using Vector = Eigen::Matrix<double, Count, 1>;
-  const Vector amplitudes = amplitudes_.head<Count>();
+  const Vector amplitudes = all.head<Count>();
   Square state = Square::Zero(), decays = Square::Zero();
   for (Eigen::Index row = 0; row < rows(); ++row) {
-    if (row == 0 || !steps_.empty()) {
+    if (row == 0 || !decay_of_.empty()) {
       const Vector once = decay(row).head<Count>();
       decays = once * once.transpose();
     }
@@ -106,6 +115,7 @@ void MixtureFactor::factorise(double variance) {
     gain = (1.0 - product.array()).matrix() / left;
     deviation_[row] = std::sqrt(left);
     state += left * gain * gain.transpose();
+    gain.array() *= amplitudes.array();
   }
 }
 
@@ -113,15 +123,14 @@ template <int Count, int Columns, MixtureFactor::Direction direction>
 void MixtureFactor::filter(double* first, Eigen::Index stride) const {
   using Lane = std::array<double, Columns>;
   std::array<Lane, Count> memory{};
-  Terms decays = decay(0);
   const double* gain = gains_.data();
   for (Eigen::Index row = 0; row < rows(); ++row, gain += Count) {
-    if (!steps_.empty()) decays = decay(row);
+    const Terms& decays = decay(row);
     Lane predicted{}, left;
     for (int k = 0; k < Count; ++k)
       for (int c = 0; c < Columns; ++c) {
         memory[k][c] *= decays[k];
-        predicted[c] += amplitudes_[k] * memory[k][c];
+        predicted[c] += memory[k][c];
       }
     for (int c = 0; c < Columns; ++c) {
       double& value = first[row + c * stride];
@@ -140,14 +149,17 @@ void MixtureFactor::filter(double* first, Eigen::Index stride) const {
 
 template <int Count, MixtureFactor::Direction direction>
 void MixtureFactor::filter(Eigen::Ref<Eigen::MatrixXd> rows) const {
-  constexpr int kMany = 8;  // columns at once keep the processor busy
-  const Eigen::Index whole = rows.cols() / kMany * kMany;
-  wide([&] {
-    for (Eigen::Index column = 0; column < whole; column += kMany)
-      filter<Count, kMany, direction>(rows.col(column).data(), rows.outerStride());
+  wide([&] {  // many columns at once keep the processor busy
+    Eigen::Index column = 0;
+    const auto take = [&]<int Many>(std::integral_constant<int, Many>) {
+      for (; column + Many <= rows.cols(); column += Many)
+        filter<Count, Many, direction>(rows.col(column).data(), rows.outerStride());
+    };
+    take(std::integral_constant<int, 8>());
+    take(std::integral_constant<int, 4>());
+    take(std::integral_constant<int, 2>());
+    take(std::integral_constant<int, 1>());
   });
-  for (Eigen::Index column = whole; column < rows.cols(); ++column)
-    filter<Count, 1, direction>(rows.col(column).data(), rows.outerStride());
 }
 
 template <MixtureFactor::Direction direction>

@@ -14,7 +14,6 @@ namespace slideway {
 namespace {
 
 constexpr double kUniform = 1e-3;    // of the mean step
-constexpr double kGap = 1.9;         // steps: more than this between two samples is a gap
 constexpr double kMostFilled = 4.0;  // grid points per sample; beyond it gaps are the rule
 
 double mean_step(std::span<const double> positions) {
@@ -98,6 +97,11 @@ struct LowBand::Workspace {
   std::vector<Band> levels;
 };
 
+LowBandOptions with_at_most(LowBandOptions options, std::size_t samples, std::size_t values) {
+  while ((samples >> options.level) > values) ++options.level;
+  return options;
+}
+
 LowBand::LowBand(const LowBandOptions& options, std::span<const double> positions)
     : wavelet_(daubechies(options.wavelet)),
       options_(options),
@@ -127,7 +131,8 @@ void LowBand::lay_grid(std::span<const double> positions) {
     const double inside = along - std::abs(positions[left] - positions[0]);
     cell_.push_back(static_cast<Eigen::Index>(left));
     weight_.push_back(std::clamp(inside / cell, 0.0, 1.0));
-    if (cell > kGap * step && std::min(inside, cell - inside) > 0.5 * step) inside_gaps[i] = 1.0;
+    if (cell > kGapSteps * step && std::min(inside, cell - inside) > 0.5 * step)
+      inside_gaps[i] = 1.0;
   }
   if (std::ranges::find(inside_gaps, 1.0) != inside_gaps.end()) find_hollow(inside_gaps);
 }

@@ -28,8 +28,17 @@ void mirror(Profile& profile) {
   profile.setup.last_mm = profile.positions.back();
 }
 
+/// The same stations once more, the last one first.
+void read_back(Profile& profile) {
+  ReadingTimes times = *profile.setup.reading_times;
+  const double last = std::ranges::max(times.times_s);
+  for (double& each : times.times_s) each = 2.0 * last - each;
+  profile.setup.reading_times = std::make_shared<const ReadingTimes>(std::move(times));
+}
+
 /// What can be made of a face or a reading: each differs from it in one thing.
-std::vector<Measurement> measurements_like(const Profile& face) {
+/// @param of_instrument  an error of the instrument is in question
+std::vector<Measurement> measurements_like(const Profile& face, bool of_instrument) {
   std::vector<Measurement> out;
   const Setup& setup = face.setup;
   const std::string made = setup.kind == Kind::face ? "a cut" : "a pass";
@@ -57,6 +66,10 @@ std::vector<Measurement> measurements_like(const Profile& face) {
   if (setup.traverse_mm_per_s)
     add("a trace at " + significant(0.5 * *setup.traverse_mm_per_s, 3) + " mm/s",
         [&](Profile& p) { p.setup.traverse_mm_per_s = 0.5 * *setup.traverse_mm_per_s; });
+  if (of_instrument && setup.reading_times) add("a reading back", [](Profile& p) { read_back(p); });
+  if (of_instrument && setup.kind == Kind::slide)
+    add(setup.reversed ? "a reading that is not reversed" : "a reading with reversed = true",
+        [](Profile& p) { p.setup.reversed = !p.setup.reversed; });
   if (setup.kind == Kind::face && setup.first_mm >= setup.center_mm)
     add("a trace over the whole diameter", [](Profile& p) { mirror(p); });
   return out;
@@ -154,7 +167,11 @@ std::string separating_measurement(const Problem& problem, const std::vector<Pro
   like.low_band = first.low_band.options();
   double best = 0.0;
   std::string name;
-  for (const Measurement& measurement : measurements_like(like)) {
+  const auto is_of_instrument = [](const Refined& each) {
+    return each.candidate->term.effect->description().of_instrument;
+  };
+  for (const Measurement& measurement :
+       measurements_like(like, is_of_instrument(effect) || is_of_instrument(rival))) {
     const Planned planned = plan(problem, profiles, model, fit, measurement);
     const double separation = predicted_separation(planned, data, effect, rival);
     if (separation <= best) continue;

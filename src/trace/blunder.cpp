@@ -47,6 +47,11 @@ Profile rescaled(Profile profile, double factor) {
   setup.first_mm *= factor;
   setup.last_mm *= factor;
   for (double& each : profile.positions) each *= factor;
+  if (setup.reading_times) {
+    ReadingTimes times = *setup.reading_times;
+    for (double& each : times.positions_mm) each *= factor;
+    setup.reading_times = std::make_shared<const ReadingTimes>(std::move(times));
+  }
   return profile;
 }
 

@@ -9,7 +9,7 @@
 namespace slideway {
 namespace {
 
-constexpr std::uint64_t kSeed = 20120712;
+constexpr std::uint64_t kNullSeed = 20120712;
 
 /// Which of the noises the residual allows has this share of their probabilities below it.
 std::size_t drawn(const std::vector<Noise::Alternative>& alternatives, double share) {
@@ -53,7 +53,7 @@ Eigen::MatrixXd null_residuals(const Whitened& data, const Gates& gates) {
   Eigen::MatrixXd normals(count, static_cast<Eigen::Index>(data.observations()));
   std::vector<double> shares;  // one for all profiles: they share their memory
   for (Eigen::Index j = 0; j < count; ++j) {
-    RandomStream random(kSeed + static_cast<std::uint64_t>(j), "null");
+    RandomStream random(kNullSeed + static_cast<std::uint64_t>(j), "null");
     for (double& value : out.col(j)) value = random.normal();
     for (double& value : normals.row(j)) value = random.normal();
     shares.push_back(random.uniform());

@@ -11,7 +11,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kAlike = 0.9;   // of the square: a lookalike from here on
+constexpr double kTaken = 1e-6;  // of a column: what levelling leaves of one that it can make
 constexpr double kRidge = 1e-9;  // of a Gram matrix: columns that levelling has taken
 
 /// The rows of one observation among those of all.
@@ -57,13 +57,20 @@ double largest_share(const Eigen::MatrixXd& columns, Eigen::Index amplitudes,
   return std::min(largest, 1.0);
 }
 
-Lookalike held_against(const std::vector<Stretch>& all, const Candidate& rival,
+/// A candidate of all profiles, levelled.
+struct Rival {
+  const Candidate* candidate;
+  Eigen::MatrixXd columns;
+};
+
+Lookalike held_against(const std::vector<Stretch>& all, const Rival& rival,
                        const Eigen::VectorXd& y) {
-  const Eigen::MatrixXd columns = levelled(all, *rival.columns);
-  Lookalike out{rival.effect_name(), largest_share(columns, rival.amplitudes(), y), 0.0, ""};
+  const Eigen::Index amplitudes = rival.candidate->amplitudes();
+  Lookalike out{rival.candidate->effect_name(), largest_share(rival.columns, amplitudes, y), 0.0,
+                ""};
   for (const Stretch& rows : all) {
-    const double alone = largest_share(columns.middleRows(rows.first, rows.count),
-                                       rival.amplitudes(), y.segment(rows.first, rows.count));
+    const double alone = largest_share(rival.columns.middleRows(rows.first, rows.count), amplitudes,
+                                       y.segment(rows.first, rows.count));
     if (alone <= out.largest_alone) continue;
     out.largest_alone = alone;
     out.profile = rows.observation->profile->name;
@@ -82,10 +89,10 @@ std::vector<Lookalike> sorted(std::vector<Lookalike> all) {
   return out;
 }
 
-}  // namespace
-
+/// Of the effects of these names, in order.
 std::vector<Confounding> confounding_of(const Problem& problem,
-                                        const std::vector<Profile>& profiles) {
+                                        const std::vector<Profile>& profiles,
+                                        const std::vector<std::string>& effects) {
   Problem bare = problem;
   bare.effects.clear();
   bare.trace.candidates = effect_names();
@@ -93,27 +100,50 @@ std::vector<Confounding> confounding_of(const Problem& problem,
   const Model model = build_model(bare, profiles);
   const Dictionary dictionary = make_dictionary(model, bare, 0);
   const std::vector<Stretch> all = stretches_of(model);
-  std::vector<const Candidate*> whole;
+  std::vector<Rival> whole;
   for (const Candidate& candidate : dictionary.candidates)
-    if (candidate.term.profiles.empty()) whole.push_back(&candidate);
+    if (candidate.term.profiles.empty())
+      whole.push_back({&candidate, levelled(all, *candidate.columns)});
   std::vector<Confounding> out;
-  for (const DeclaredEffect& own : problem.own_effects) {
-    Confounding& confounding = out.emplace_back(Confounding{own.name, "", {}});
-    const auto untestable =
-        std::ranges::find(dictionary.not_testable, own.name, &Untestable::effect);
+  for (const std::string& effect : effects) {
+    Confounding& confounding = out.emplace_back(Confounding{effect, "", {}});
+    const auto untestable = std::ranges::find(dictionary.not_testable, effect, &Untestable::effect);
     if (untestable != dictionary.not_testable.end()) confounding.needs = untestable->needs;
     const auto at = std::ranges::find_if(
-        whole, [&](const Candidate* each) { return each->effect_name() == own.name; });
+        whole, [&](const Rival& each) { return each.candidate->effect_name() == effect; });
     if (at == whole.end()) continue;
-    const Eigen::MatrixXd columns =
-        levelled(all, stacked_columns(model, (*at)->term, (*at)->grid.middle(), 0));
+    const Candidate& asked = *at->candidate;
+    const Eigen::VectorXd raw = stacked_columns(model, asked.term, asked.grid.middle(), 0).col(0);
+    const Eigen::VectorXd y = levelled(all, raw);
+    if (!(y.norm() > kTaken * raw.norm())) continue;
     std::vector<Lookalike> lookalikes(whole.size());
     parallel_for(whole.size(), [&](std::size_t i) {
-      if (whole[i] != *at) lookalikes[i] = held_against(all, *whole[i], columns.col(0));
+      if (whole[i].candidate->effect_name() != effect)
+        lookalikes[i] = held_against(all, whole[i], y);
     });
     confounding.lookalikes = sorted(std::move(lookalikes));
   }
   return out;
+}
+
+std::vector<std::string> own_names(const Problem& problem) {
+  std::vector<std::string> names;
+  for (const DeclaredEffect& own : problem.own_effects) names.push_back(own.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<Confounding> confounding_of(const Problem& problem,
+                                        const std::vector<Profile>& profiles) {
+  return confounding_of(problem, profiles, own_names(problem));
+}
+
+std::vector<Confounding> confounding_of_all(const Problem& problem,
+                                            const std::vector<Profile>& profiles) {
+  std::vector<std::string> names = effect_names();
+  std::ranges::move(own_names(problem), std::back_inserter(names));
+  return confounding_of(problem, profiles, names);
 }
 
 }  // namespace slideway

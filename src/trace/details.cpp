@@ -44,6 +44,17 @@ class View {
                     model_values(fitted_.model, observation_, fitted_.fit.estimate));
   }
 
+  /// The same, with what is left of the values that were left out of the fit.
+  [[nodiscard]] Eigen::VectorXd whole_residual() const {
+    Eigen::VectorXd rest =
+        observation_.values - model_values(fitted_.model, observation_, fitted_.fit.estimate);
+    const Eigen::Index levelling = std::ssize(observation_.nuisance_names);
+    if (levelling > 0)
+      rest -= observation_.nuisances.leftCols(levelling) *
+              fitted_nuisances(observation_, rest).head(levelling);
+    return rest;
+  }
+
   [[nodiscard]] Eigen::VectorXd levelled(Eigen::VectorXd values) const {
     if (observation_.nuisances.cols() > 0)
       values -= observation_.nuisances * fitted_nuisances(observation_, values);
@@ -100,11 +111,11 @@ void add_series(const View& before, const std::optional<View>& after, double uni
   const Eigen::VectorXd& values = before.observation().values;
   const Eigen::Map<const Eigen::VectorXd> raw(profile.values.data(), std::ssize(profile.values));
   const Eigen::VectorXd low = before.full_length(values);
-  const Eigen::VectorXd rest_before = before.full_length(before.residual());
+  const Eigen::VectorXd rest_before = before.full_length(before.whole_residual());
   Eigen::VectorXd rest_after;
   std::vector<std::span<const double>> series{profile.values, view(low), view(rest_before)};
   if (after) {
-    rest_after = after->full_length(after->residual());
+    rest_after = after->full_length(after->whole_residual());
     series.push_back(view(rest_after));
   }
   const std::vector<std::size_t> indices = thinned(series, kPoints);

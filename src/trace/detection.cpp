@@ -36,34 +36,12 @@ std::vector<std::vector<double>> spread_shapes(const Candidate& candidate) {
   return out;
 }
 
-/// "position_mm = 3, width_mm = 0.5"
-std::string shape_text(const Candidate& candidate, std::span<const double> shape) {
-  const Effect& effect = *candidate.term.effect;
-  std::vector<std::string> out;
-  for (std::size_t s = 0; s < shape.size(); ++s) {
-    const auto p = static_cast<std::size_t>(effect.shapes()[s].parameter);
-    out.push_back(effect.parameters()[p].name + " = " + significant(shape[s], 3));
-  }
-  return joined(out);
-}
-
 /// Share of a candidate's column each parameter of the model takes, as a column of its own.
-std::string made_by(const Model& model, const Solution& fit, const Whitened& data,
-                    const Eigen::VectorXd& column) {
+std::string made_by(const Model& model, const Solution& fit, const Eigen::VectorXd& column) {
   const Linearisation& linear = fit.linear;
-  const Eigen::Index k = linear.prior_rows.cols();
-  Eigen::MatrixXd columns(data.rows(), k);
-  columns = stack(linear, k, [&](std::size_t i) { return linear.columns[i]; });
-  Eigen::MatrixXd all = columns;
-  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
-    const Eigen::MatrixXd& own = linear.observations[i]->nuisances;
-    Eigen::MatrixXd wide = Eigen::MatrixXd::Zero(data.rows(), own.cols());
-    wide.middleRows(data.first_row(i), data.count(i)) = own;
-    Eigen::MatrixXd joined(data.rows(), all.cols() + own.cols());
-    joined << all, wide;
-    all = std::move(joined);
-  }
-  const Eigen::VectorXd amplitudes = least_squares(all, column).values.topRows(k);
+  const Eigen::MatrixXd columns =
+      stack(linear, linear.prior_rows.cols(), [&](std::size_t i) { return linear.columns[i]; });
+  const Eigen::VectorXd amplitudes = BesideLevelling(linear, columns, column).values;
   const Eigen::VectorXd parameters = fit.parameters.jacobian * amplitudes;
   const Eigen::MatrixXd back =
       Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fit.parameters.jacobian)
@@ -207,6 +185,16 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
 
 }  // namespace
 
+std::string shape_text(const Candidate& candidate, std::span<const double> shape) {
+  const Effect& effect = *candidate.term.effect;
+  std::vector<std::string> out;
+  for (std::size_t s = 0; s < shape.size(); ++s) {
+    const auto p = static_cast<std::size_t>(effect.shapes()[s].parameter);
+    out.push_back(effect.parameters()[p].name + " = " + significant(shape[s], 3));
+  }
+  return joined(out);
+}
+
 std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Whitened& data,
                                              const std::vector<Noise>& fit_noise,
                                              const Candidates& candidates,
@@ -231,7 +219,7 @@ std::vector<NotSeparable> inseparable(const Model& model, const Solution& fit, c
     const Eigen::MatrixXd columns = stacked_columns(
         model, candidate->term, candidate->grid.middle(), data.rows() - data.values());
     if (project(data, columns).rank > 0 || columns.isZero(0.0)) continue;
-    out.push_back({candidate->name(), made_by(model, fit, data, columns.col(0))});
+    out.push_back({candidate->name(), made_by(model, fit, columns.col(0))});
   }
   return out;
 }

@@ -17,6 +17,9 @@ std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Wh
                                              const Candidates& candidates,
                                              const Calibration& calibration);
 
+/// "position_mm = 3, width_mm = 0.5"
+std::string shape_text(const Candidate& candidate, std::span<const double> shape);
+
 /// Candidates whose columns the model makes itself, with the parameters that make them: (cup,
 /// "straightness.b2").
 std::vector<NotSeparable> inseparable(const Model& model, const Solution& fit, const Whitened& data,

@@ -21,8 +21,10 @@ namespace {
 constexpr int kThinLevel = 2;  // four samples a low-band value show a search what it looks at
 constexpr Eigen::Index kAtomsAtATime = 16;
 
-/// A profile with four samples a low-band value: means of equal blocks are again the low band for
-/// db1, so its columns are those of the whole profile but for what varies inside a quarter.
+/// A profile with four samples a low-band value, at the middles of equal blocks of the uniform grid
+/// that the low band is made on. Means of equal blocks are again the low band for db1, so its
+/// columns are those of the whole profile but for what varies inside a quarter, for the last block
+/// if it is not whole, and for interpolation in gaps.
 struct ThinProfile {
   std::vector<double> positions;
   LowBand low_band;
@@ -31,14 +33,16 @@ struct ThinProfile {
 
 std::optional<ThinProfile> thin(const Observation& observation) {
   LowBandOptions options = observation.low_band.options();
-  if (options.wavelet != "db1" || options.level <= kThinLevel || observation.low_band.resampled())
-    return std::nullopt;
+  if (options.wavelet != "db1" || options.level <= kThinLevel) return std::nullopt;
   const std::vector<double>& all = observation.profile->positions;
-  const std::size_t stride = std::size_t{1} << (options.level - kThinLevel);
+  const Eigen::Index samples = observation.low_band.samples();
+  const Eigen::Index stride = Eigen::Index{1} << (options.level - kThinLevel);
   const double scale = std::sqrt(static_cast<double>(stride));
+  const double step = (all.back() - all.front()) / static_cast<double>(samples - 1);
   std::vector<double> positions;
-  for (std::size_t i = 0; i < all.size(); i += stride)
-    positions.push_back(0.5 * (all[i] + all[std::min(i + stride, all.size()) - 1]));
+  for (Eigen::Index i = 0; i < samples; i += stride)
+    positions.push_back(all.front() +
+                        (static_cast<double>(i) + 0.5 * static_cast<double>(stride - 1)) * step);
   options.level = kThinLevel;
   LowBand low_band(options, positions);
   if (low_band.values() != observation.values.size() || low_band.resampled()) return std::nullopt;
@@ -116,8 +120,8 @@ std::pair<std::string, bool> needs(const Model& model, const ModelTerm& term) {
   return {joined(term.effect->lacking_together(shown)), std::ranges::all_of(shown, alone)};
 }
 
-void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
-  candidate.grid = ShapeLattice(shape_axes(model, candidate.term));
+void lay_out(const Viewer& viewer, ShapeLattice grid, Candidate& candidate) {
+  candidate.grid = std::move(grid);
   const Eigen::Index a = candidate.amplitudes(), atoms = candidate.atoms();
   auto columns = std::make_shared<Eigen::MatrixXd>(viewer.rows(), a * atoms);
   parallel_for((atoms + kAtomsAtATime - 1) / kAtomsAtATime, [&](std::size_t block) {
@@ -132,6 +136,23 @@ void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
   candidate.columns = std::move(columns);
 }
 
+void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
+  lay_out(viewer, ShapeLattice(shape_axes(model, candidate.term)), candidate);
+}
+
+/// Those of an error of an instrument are looked for with each instrument.
+std::vector<EffectOptions> hypotheses_of(const Effect& effect, const EffectOptions* declared,
+                                         const Model& model) {
+  std::vector<EffectOptions> hypotheses = effect.hypotheses(declared), out;
+  if (!effect.description().of_instrument) return hypotheses;
+  std::vector<const Profile*> profiles;
+  for (const Observation& observation : model.observations)
+    if (effect.applies_to(observation.profile->setup)) profiles.push_back(observation.profile);
+  for (const EffectOptions& options : hypotheses)
+    std::ranges::move(of_each_instrument(options, profiles), std::back_inserter(out));
+  return out;
+}
+
 /// The hypotheses about an effect: it is missing, or it needs more terms than the one declared of
 /// that name. None where the problem declares several of it.
 /// @param apart  those that can only be of one profile each
@@ -141,7 +162,7 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
   const auto declared = std::ranges::find_if(problem.effects, of_name);
   const bool any = declared != problem.effects.end();
   if (std::ranges::count_if(problem.effects, of_name) > 1) return;
-  const auto hypotheses = specimen(name).hypotheses(any ? &declared->options : nullptr);
+  const auto hypotheses = hypotheses_of(specimen(name), any ? &declared->options : nullptr, model);
   const auto lacking = specimen(name).lacking_of_machine(model.range);
   if (!hypotheses.empty() && !lacking.empty())
     return out.not_testable.push_back({name, joined(lacking) + " in [machine]"});
@@ -262,6 +283,10 @@ void lay_out(const Model& model, Eigen::Index prior_rows, Candidate& candidate) 
   lay_out(model, Viewer(model, prior_rows), candidate);
 }
 
+void lay_out(const Model& model, Eigen::Index prior_rows, ShapeLattice grid, Candidate& candidate) {
+  lay_out(Viewer(model, prior_rows), std::move(grid), candidate);
+}
+
 Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows) {
   Dictionary out;
   const Viewer viewer(model, prior_rows);
@@ -280,6 +305,14 @@ Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::In
     }
   }
   std::ranges::move(alone, std::back_inserter(out.candidates));
+  return out;
+}
+
+Eigen::MatrixXd searched_columns(const Model& model, const ModelTerm& term,
+                                 std::span<const std::vector<double>> shapes) {
+  const Viewer viewer(model, 0);
+  Eigen::MatrixXd out(viewer.rows(), std::ssize(shapes) * term.effect->amplitudes());
+  viewer.columns(term, shapes, out);
   return out;
 }
 

@@ -16,6 +16,7 @@ struct Candidate {
   EffectOptions options;
   bool raises_degree = false;  // of the declared effect; the columns are the terms that one lacks
   ShapeLattice grid;           // its points are the atoms
+  bool coarse = false;         // the grid: shapes are refined over all of it
   /// Stacked rows by (#amplitudes * #atoms), not whitened; shared with the same effect in one
   /// profile alone.
   std::shared_ptr<const Eigen::MatrixXd> columns;
@@ -59,6 +60,12 @@ Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::In
 
 /// Gives a candidate whose effect is set the grid of its shapes and the columns there.
 void lay_out(const Model& model, Eigen::Index prior_rows, Candidate& candidate);
+/// The same on a grid of one's own.
+void lay_out(const Model& model, Eigen::Index prior_rows, ShapeLattice grid, Candidate& candidate);
+
+/// Columns of an effect at several shapes side by side, stacked, as a search looks at them.
+Eigen::MatrixXd searched_columns(const Model& model, const ModelTerm& term,
+                                 std::span<const std::vector<double>> shapes);
 
 /// Low-band columns of an effect under one another for all fitted observations, prior rows zero.
 Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,

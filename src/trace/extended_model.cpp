@@ -2,12 +2,10 @@
 
 #include <algorithm>
 
+#include "kept.hpp"
+
 namespace slideway {
 namespace {
-
-bool has_more_values(const Observation& observation, std::size_t most) {
-  return (observation.profile->positions.size() >> observation.low_band.options().level) > most;
-}
 
 /// Whether an effect of the model leaves a candidate nothing to say: it is the same effect and acts
 /// in all profiles, or in one of the candidate's. In all profiles, the candidate may still be the
@@ -45,12 +43,13 @@ std::vector<AcceptedEffect> all_but(const std::vector<AcceptedEffect>& effects,
 }
 
 ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
-                             const FittedModel& declared, const Progress& progress)
-    : declared_(declared), progress_(progress) {
-  const auto most = static_cast<std::size_t>(declared.model.gates.search_values);
-  const auto is_long = [&](const Observation& each) { return has_more_values(each, most); };
-  if (std::ranges::any_of(declared.model.observations, is_long))
-    coarser_ = fit_model(build_model(problem, profiles, most));
+                             const FittedModel& declared, const TimeLimit& limit,
+                             const Progress& progress)
+    : profiles_(profiles),
+      declared_(declared),
+      limit_(limit),
+      progress_(progress),
+      coarser_(search_band(problem, profiles, declared)) {
   if (progress_) progress_("making the columns of every candidate", 0.0);
   dictionary_ = make_dictionary(base().model, problem, base().fit.linear.prior_rows.rows());
 }
@@ -65,32 +64,37 @@ ModelExtender::Key ModelExtender::key_of(const std::vector<AcceptedEffect>& effe
 
 const FittedModel& ModelExtender::extended(const std::vector<AcceptedEffect>& effects) {
   if (effects.empty()) return base();
-  const Key key = key_of(effects);
-  auto found = models_.find(key);
-  if (found == models_.end())
-    found = models_.emplace(key, fit_model(with(base().model, effects), shapes_of(effects))).first;
-  return found->second;
+  return kept_or_made(models_, key_of(effects), [&] {
+    limit_.check();
+    return fit_model(with(base().model, effects), shapes_of(effects));
+  });
 }
 
 const ModelResult& ModelExtender::summary(const std::vector<AcceptedEffect>& effects) {
-  const Key key = key_of(effects);
-  auto found = summaries_.find(key);
-  if (found != summaries_.end()) return found->second;
-  if (coarser_) {
+  if (!coarser_) return summary_of_search(effects);
+  return kept_or_made(summaries_, key_of(effects), [&] {
+    limit_.check();
     const FittedModel fine = in_declared_band(effects);
-    return summaries_.emplace(key, summarise(fine.model, fine.fit)).first->second;
-  }
-  const FittedModel& fitted = extended(effects);
-  return summaries_.emplace(key, summarise(fitted.model, fitted.fit)).first->second;
+    return summarise(fine.model, fine.fit);
+  });
+}
+
+const ModelResult& ModelExtender::summary_of_search(const std::vector<AcceptedEffect>& effects) {
+  return kept_or_made(search_summaries_, key_of(effects), [&] {
+    const FittedModel& fitted = extended(effects);
+    return summarise(fitted.model, fitted.fit);
+  });
 }
 
 const SearchRound& ModelExtender::search(const std::vector<AcceptedEffect>& effects) {
   const Key key = key_of(effects);
   if (const auto found = rounds_.find(key); found != rounds_.end()) return found->second;
+  limit_.check();
   const std::string stage = "searching round " + std::to_string(effects.size() + 1);
   if (progress_) progress_(stage, 0.0);
   const FittedModel& fitted = extended(effects);
   const auto tell = [&](double done) {
+    limit_.check();
     if (progress_) progress_(done < 1.0 ? "bootstrap" : stage, done < 1.0 ? done : 0.0);
   };
   return rounds_
@@ -99,14 +103,19 @@ const SearchRound& ModelExtender::search(const std::vector<AcceptedEffect>& effe
       .first->second;
 }
 
+const SearchRound* ModelExtender::searched(const std::vector<AcceptedEffect>& effects) const {
+  const auto found = rounds_.find(key_of(effects));
+  return found == rounds_.end() ? nullptr : &found->second;
+}
+
 FittedModel ModelExtender::take_in_declared_band(const std::vector<AcceptedEffect>& effects) {
   if (coarser_) return in_declared_band(effects);
   extended(effects);
   return std::move(models_.extract(key_of(effects)).mapped());
 }
 
-FittedModel ModelExtender::in_declared_band(const std::vector<AcceptedEffect>& effects) const {
-  return fit_model(with(declared_.model, effects), shapes_of(effects));
+FittedModel ModelExtender::in_declared_band(const std::vector<AcceptedEffect>& effects) {
+  return fit_model(with(declared_.model, effects), extended(effects).fit.estimate.shapes);
 }
 
 Candidates ModelExtender::candidates_beside(const std::vector<AcceptedEffect>& effects) const {

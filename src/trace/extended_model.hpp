@@ -2,9 +2,11 @@
 
 #include <map>
 
+#include "search_band.hpp"
 #include "search_round.hpp"
 #include "slideway/identify/fit.hpp"
 #include "slideway/trace/trace.hpp"
+#include "time_limit.hpp"
 
 namespace slideway {
 
@@ -25,14 +27,20 @@ std::vector<AcceptedEffect> all_but(const std::vector<AcceptedEffect>& effects,
 /// Makes and searches models of one problem, in the low band effects are searched in: that of each
 /// profile, or the first coarser one that leaves it few enough values. What was made once for a set
 /// of effects is kept.
+/// Whatever it makes, the time limit is asked first: TimeIsUp.
 class ModelExtender {
  public:
-  /// The profiles and the declared model must outlive it and what it makes.
+  /// All arguments must outlive it and what it makes.
   ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
-                const FittedModel& declared, const Progress& progress);
+                const FittedModel& declared, const TimeLimit& limit, const Progress& progress);
 
   /// The declared model, in the low band of the search.
-  [[nodiscard]] const FittedModel& base() const { return coarser_ ? *coarser_ : declared_; }
+  [[nodiscard]] const FittedModel& base() const { return coarser_ ? coarser_->fitted : declared_; }
+
+  /// The profiles of base().
+  [[nodiscard]] const std::vector<Profile>& profiles() const {
+    return coarser_ ? coarser_->profiles : profiles_;
+  }
 
   /// The declared model with effects, fitted.
   const FittedModel& extended(const std::vector<AcceptedEffect>& effects);
@@ -40,13 +48,20 @@ class ModelExtender {
   /// Its numbers for the report, in the declared low band.
   const ModelResult& summary(const std::vector<AcceptedEffect>& effects);
 
+  /// The same in the low band of the search.
+  const ModelResult& summary_of_search(const std::vector<AcceptedEffect>& effects);
+
   /// Its residual searched for every candidate whose name is not among the effects.
   const SearchRound& search(const std::vector<AcceptedEffect>& effects);
+
+  /// That search if it was made, or null.
+  [[nodiscard]] const SearchRound* searched(const std::vector<AcceptedEffect>& effects) const;
 
   /// The same model, fitted in the declared low band, taken out of what is kept: the last call.
   FittedModel take_in_declared_band(const std::vector<AcceptedEffect>& effects);
 
   [[nodiscard]] const Dictionary& dictionary() const { return dictionary_; }
+  [[nodiscard]] const TimeLimit& limit() const { return limit_; }
   /// Candidates whose name is not among the effects.
   [[nodiscard]] Candidates candidates_beside(const std::vector<AcceptedEffect>& effects) const;
   /// Null distribution of the search; none before the first search, or without candidates.
@@ -55,20 +70,22 @@ class ModelExtender {
   [[nodiscard]] std::size_t searches() const { return rounds_.size(); }
 
  private:
-  [[nodiscard]] FittedModel in_declared_band(const std::vector<AcceptedEffect>& effects) const;
+  [[nodiscard]] FittedModel in_declared_band(const std::vector<AcceptedEffect>& effects);
 
   using Key = std::vector<std::pair<std::string, int>>;  // names with degrees, in order
 
   static Key key_of(const std::vector<AcceptedEffect>& effects);
   [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<AcceptedEffect>& effects) const;
 
+  const std::vector<Profile>& profiles_;
   const FittedModel& declared_;
+  const TimeLimit& limit_;
   const Progress& progress_;
-  std::optional<FittedModel> coarser_;
+  std::unique_ptr<SearchBand> coarser_;
   Dictionary dictionary_;
   std::optional<Calibration> calibration_;
   std::map<Key, FittedModel> models_;
-  std::map<Key, ModelResult> summaries_;
+  std::map<Key, ModelResult> summaries_, search_summaries_;
   std::map<Key, SearchRound> rounds_;
 };
 

@@ -91,7 +91,8 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
   std::vector<Eigen::MatrixXd> rows;
   for (std::size_t i = 0; i < count; ++i)
     rows.push_back(white_rows(linear, data, i, candidate.columns));
-  PredictionError beyond_model, heights;
+  PredictionError heights;
+  bool shown_by_each = true;
   double support = 0.0, shown = 0.0, samples = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     const auto model = rows[i].leftCols(k), effect = rows[i].middleCols(k, a);
@@ -109,7 +110,8 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
     };
     if (others.expected() >= certain && outside(effect * amplitudes).squaredNorm() >= certain) {
       const Eigen::VectorXd residual = rows[i].col(k + a);
-      beyond_model.add(outside(residual), outside(residual - effect * carried));
+      shown_by_each &=
+          outside(residual - effect * carried).squaredNorm() <= outside(residual).squaredNorm();
     }
     const Observation& observation = *linear.observations[i];
     if (observation.profile->setup.quantity != Quantity::height) continue;
@@ -121,7 +123,7 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
     samples += static_cast<double>(observation.low_band.samples());
   }
   if (!(shown >= certain)) return std::nullopt;
-  HeldOut out{support > 0.0 && beyond_model.after <= beyond_model.before, {}, {}};
+  HeldOut out{support > 0.0 && shown_by_each, {}, {}};
   if (samples > 0.0) {
     out.before_um = std::sqrt(heights.before / samples) / kMicrometre;
     out.after_um = std::sqrt(heights.after / samples) / kMicrometre;

@@ -18,10 +18,10 @@ struct HeldOut {
 /// and carries the effect over by its clock: amplitudes â_-i. It helps if the error of predicting
 /// the profile, in units of what the rest leaves uncertain of the model, falls in the sum over all:
 /// Σ (G - (â_-i - â)' I (â_-i - â) - G_-i) > 0 with gain G, amplitudes â and their information I of
-/// all profiles; and if, where the others tell the effect and the profile shows it beyond its own
-/// model for certain (Gates::size), that residual falls by it. Only folds are counted whose rest
-/// knows a share of what all profiles know (Gates::holdout_share); no answer where these profiles
-/// together do not show it for certain.
+/// all profiles; and if in each profile that shows it beyond its own model for certain
+/// (Gates::size), where the others tell the effect, that residual falls by it. Only folds are
+/// counted whose rest knows a share of what all profiles know (Gates::holdout_share); no answer
+/// where these profiles together do not show it for certain.
 std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened& data,
                                      const Refined& candidate, const Gates& gates);
 

@@ -16,7 +16,7 @@ namespace slideway {
 namespace {
 
 constexpr Eigen::Index kFirstOctave = 4;  // coefficients
-constexpr Eigen::Index kMostCosines = 512;
+constexpr Eigen::Index kSharedCosines = 512;
 constexpr int kDraws = 1999;  // of the null distribution
 constexpr std::uint64_t kSeed = 18110914;
 
@@ -37,6 +37,7 @@ struct Curve {
     const Eigen::MatrixXd basis = orthonormal(std::move(span));
     values -= basis * (basis.transpose() * values).eval();  // weights of the fit move a line
     taken = std::max<Eigen::Index>(basis.cols() - 1, 0);
+    if (observation.profile->setup.reversed) values = -values;
   }
 
   [[nodiscard]] double at(double x) const {
@@ -114,7 +115,7 @@ std::optional<SharedResidual> shared(const Linearisation& linear, std::size_t i,
   const Curve a(linear, i), b(linear, j);
   const auto [of_a, of_b] = on_one_grid(a, b);
   const Eigen::Index taken = std::max(a.taken, b.taken);
-  const Eigen::Index count = std::min<Eigen::Index>(of_a.size() / 2, kMostCosines) - taken;
+  const Eigen::Index count = std::min<Eigen::Index>(of_a.size() / 2, kSharedCosines) - taken;
   if (count < kFirstOctave) return std::nullopt;
   const Eigen::MatrixXd cosines = slow_cosines(of_a.size(), taken + count).rightCols(count);
   SharedResidual out{{p.name, q.name}, correlation(of_a, of_b)};

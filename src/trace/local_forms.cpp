@@ -11,10 +11,10 @@
 namespace slideway {
 namespace {
 
-constexpr int kForms = 3;        // one after the other
-constexpr int kPlaces = 40;      // over the travel
-constexpr int kWidths = 5;       // from a place's distance to a third of the travel
-constexpr int kRefinements = 2;  // each about the best form found so far, four times finer
+constexpr int kForms = 3;          // one after the other
+constexpr int kPlacesOfForm = 40;  // over the travel
+constexpr int kWidths = 5;         // from a place's distance to a third of the travel
+constexpr int kRefinements = 2;    // each about the best form found so far, four times finer
 
 struct LocalForm {
   enum class Kind { kink, bump, step } kind = Kind::kink;
@@ -37,9 +37,9 @@ struct LocalForm {
 
 std::vector<LocalForm> coarse_grid(double low, double high) {
   std::vector<LocalForm> out;
-  const double range = high - low, widest = range / 3.0, narrowest = range / kPlaces;
-  for (int i = 0; i < kPlaces; ++i) {
-    const double place = low + range * (i + 0.5) / kPlaces;
+  const double range = high - low, widest = range / 3.0, narrowest = range / kPlacesOfForm;
+  for (int i = 0; i < kPlacesOfForm; ++i) {
+    const double place = low + range * (i + 0.5) / kPlacesOfForm;
     out.push_back({LocalForm::Kind::kink, place, 1.0});
     for (int w = 0; w < kWidths; ++w) {
       const double width = narrowest * std::pow(widest / narrowest, double(w) / (kWidths - 1));
@@ -129,7 +129,7 @@ class LocalFormSearch {
   }
 
   [[nodiscard]] Fitted refined(Fitted best, const Eigen::VectorXd& residual) const {
-    double spacing = (high_ - low_) / kPlaces, factor = 1.5;
+    double spacing = (high_ - low_) / kPlacesOfForm, factor = 1.5;
     for (int pass = 0; pass < kRefinements && std::isfinite(best.gain); ++pass) {
       spacing /= 4.0;
       factor = std::sqrt(factor);

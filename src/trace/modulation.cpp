@@ -22,23 +22,27 @@ bool lie_beside(const std::vector<LineBand>& lines, const std::vector<LineBand>&
 /// Distance from the nearest whole number: a rate in cycles a sample as sampling folds it.
 double folded(double cycles) { return std::abs(cycles - std::round(cycles)); }
 
-/// Whether a line of one face lies where sampling folds a harmonic of its feed marks to, nearer
-/// than the gate modulation_widths.
-bool is_alias_of_feed_marks(const Profile& profile, const std::vector<LineBand>& lines,
-                            const Gates& gates) {
-  constexpr int kHarmonics = 6;
+/// Whether lines of an effect in one face lie where sampling folds a harmonic of its feed marks to,
+/// nearer than the gate folded_widths.
+bool lie_on_feed_marks(const Profile& profile, const Effect& effect,
+                       const std::vector<LineBand>& lines, const Gates& gates) {
   const Setup& setup = profile.setup;
   const auto samples = static_cast<double>(profile.positions.size());
   if (setup.kind != Kind::face || !setup.feed_mm_per_min || !setup.spindle_rpm || samples < 2.0)
     return false;
   const double trace = setup.last_mm - setup.first_mm, spacing = trace / (samples - 1.0);
   const double radius = std::max(setup.last_mm - setup.center_mm, setup.center_mm - setup.first_mm);
+  const IndependentVariable variable = effect.description().variable;
+  const double extent =
+      variable == IndependentVariable::trace || variable == IndependentVariable::measuring_time
+          ? trace
+          : radius;
   const double marks = spacing * *setup.spindle_rpm / *setup.feed_mm_per_min;  // cycles a sample
-  const double width = gates.modulation_widths / samples;
   return std::ranges::all_of(lines, [&](const LineBand& line) {
-    for (const double extent : {radius, trace})
-      for (int m = 1; m <= kHarmonics; ++m)
-        if (std::abs(folded(line.low * spacing / extent) - folded(m * marks)) <= width) return true;
+    for (int m = 1; m <= static_cast<int>(gates.feed_harmonics); ++m)
+      if (std::abs(folded(line.low * spacing / extent) - folded(m * marks)) * samples <=
+          gates.folded_widths)
+        return true;
     return false;
   });
 }
@@ -64,16 +68,26 @@ std::string modulated_effect(const Model& model, const Eigen::VectorXd& shapes,
     return shown && term.name != own.name;
   };
   const auto found = std::ranges::find_if(model.terms, is_modulated);
-  if (found != model.terms.end()) return found->name;
-  if (own.profiles.size() != 1) return "";
-  for (const Observation* observation : fitted_observations(model)) {
-    const Profile& profile = *observation->profile;
+  return found == model.terms.end() ? "" : found->name;
+}
+
+bool is_of_feed_marks(const Model& model, const Whitened& data, const Refined& refined,
+                      const Eigen::VectorXd& fitted) {
+  const ModelTerm& own = refined.candidate->term;
+  const std::vector<const Observation*> observations = fitted_observations(model);
+  bool folded_in_one = false;
+  double elsewhere = 0.0;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Profile& profile = *observations[i]->profile;
     if (!own.acts_on(profile)) continue;
     const auto lines = own.effect->lines(profile.stations(model.machine), refined.shape);
-    if (!lines.empty() && is_alias_of_feed_marks(profile, lines, model.gates))
-      return "the feed marks, folded by sampling";
+    if (lines.empty()) return false;
+    if (lie_on_feed_marks(profile, *own.effect, lines, model.gates))
+      folded_in_one = true;
+    else
+      elsewhere += fitted.segment(data.first_row(i), data.count(i)).squaredNorm();
   }
-  return "";
+  return folded_in_one && elsewhere < model.gates.size * model.gates.size;
 }
 
 }  // namespace slideway

@@ -7,9 +7,14 @@ namespace slideway {
 /// The effect of the model whose line an effect only modulates: in every fitted profile all of its
 /// lines lie beside those of that effect, nearer than the gates modulation_widths (in resolutions
 /// of the profile's spectrum, one cycle a profile) and modulation_share (of the line's own rate).
-/// A line of one face alone may also be a harmonic of its feed marks that sampling folds to there.
 /// Empty: none.
 std::string modulated_effect(const Model& model, const Eigen::VectorXd& shapes,
                              const Refined& refined);
+
+/// Whether sampling folds harmonics of the feed marks to where the lines of an effect of faces are:
+/// in all of them but those that together do not show it for certain (Gates::size).
+/// @param fitted  what the effect takes of the white residual
+bool is_of_feed_marks(const Model& model, const Whitened& data, const Refined& refined,
+                      const Eigen::VectorXd& fitted);
 
 }  // namespace slideway

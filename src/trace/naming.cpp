@@ -6,6 +6,7 @@
 
 #include "local_forms.hpp"
 #include "process.hpp"
+#include "structure.hpp"
 
 namespace slideway {
 namespace {
@@ -47,11 +48,11 @@ bool shows_slide_only(const Linearisation& linear) {
 
 }  // namespace
 
-Standing standing(ModelExtender& extender, const Effects& effects, const Gates& gates) {
+std::vector<UnnamedRival> unnamed_rivals(ModelExtender& extender, const Effects& effects) {
   const Whitened& named = extender.search(effects).data;
   const FittedModel& with = extender.extended(effects);
   const std::vector<ProcessVariable> variables = process_variables(with.model, with.fit.linear);
-  Standing out;
+  std::vector<UnnamedRival> out;
   for (const std::vector<std::size_t>& absent : absences(effects.size())) {
     const FittedModel& fitted = extender.extended(all_but(effects, absent));
     const Linearisation& linear = fitted.fit.linear;
@@ -61,22 +62,30 @@ Standing standing(ModelExtender& extender, const Effects& effects, const Gates& 
       const Candidate& candidate = *effects[i].candidate;
       gain -= penalty(named, candidate, candidate.amplitudes());
     }
-    const auto hold_against = [&](double log_evidence, const std::string& rival) {
-      const double margin = 0.5 * gain - log_evidence;
-      if (margin < out.margin) out = {margin, rival, absent};
-    };
     const bool is_way = only_carriage(effects, absent);
     for (const ProcessVariable& variable : variables) {
       if (is_way && variable.symbol == kSlideSymbol) continue;
-      hold_against(best_process(data, linear, variable).log_evidence + gates.process_margin,
-                   "a process in " + variable.symbol);
+      out.push_back({"a process in " + variable.symbol, absent, true,
+                     0.5 * gain - best_process(data, variable).log_evidence});
     }
     if (is_way && shows_slide_only(linear)) continue;
     if (absent.size() == 1 || absent.size() == effects.size())
-      hold_against(local_forms(fitted.model, data, linear) + gates.local_form_margin,
-                   "a local form");
+      out.push_back(
+          {"a local form", absent, false, 0.5 * gain - local_forms(fitted.model, data, linear)});
   }
   return out;
+}
+
+double gain_over_process(ModelExtender& extender, const Effects& effects, std::size_t which) {
+  const FittedModel& with = extender.extended(effects);
+  const FittedModel& without = extender.extended(all_but(effects, which));
+  const std::vector<Noise>& noise = with.fit.noise;
+  const Whitened with_it(with.fit.linear, noise), without_it(without.fit.linear, noise);
+  const Candidate& candidate = *effects[which].candidate;
+  return 0.5 * (without_it.residual().squaredNorm() - with_it.residual().squaredNorm() -
+                penalty(with_it, candidate, candidate.amplitudes())) +
+         find_structure(with.model, with_it, with.fit.linear).process.log_evidence -
+         find_structure(without.model, without_it, without.fit.linear).process.log_evidence;
 }
 
 }  // namespace slideway

@@ -1,8 +1,10 @@
 #include "process.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <numeric>
 #include <optional>
+
+#include "slideway/identify/isotropic_prior.hpp"
 
 namespace slideway {
 namespace {
@@ -30,7 +32,9 @@ const std::vector<Variable>& variables() {
        IndependentVariable::time},
       {"s", "mm", [](const Stations& s, Eigen::Index i) { return s.distance(i); },
        IndependentVariable::distance, true},
-      {"X", "mm", [](const Stations& s, Eigen::Index i) { return s.trace(i); }, std::nullopt}};
+      {"X", "mm", [](const Stations& s, Eigen::Index i) { return s.trace(i); }, std::nullopt},
+      {"t_read", "s", [](const Stations& s, Eigen::Index i) { return s.reading_time(i); },
+       IndependentVariable::reading_time}};
   return kAll;
 }
 
@@ -70,21 +74,19 @@ Eigen::Index cosine_count(const Linearisation& linear, Eigen::Index most) {
   return std::clamp(longest / 2, kLeastCosines, std::max(most, kLeastCosines));
 }
 
-/// A process of its own in each of the profiles `which`, none in the others.
-ProcessVariable own_processes(const Linearisation& linear, const std::vector<std::size_t>& which,
+/// A process of its own in each of the profiles, none in the others.
+ProcessVariable own_processes(const Linearisation& linear, std::vector<std::size_t> profiles,
                               std::string symbol) {
-  ProcessVariable out{std::move(symbol), "mm", 0.0, {}, std::ssize(which)};
-  const Eigen::Index each = cosine_count(linear, std::min(kMostCosines, kMostColumns / out.copies));
-  for (const Observation* observation : linear.observations)
-    out.cosines.emplace_back(Eigen::MatrixXd::Zero(observation->values.size(), out.copies * each));
-  for (std::size_t k = 0; k < which.size(); ++k) {
-    const Observation& observation = *linear.observations[which[k]];
+  const Eigen::Index count = cosine_count(
+      linear, std::min(kMostCosines, kMostColumns / static_cast<Eigen::Index>(profiles.size())));
+  ProcessVariable out{std::move(symbol), "mm", 0.0, std::move(profiles), {}, true};
+  for (const std::size_t i : out.profiles) {
+    const Observation& observation = *linear.observations[i];
     const auto own = observation.low_band.positions(observation.profile->positions);
     const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(own.data(), std::ssize(own));
     const double low = x.minCoeff(), high = x.maxCoeff();
-    if (!(low < high)) continue;
-    out.cosines[which[k]].middleCols(static_cast<Eigen::Index>(k) * each, each) =
-        cosines_of(observation, x, low, high, each);
+    out.cosines.push_back(low < high ? cosines_of(observation, x, low, high, count)
+                                     : Eigen::MatrixXd::Zero(x.size(), count));
     out.range = std::max(out.range, high - low);
   }
   return out;
@@ -101,30 +103,75 @@ Eigen::VectorXd weights(Eigen::Index count, double smoothness, double length) {
   return out / out.sum();
 }
 
-/// The best size of a process whose coefficients have relative standard deviations `root`.
-/// @param gram, products  of the columns in units of `unit`
-void try_sizes(const Eigen::MatrixXd& gram, const Eigen::VectorXd& products,
-               const Eigen::VectorXd& root, double unit, double length, Process& best) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(root.asDiagonal() * gram *
-                                                             root.asDiagonal());
-  const Eigen::ArrayXd values = eigen.eigenvalues().array().max(0.0);
-  const Eigen::ArrayXd along = eigen.eigenvectors().transpose() * root.cwiseProduct(products);
+/// What white data say of a process: a block for each process of its own.
+struct ProcessData {
+  std::vector<Eigen::MatrixXd> blocks;
+  Eigen::MatrixXd shared;
+  Eigen::VectorXd products;
+  double unit = 0.0;  // of the columns outside the model
+};
+
+ProcessData data_of(const Whitened& data, const ProcessVariable& variable) {
+  const Eigen::Index count = variable.cosines.front().cols();
+  const Eigen::Index copies = variable.of_each ? std::ssize(variable.cosines) : 1;
+  ProcessData out;
+  out.products = Eigen::VectorXd::Zero(copies * count);
+  for (std::size_t k = 0; k < variable.cosines.size(); ++k) {
+    const Whitened::Shown shown = data.shown_in(variable.profiles[k], variable.cosines[k]);
+    const bool is_new = k == 0 || variable.of_each;
+    if (k == 0) out.shared = Eigen::MatrixXd::Zero(shown.shared.rows(), copies * count);
+    const Eigen::Index first = (copies == 1 ? 0 : static_cast<Eigen::Index>(k)) * count;
+    if (is_new)
+      out.blocks.push_back(shown.gram);
+    else
+      out.blocks.back() += shown.gram;
+    out.shared.middleCols(first, count) += shown.shared;
+    out.products.segment(first, count) += shown.products;
+  }
+  double square = -out.shared.squaredNorm();
+  for (const Eigen::MatrixXd& block : out.blocks) square += block.trace();
+  out.unit = std::sqrt(std::max(square, 0.0) / static_cast<double>(data.rows()));
+  return out;
+}
+
+/// Every size of a process whose coefficients have relative standard deviations `root`, the same
+/// in each block.
+void try_sizes(const ProcessData& data, const Eigen::VectorXd& root, double length, Process& best) {
+  const Eigen::VectorXd scale = root / data.unit;
+  std::vector<Eigen::MatrixXd> blocks;
+  for (const Eigen::MatrixXd& block : data.blocks)
+    blocks.emplace_back(scale.asDiagonal() * block * scale.asDiagonal());
+  const Eigen::VectorXd all = scale.replicate(std::ssize(blocks), 1);
+  const IsotropicPrior prior(blocks, data.shared * all.asDiagonal(),
+                             all.cwiseProduct(data.products));
+  double size_of_best = 0.0;
   for (int k = 0; k < kSizes; ++k) {
     const double size =
         kLeastSize * std::pow(kLargestSize / kLeastSize, static_cast<double>(k) / (kSizes - 1));
-    const Eigen::ArrayXd grown = 1.0 + size * size * values;
-    const double log_evidence =
-        0.5 * (size * size * along.square() / grown).sum() - 0.5 * grown.log().sum();
+    const double log_evidence = prior.log_evidence(size * size);
     if (!(log_evidence > best.log_evidence)) continue;
     best.log_evidence = log_evidence;
-    best.length = length;
-    best.sizes = size / unit * root;
-    best.coefficients = size * size / unit *
-                        root.cwiseProduct((eigen.eigenvectors() * (along / grown).matrix()).eval());
+    size_of_best = size;
   }
+  if (size_of_best == 0.0) return;
+  best.length = length;
+  best.sizes = size_of_best * all;
+  best.coefficients = all.cwiseProduct(prior.mean(size_of_best * size_of_best));
 }
 
 }  // namespace
+
+std::vector<Eigen::MatrixXd> ProcessVariable::columns(const Linearisation& linear) const {
+  const Eigen::Index count = cosines.front().cols();
+  std::vector<Eigen::MatrixXd> out;
+  for (const Observation* observation : linear.observations)
+    out.emplace_back(Eigen::MatrixXd::Zero(observation->values.size(),
+                                           of_each ? count * std::ssize(cosines) : count));
+  for (std::size_t k = 0; k < cosines.size(); ++k)
+    out[profiles[k]].middleCols(of_each ? static_cast<Eigen::Index>(k) * count : 0, count) =
+        cosines[k];
+  return out;
+}
 
 double low_band_scale(const Observation& observation) {
   return std::sqrt(static_cast<double>(observation.low_band.samples()) /
@@ -135,8 +182,18 @@ std::vector<Eigen::VectorXd> slide_positions(const Model& model, const Linearisa
   return readings(model, linear, variables().front());
 }
 
+std::vector<Eigen::VectorXd> readings_of(const Model& model, const Linearisation& linear,
+                                         const std::string& symbol) {
+  const std::vector<Variable>& all = variables();
+  auto found = std::ranges::find(all, symbol, &Variable::symbol);
+  if (found == all.end()) found = std::ranges::find(all, "X", &Variable::symbol);
+  return readings(model, linear, *found);
+}
+
 std::vector<ProcessVariable> process_variables(const Model& model, const Linearisation& linear) {
   std::vector<ProcessVariable> out;
+  std::vector<std::size_t> all(linear.observations.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   for (const Variable& variable : variables()) {
     const std::vector<Eigen::VectorXd> values = readings(model, linear, variable);
     if (values.empty()) continue;
@@ -147,39 +204,26 @@ std::vector<ProcessVariable> process_variables(const Model& model, const Lineari
     }
     if (!(low < high)) continue;
     ProcessVariable& added =
-        out.emplace_back(ProcessVariable{variable.symbol, variable.unit, high - low, {}});
-    for (std::size_t i = 0; i < values.size(); ++i)
+        out.emplace_back(ProcessVariable{variable.symbol, variable.unit, high - low, all, {}});
+    for (const std::size_t i : all)
       added.cosines.push_back(cosines_of(*linear.observations[i], values[i], low, high,
                                          cosine_count(linear, kMostCosines)));
   }
-  const std::size_t profiles = linear.observations.size();
-  if (profiles < 2) return out;
-  std::vector<std::size_t> all;
-  for (std::size_t i = 0; i < profiles; ++i) all.push_back(i);
+  if (all.size() < 2) return out;
   out.push_back(own_processes(linear, all, "per profile"));
   for (const std::size_t i : all)
     out.push_back(own_processes(linear, {i}, linear.observations[i]->profile->name + " alone"));
   return out;
 }
 
-Process best_process(const Whitened& data, const Linearisation& linear,
-                     const ProcessVariable& variable) {
+Process best_process(const Whitened& data, const ProcessVariable& variable) {
   Process best;
+  const ProcessData known = data_of(data, variable);
+  if (!(known.unit > 0.0)) return best;
   const Eigen::Index count = variable.cosines.front().cols();
-  Eigen::MatrixXd columns =
-      data.outside(stack(linear, count, [&](std::size_t i) { return variable.cosines[i]; }));
-  const double unit = std::sqrt(columns.squaredNorm() / static_cast<double>(data.rows()));
-  if (!(unit > 0.0)) return best;
-  columns /= unit;
-  const Eigen::MatrixXd gram = columns.transpose() * columns;
-  const Eigen::VectorXd products = columns.transpose() * data.residual();
   for (const double smoothness : kSmoothness)
-    for (const double length : kLengths) {
-      const Eigen::VectorXd root = weights(count / variable.copies, smoothness, length)
-                                       .cwiseSqrt()
-                                       .replicate(variable.copies, 1);
-      try_sizes(gram, products, root, unit, length, best);
-    }
+    for (const double length : kLengths)
+      try_sizes(known, weights(count, smoothness, length).cwiseSqrt(), length, best);
   return best;
 }
 

@@ -16,8 +16,12 @@ struct ProcessVariable {
   std::string symbol;  // "r" "t" "s" "X", "per profile", or "NAME alone" for one profile
   std::string unit;    // mm or s
   double range = 0.0;  // of the readings
-  std::vector<Eigen::MatrixXd> cosines;  // per fitted profile: #values by copies * #cosines
-  Eigen::Index copies = 1;               // independent processes side by side
+  std::vector<std::size_t> profiles;     // fitted ones that it acts in
+  std::vector<Eigen::MatrixXd> cosines;  // of each of these: #values by #cosines
+  bool of_each = false;                  // each of these has a process of its own
+
+  /// Per fitted profile: its rows of all coefficients.
+  [[nodiscard]] std::vector<Eigen::MatrixXd> columns(const Linearisation& linear) const;
 };
 
 /// Low-band value of a height (slope) of 1 that varies slowly: the root of samples a value.
@@ -25,6 +29,11 @@ double low_band_scale(const Observation& observation);
 
 /// Slide coordinate of the low-band values of every fitted profile, mm.
 std::vector<Eigen::VectorXd> slide_positions(const Model& model, const Linearisation& linear);
+
+/// Readings of what something without a name depends on ("r" "t" "s" "X" "t_read") at the low-band
+/// values of every fitted profile; of what is of one profile alone its trace position. mm or s
+std::vector<Eigen::VectorXd> readings_of(const Model& model, const Linearisation& linear,
+                                         const std::string& symbol);
 
 /// Every variable the fitted profiles have readings of: slide coordinate, cutting time, cutting
 /// distance, trace position, each profile with a process of its own, and one profile alone.
@@ -44,7 +53,6 @@ struct Process {
 /// the Gram matrix of the white cosines outside the model, b their products with the residual and
 /// L L' the prior covariance of the coefficients (Rasmussen and Williams 2006, Eq. (2.30)):
 ///   ln E = b'L (I + L'G L)^-1 L'b / 2 - ln det(I + L'G L) / 2.
-Process best_process(const Whitened& data, const Linearisation& linear,
-                     const ProcessVariable& variable);
+Process best_process(const Whitened& data, const ProcessVariable& variable);
 
 }  // namespace slideway

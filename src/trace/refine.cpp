@@ -106,14 +106,18 @@ void move_shapes(const Model& model, const Whitened& data, const ModelTerm& term
     shape[moving[j]] = term.effect->shapes()[moving[j]].outer(x[j]);
 }
 
-/// Brings the smooth shapes to their best together, between the neighbours on the grid.
+/// Brings the smooth shapes to their best together, between the neighbours on the grid, or over the
+/// whole of a coarse one.
 void move_smooth_shapes(const Model& model, const Whitened& data, const Finding& finding,
                         std::vector<double>& shape) {
   const std::vector<std::size_t> moving = moving_shapes(finding, false);
   if (moving.empty()) return;
+  const ShapeLattice& grid = finding.candidate->grid;
   std::vector<Bounds> bounds;
   for (const std::size_t s : moving)
-    bounds.push_back(finding.candidate->grid.neighbours(finding.atom, s));
+    bounds.push_back(finding.candidate->coarse
+                         ? Bounds(grid.axes()[s].front(), grid.axes()[s].back())
+                         : grid.neighbours(finding.atom, s));
   move_shapes(model, data, finding.candidate->term, moving, bounds, shape);
 }
 

@@ -52,7 +52,7 @@ void for_block(const Whitened& data, const Candidate& candidate, Eigen::Index fi
   const auto own_rows = [&](const Eigen::MatrixXd& stacked) {
     return stacked.middleRows(candidate.first_row, candidate.rows);
   };
-  const Eigen::MatrixXd inside = own_rows(data.basis()).transpose() * columns;
+  const Eigen::MatrixXd inside = data.inside(columns, candidate.only ? candidate.first_row : 0);
   const Eigen::MatrixXd products = columns.transpose() * own_rows(residuals);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto own = columns.middleCols(i * a, a);
@@ -114,7 +114,7 @@ std::vector<Finding> search(const Whitened& data, const Candidates& candidates) 
 Projection project(const Whitened& data, const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd white = columns;
   data.whiten(white);
-  const Eigen::MatrixXd inside = data.basis().transpose() * white;
+  const Eigen::MatrixXd inside = data.inside(white, 0);
   Projection out;
   out.gram = white.transpose() * white - inside.transpose() * inside;
   out.products = white.transpose() * data.residual();

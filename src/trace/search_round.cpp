@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "modulation.hpp"
+#include "sample_residuals.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/left_out.hpp"
@@ -75,14 +76,19 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
                                        const Whitened& data, std::vector<Finding> findings,
                                        const Calibration& calibration) {
   std::ranges::stable_sort(findings, {}, &Finding::delta_bic);
+  const SampleResiduals samples(model, fit);
   const auto test = [&](const Finding& finding) {
     TestedCandidate tested;
     tested.refined = refine(model, data, finding);
     tested.p_value = calibration.p_value(-tested.refined.delta_bic);
     if (tested.refined.candidate->term.profiles.empty())  // else the others lack their own share
       tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
-    tested.modulates = modulated_effect(model, fit.estimate.shapes, tested.refined);
     tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
+    tested.modulates = modulated_effect(model, fit.estimate.shapes, tested.refined);
+    if (is_of_feed_marks(model, data, tested.refined, tested.fitted))
+      tested.folded = "its line is that of the feed marks, folded by sampling";
+    else if (!samples.have(tested.refined))
+      tested.folded = "the samples do not have its line: the low band has folded another";
     return tested;
   };
   const auto worth = [&](double most) {
@@ -135,6 +141,7 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
 std::string TestedCandidate::refused(const Gates& gates) const {
   if (refined.projection.rank == 0) return "the model makes the same columns";
   if (!modulates.empty()) return "its line is a modulation of " + modulates;
+  if (!folded.empty()) return folded;
   if (refined.delta_bic > -gates.delta_bic)
     return "gains too little: difference in BIC " + significant(refined.delta_bic, 3);
   if (p_value > gates.significance) return "noise gives as much: p = " + significant(p_value, 2);
@@ -148,7 +155,7 @@ std::string TestedCandidate::refused(const Gates& gates) const {
 }
 
 bool TestedCandidate::is_possible() const {
-  return refined.projection.rank > 0 && implausible(refined).empty();
+  return refined.projection.rank > 0 && folded.empty() && implausible(refined).empty();
 }
 
 const TestedCandidate* SearchRound::choice(const Gates& gates,
@@ -156,7 +163,7 @@ const TestedCandidate* SearchRound::choice(const Gates& gates,
   for (auto each = tested.begin(); each != tested.end(); ++each) {
     if (!each->refused(gates).empty() || std::ranges::count(excluded, each->name()) > 0) continue;
     const auto stands_before = [&](const TestedCandidate& better) {
-      return std::ranges::count(excluded, better.name()) == 0 &&
+      return better.folded.empty() && std::ranges::count(excluded, better.name()) == 0 &&
              better.refined.candidate->effect_name() != each->refined.candidate->effect_name() &&
              better.refined.delta_bic < each->refined.delta_bic - gates.tie_bic &&
              alike(better, *each, gates);

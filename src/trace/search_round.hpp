@@ -14,6 +14,9 @@ struct TestedCandidate {
   std::optional<HeldOut> held_out;
   Eigen::VectorXd fitted;  // what it takes of the white residual
   std::string modulates;   // the effect of the model whose line it modulates; empty: none
+  /// What has folded another line to where its own is: feed_marks_at(), SampleResiduals::have();
+  /// empty: nothing.
+  std::string folded;
 
   [[nodiscard]] const std::string& name() const { return refined.candidate->name(); }
   /// Why it is not accepted; empty: it passes.

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "fit_numbers.hpp"
-#include "naming.hpp"
 #include "outcome.hpp"
 #include "slideway/base/text.hpp"
 #include "stability.hpp"
@@ -42,23 +41,39 @@ double size_in_report(const ModelResult& told, const ModelTerm& term) {
 
 class Selector {
  public:
-  Selector(const Problem& problem, ModelExtender& extender, const Gates& gates,
+  Selector(const Problem& problem, SetStatistics& statistics, const Gates& gates,
            const Progress& progress)
-      : problem_(problem), extender_(extender), gates_(gates), progress_(progress) {}
+      : problem_(problem),
+        statistics_(statistics),
+        extender_(statistics.extender()),
+        gates_(gates),
+        progress_(progress) {}
 
   Selection run() {
-    grow();
-    drop_small();
-    exchange();
+    std::set<std::vector<std::string>> seen;  // sets of effects that were complete
+    do {
+      narrowed_ = false;
+      grow();
+      drop_small();
+      exchange();
+    } while (narrowed_ && seen.insert(names()).second);
     take_back();
     hold_against_the_unnamed();
     name_rivals();
     out_.lack_of_fit = left_over();
-    out_.withheld = out_.withheld || something_is_left();
+    out_.withheld = out_.withheld || one_stands_out() || something_is_left();
     return std::move(out_);
   }
 
  private:
+  /// Of the effects of the set, in alphabetical order.
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> out;
+    for (const AcceptedEffect& effect : out_.effects) out.push_back(effect.name());
+    std::ranges::sort(out);
+    return out;
+  }
+
   [[nodiscard]] LackOfFit left_over() {
     const FittedModel& fitted = extender_.extended(out_.effects);
     return lack_of_fit(fitted.fit.linear, extender_.search(out_.effects).data.noise(), gates_);
@@ -110,20 +125,23 @@ class Selector {
     const SearchRound& round = extender_.search(out_.effects);
     if (round.data.observations() < 2) return false;
     return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
-      return each.refined.projection.rank > 0 && each.modulates.empty() &&
+      return each.refined.projection.rank > 0 && each.modulates.empty() && each.folded.empty() &&
              each.refined.candidate->term.profiles.empty() && each.p_value <= gates_.significance &&
              each.refined.delta_bic <= -gates_.delta_bic &&
+             !(each.held_out && !each.held_out->helps) &&
              std::ranges::count(ruled_out_, each.name()) == 0;
     });
   }
 
   /// Why an effect of a set does not help beside the others; "": it does. A carriage's polynomial
   /// comes near everything smooth: it must outdo a process without a name.
+  /// It is asked in the low band of the search; in the declared one of what is there in the end.
   std::string reason_against(const Effects& effects, std::size_t which) {
     const Effects others = all_but(effects, which);
-    std::string why = worsens(extender_.summary(others), extender_.summary(effects));
+    std::string why =
+        worsens(extender_.summary_of_search(others), extender_.summary_of_search(effects));
     if (!why.empty() || !effects[which].candidate->term.effect->is_carriage()) return why;
-    const double margin = over_process(effects, which);
+    const double margin = statistics_.over_process(effects, which);
     if (margin < gates_.process_margin)
       why =
           "a smooth process without a name fits as well: " + significant(margin, 2) + " nats less";
@@ -147,35 +165,10 @@ class Selector {
     return "its size is only " + significant(size, 2) + " of its standard uncertainties";
   }
 
-  /// By how much a carriage's polynomial outdoes a process without a name in its place, nats.
-  double over_process(const Effects& effects, std::size_t which) {
-    const FittedModel& with = extender_.extended(effects);
-    const FittedModel& without = extender_.extended(all_but(effects, which));
-    const std::vector<Noise>& noise = with.fit.noise;
-    const Whitened with_it(with.fit.linear, noise), without_it(without.fit.linear, noise);
-    const Candidate& candidate = *effects[which].candidate;
-    return 0.5 * (without_it.residual().squaredNorm() - with_it.residual().squaredNorm() -
-                  penalty(with_it, candidate, candidate.amplitudes())) +
-           find_structure(with.model, with_it, with.fit.linear).process.log_evidence -
-           find_structure(without.model, without_it, without.fit.linear).process.log_evidence;
-  }
-
-  /// -ΔBIC of an effect beside the others of the set.
-  double gain_beside(const Effects& effects, std::size_t which) {
-    const FittedModel& with = extender_.extended(effects);
-    const FittedModel& without = extender_.extended(all_but(effects, which));
-    const Whitened data(without.fit.linear, with.fit.noise);
-    const AcceptedEffect& effect = effects[which];
-    const Projection own =
-        project(data, stacked_columns(without.model, effect.candidate->term, effect.shape,
-                                      data.rows() - data.values()));
-    return own.gain - penalty(data, *effect.candidate, own.rank);
-  }
-
   /// Earlier effects that the last one has made superfluous leave.
   void drop_superfluous() {
     for (std::size_t i = 0; i + 1 < out_.effects.size();) {
-      if (gain_beside(out_.effects, i) >= gates_.delta_bic) {
+      if (statistics_.gain_beside(out_.effects, i) >= gates_.delta_bic) {
         ++i;
         continue;
       }
@@ -204,6 +197,8 @@ class Selector {
       Effects changed = out_.effects;
       changed[i] = accepted(round, *best);
       if (!reason_against(changed, i).empty()) continue;
+      narrowed_ |= best->refined.candidate->effect_name() == out_.effects[i].round.accepted &&
+                   best->name() != out_.effects[i].name();
       if (best->name() != out_.effects[i].name())
         out_.left.emplace_back(out_.effects[i].name(), best->name() + " fits better");
       out_.effects = std::move(changed);
@@ -226,17 +221,21 @@ class Selector {
     for (std::size_t i = out_.effects.size(); i-- > 0;) {
       const std::string why = reason_to_leave(i);
       if (why.empty()) continue;
-      // The search, under the noise beside it, has found something.
-      out_.withheld |= stands_out(i);
+      ruled_out_.push_back(out_.effects[i].name());
+      taken_back_.push_back(ruled_out_.back());
       leave(i, why);
       i = out_.effects.size();  // the others once more
     }
   }
 
-  /// Whether an effect of all profiles passes the gates of the search beside the others.
-  bool stands_out(std::size_t i) {
-    return out_.effects[i].candidate->term.profiles.empty() &&
-           find_tested(extender_.search(all_but(out_.effects, i)), out_.effects[i], gates_);
+  /// Whether an effect of all profiles that was taken back passes the gates of the search, under
+  /// the noise beside it, all the same: it has found something.
+  bool one_stands_out() {
+    const SearchRound& round = extender_.search(out_.effects);
+    return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
+      return each.refined.candidate->term.profiles.empty() && each.refused(gates_).empty() &&
+             std::ranges::count(taken_back_, each.name()) > 0;
+    });
   }
 
   std::string reason_to_leave(std::size_t i) {
@@ -248,12 +247,15 @@ class Selector {
       return "beside the others it gains too little";
     }
     std::string why = reason_against(out_.effects, i);
+    if (why.empty())
+      why = worsens(extender_.summary(all_but(out_.effects, i)), extender_.summary(out_.effects));
     if (why.empty()) why = too_small(out_.effects, i, nullptr);
     if (!why.empty() || !left_over().significant(gates_)) return why;
     const FittedModel& fitted = extender_.extended(out_.effects);
     const SearchRound& last = extender_.search(out_.effects);
-    const Widening unnamed = widening(
-        fitted.model, fitted.fit, find_structure(fitted.model, last.data, fitted.fit.linear), last);
+    const Widening unnamed =
+        widening(fitted.model, fitted.fit,
+                 find_structure(fitted.model, last.data, fitted.fit.linear), last.tested);
     return too_small(out_.effects, i, &unnamed);
   }
 
@@ -290,7 +292,7 @@ class Selector {
   /// Names what nothing without a name explains as well.
   void hold_against_the_unnamed() {
     while (!out_.effects.empty()) {
-      const Standing found = standing(extender_, out_.effects, gates_);
+      const Standing found = statistics_.standing(out_.effects, gates_);
       if (found.margin >= 0.0) return;
       if (found.margin >= -gates_.unnamed_tie) {
         out_.unsure = found.in_place_of;
@@ -311,8 +313,8 @@ class Selector {
 
   /// The effect of a set that gains least beside the others.
   std::size_t weakest(const std::vector<std::size_t>& among) {
-    return *std::ranges::min_element(among, {},
-                                     [&](std::size_t i) { return gain_beside(out_.effects, i); });
+    return *std::ranges::min_element(
+        among, {}, [&](std::size_t i) { return statistics_.gain_beside(out_.effects, i); });
   }
 
   void tell(const std::string& stage, std::size_t i) const {
@@ -321,10 +323,13 @@ class Selector {
   }
 
   const Problem& problem_;
+  SetStatistics& statistics_;
   ModelExtender& extender_;
   const Gates& gates_;
   const Progress& progress_;
-  std::vector<std::string> ruled_out_;  // names that do not help beside the others
+  std::vector<std::string> ruled_out_;   // names that do not help beside the others
+  std::vector<std::string> taken_back_;  // those of them that were in the set
+  bool narrowed_ = false;  // the same effect in fewer cuts: it may be in others as well
   Selection out_;
 };
 
@@ -352,9 +357,9 @@ Selection nothing_selected(ModelExtender& extender, const Gates& gates) {
   return out;
 }
 
-Selection select_effects(const Problem& problem, ModelExtender& extender, const Gates& gates,
+Selection select_effects(const Problem& problem, SetStatistics& statistics, const Gates& gates,
                          const Progress& progress) {
-  return Selector(problem, extender, gates, progress).run();
+  return Selector(problem, statistics, gates, progress).run();
 }
 
 }  // namespace slideway

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "extended_model.hpp"
+#include "set_statistics.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 
 namespace slideway {
@@ -22,7 +22,7 @@ struct Selection {
 /// A round adds an effect or rules one out, and what has left stays out: with c names the search
 /// ends after 2 c rounds at most. Every later step looks at subsets of what was found once. No set
 /// of effects is searched twice (ModelExtender::search()).
-Selection select_effects(const Problem& problem, ModelExtender& extender, const Gates& gates,
+Selection select_effects(const Problem& problem, SetStatistics& statistics, const Gates& gates,
                          const Progress& progress);
 
 /// The declared model as it is: what is left of it, and no effect.

@@ -67,8 +67,9 @@ TraceVerdict verdict_of(const Selection& selection, const Gates& gates) {
 
 }  // namespace
 
-std::optional<Fragile> smallest_change(const Problem& problem, ModelExtender& extender,
+std::optional<Fragile> smallest_change(const Problem& problem, SetStatistics& statistics,
                                        const Selection& selection, const Gates& gates) {
+  ModelExtender& extender = statistics.extender();
   Changes changes(gates);
   for (const TestedCandidate& tested : extender.search(selection.effects).tested)
     changes.add(tested);
@@ -84,9 +85,10 @@ std::optional<Fragile> smallest_change(const Problem& problem, ModelExtender& ex
   changes.add(&Gates::lack_of_fit_ratio, selection.lack_of_fit.ratio);
   const TraceVerdict now = verdict_of(selection, gates);
   for (const Change& change : std::move(changes).sorted()) {
+    extender.limit().check();
     Gates moved = gates;
     moved.*change.gate->value = change.value;
-    const TraceVerdict there = verdict_of(select_effects(problem, extender, moved, {}), moved);
+    const TraceVerdict there = verdict_of(select_effects(problem, statistics, moved, {}), moved);
     if (there != now) return Fragile{std::string(change.gate->name), change.value, there};
   }
   return std::nullopt;

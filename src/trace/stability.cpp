@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMostProfiles = 8;     // that are left out in turn
 constexpr Eigen::Index kBlocks[] = {16, 8};  // of a profile
-constexpr int kDraws = 8;                    // of the noise
+constexpr int kNoiseDraws = 8;               // of the noise
 constexpr std::uint64_t kStabilitySeed = 19790615;
 constexpr double kShown = 0.5;  // of the effect's square in one profile: the others show too little
 
@@ -42,11 +42,10 @@ class Choice {
   /// differs by what it shows, not by being small.
   [[nodiscard]] std::string in(const Eigen::VectorXd& residual, const Rows& rows,
                                const std::string& own_name, double tie) const {
-    const Eigen::MatrixXd basis = orthonormal(round_.data.basis()(rows, Eigen::all));
-    Eigen::MatrixXd columns = columns_(rows, Eigen::all);
-    columns -= basis * (basis.transpose() * columns).eval();
-    Eigen::VectorXd rest = residual(rows);
-    rest -= basis * (basis.transpose() * rest).eval();
+    Eigen::MatrixXd columns(std::ssize(rows), columns_.cols() + 1);
+    columns << columns_(rows, Eigen::all), residual(rows);
+    columns = round_.data.outside_in(rows, std::move(columns));
+    const auto rest = columns.rightCols(1);
     const auto count = static_cast<double>(residual.size());
     const double log_count = std::log(count), to_all = count / static_cast<double>(rows.size());
     std::string best(kNothing);
@@ -106,7 +105,7 @@ Stability stability(const SearchRound& round, const TestedCandidate& effect, con
   const Whitened& data = round.data;
   const std::vector<Rows> parts = parts_of(data, effect.fitted);
   const Rows all = rows_where(data, [](std::size_t, Eigen::Index) { return true; });
-  std::vector<std::string> chosen(parts.size() + kDraws);
+  std::vector<std::string> chosen(parts.size() + kNoiseDraws);
   parallel_for(chosen.size(), [&](std::size_t k) {
     if (k < parts.size()) {
       chosen[k] = choice.in(data.residual(), parts[k], effect.name(), gates.tie_bic);

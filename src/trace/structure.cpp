@@ -1,14 +1,18 @@
 #include "structure.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/uncertainty.hpp"
 #include "slideway/signal/spectrum.hpp"
 #include "slideway/signal/view.hpp"
 
 namespace slideway {
 namespace {
+
+constexpr std::size_t kCurvePoints = 200;
 
 /// Share of the square that is odd about the spindle axis, for a trace over (nearly) a diameter.
 std::optional<double> odd_share(const Profile& profile, const Eigen::VectorXd& values) {
@@ -51,22 +55,65 @@ void locate(const Profile& profile, const std::vector<double>& positions,
   out.dominant_period_mm = dominant_period(profile, values);
 }
 
+/// Posterior standard deviations of a process at rows of its columns; see best_process().
+Eigen::VectorXd deviations_of(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& white,
+                              const Eigen::VectorXd& sizes) {
+  const Eigen::MatrixXd scaled = white * sizes.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> information(
+      Eigen::MatrixXd::Identity(sizes.size(), sizes.size()) + scaled.transpose() * scaled);
+  const Eigen::MatrixXd rows = columns * sizes.asDiagonal();
+  return information.matrixL().solve(rows.transpose()).colwise().norm().transpose();
+}
+
+/// The values of one profile over the variable, one half of a diameter, without what is left out.
+void set_curve(const Eigen::VectorXd& readings, const Eigen::VectorXd& values,
+               const Eigen::VectorXd& deviations, const Observation& observation, Unnamed& out) {
+  const Clock& clock = clock_of(out);
+  const Setup& setup = observation.profile->setup;
+  const bool both_halves = setup.kind != Kind::face || clock.symbol == std::string("X");
+  const std::vector<double> positions =
+      observation.low_band.positions(observation.profile->positions);
+  const std::vector<Eigen::Index> left_out = left_out_values(observation);
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < readings.size(); ++i) {
+    if (std::ranges::count(left_out, i) > 0) continue;
+    if (both_halves || setup.last_mm <= setup.center_mm ||
+        positions[static_cast<std::size_t>(i)] >= setup.center_mm)
+      order.push_back(i);
+  }
+  std::ranges::stable_sort(order, {}, [&](Eigen::Index i) { return readings[i]; });
+  const bool slope = setup.quantity == Quantity::slope;
+  const double unit = low_band_scale(observation) * (slope ? kMicroradian : kMicrometre);
+  out.curve = {clock.name, clock.unit, slope ? MicroUnit::urad : MicroUnit::um, {}, {}, {}};
+  const std::size_t stride = std::max<std::size_t>(1, order.size() / kCurvePoints);
+  for (std::size_t j = 0; j < order.size(); j += stride) {
+    out.curve.at.push_back(readings[order[j]] / clock.per_unit);
+    out.curve.residual.push_back(values[order[j]] / unit);
+    out.curve.expanded_uncertainty.push_back(coverage_factor(std::nullopt) * deviations[order[j]] /
+                                             unit);
+  }
+}
+
 }  // namespace
 
 Structure find_structure(const Model& model, const Whitened& data, const Linearisation& linear) {
   Structure found;
   Unnamed& out = found.description;
+  std::optional<ProcessVariable> best;
   for (ProcessVariable& variable : process_variables(model, linear)) {
-    Process process = best_process(data, linear, variable);
+    Process process = best_process(data, variable);
+    if (process.sizes.size() == 0) continue;  // it makes nothing beside the model
     out.log_evidence.emplace_back(variable.symbol, process.log_evidence);
     if (!(process.log_evidence > found.process.log_evidence)) continue;
     out.clock = variable.symbol;
     out.correlation_length = process.length * variable.range;
     out.correlation_unit = variable.unit;
-    found.columns = std::move(variable.cosines);
+    best = std::move(variable);
     found.process = std::move(process);
   }
-  if (found.columns.empty()) {  // no variable makes anything beside the model
+  if (best) {
+    found.columns = best->columns(linear);
+  } else {  // no variable makes anything beside the model
     for (const Observation* observation : linear.observations)
       found.columns.emplace_back(Eigen::MatrixXd::Zero(observation->values.size(), 1));
     found.process.sizes = found.process.coefficients = Eigen::VectorXd::Zero(1);
@@ -75,13 +122,28 @@ Structure find_structure(const Model& model, const Whitened& data, const Lineari
   return found;
 }
 
-Unnamed describe(const Structure& found, const Whitened& data, const Linearisation& linear) {
+const Clock& clock_of(const Unnamed& unnamed) {
+  static constexpr Clock kClocks[] = {
+      {"r", "x", "mm", 1.0, IndependentVariable::slide},
+      {"t", "t", "s", 1.0, IndependentVariable::time},
+      {"s", "s", "m", 1e3, IndependentVariable::distance},
+      {"t_read", "t_read", "s", 1.0, IndependentVariable::reading_time},
+      {"X", "X", "mm", 1.0, IndependentVariable::trace}};
+  const auto found = std::ranges::find(kClocks, unnamed.clock, &Clock::symbol);
+  return found == std::end(kClocks) ? std::end(kClocks)[-1] : *found;
+}
+
+Unnamed describe(const Model& model, const Structure& found, const Whitened& data,
+                 const Linearisation& linear) {
   Unnamed out = found.description;
   double largest = -1.0;
-  Eigen::VectorXd process = stack(
-      linear, 1, [&](std::size_t i) { return found.columns[i] * found.process.coefficients; });
-  const Eigen::MatrixXd span = model_span(linear);
-  process -= span * least_squares(span, process).values;  // that part shows as parameters
+  std::size_t which = 0;
+  Eigen::MatrixXd columns =
+      stack(linear, found.columns.front().cols(), [&](std::size_t i) { return found.columns[i]; });
+  const Eigen::MatrixXd white = data.outside(columns);
+  columns = BesideLevelling(linear, stacked_model(linear), columns)
+                .rest;  // the other part shows as parameters
+  const Eigen::VectorXd process = columns * found.process.coefficients;
   for (std::size_t i = 0; i < found.columns.size(); ++i) {
     const Observation& observation = *linear.observations[i];
     Eigen::VectorXd values = process.segment(data.first_row(i), data.count(i));
@@ -89,6 +151,7 @@ Unnamed describe(const Structure& found, const Whitened& data, const Linearisati
                                 data.noise()[i].standard_deviation();
     if (standing_out <= largest) continue;
     largest = standing_out;
+    which = i;
     const bool slope = observation.profile->setup.quantity == Quantity::slope;
     values /= low_band_scale(observation) * (slope ? kMicroradian : kMicrometre);
     const double rms = values.norm() / std::sqrt(static_cast<double>(values.size()));
@@ -100,6 +163,11 @@ Unnamed describe(const Structure& found, const Whitened& data, const Linearisati
     locate(*observation.profile, observation.low_band.positions(observation.profile->positions),
            values, out);
   }
+  const Eigen::VectorXd deviations = deviations_of(
+      columns.middleRows(data.first_row(which), data.count(which)), white, found.process.sizes);
+  set_curve(readings_of(model, linear, out.clock)[which],
+            process.segment(data.first_row(which), data.count(which)), deviations,
+            *linear.observations[which], out);
   return out;
 }
 

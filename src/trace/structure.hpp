@@ -15,6 +15,16 @@ struct Structure {
 Structure find_structure(const Model& model, const Whitened& data, const Linearisation& linear);
 
 /// Size, place and form of what is left.
-Unnamed describe(const Structure& structure, const Whitened& data, const Linearisation& linear);
+Unnamed describe(const Model& model, const Structure& structure, const Whitened& data,
+                 const Linearisation& linear);
+
+/// What a variable of a process is called in a formula.
+struct Clock {
+  const char *symbol, *name, *unit;  // "r", "x", "mm"
+  double per_unit;                   // readings of the process
+  IndependentVariable variable;
+};
+/// That of what is left; the trace position where it is of one profile alone.
+const Clock& clock_of(const Unnamed& unnamed);
 
 }  // namespace slideway

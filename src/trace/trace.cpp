@@ -8,6 +8,7 @@
 #include "cross_validation.hpp"
 #include "detection.hpp"
 #include "fit_numbers.hpp"
+#include "forms.hpp"
 #include "instrument.hpp"
 #include "loop.hpp"
 #include "outcome.hpp"
@@ -28,25 +29,45 @@ class Loop {
   Loop(const Problem& problem, const std::vector<Profile>& profiles, const FittedModel& declared,
        const Progress& progress)
       : problem_(problem),
-        profiles_(profiles),
         progress_(progress),
-        extender_(problem, profiles, declared, progress) {}
+        limit_(problem.trace.time_limit_s),
+        extender_(problem, profiles, declared, limit_, progress),
+        statistics_(extender_) {}
 
   ClosedLoop run() {
     const Gates& gates = problem_.trace.gates;
-    std::vector<Blunder> blunders = find_blunders(extender_.base());
-    if (!blunders.empty() && explained_by_an_effect(blunders)) blunders.clear();
-    Selection selection = blunders.empty() ? select_effects(problem_, extender_, gates, progress_)
-                                           : nothing_selected(extender_, gates);
-    tell_rounds(selection.effects);
-    if (progress_) progress_("describing what is left", 0.0);
     ClosedLoop closed;
     TraceResult& out = closed.trace;
     for (const Gate& gate : gate_table()) out.gates.emplace_back(gate.name, gates.*gate.value);
-    out.blunders = std::move(blunders);
+    Selection selection;
+    if (limit_.allows([&] { selection = selected(out.blunders); }))
+      report(selection, closed);
+    else
+      report_unfinished(closed);
+    out.searches = extender_.searches();
+    return closed;
+  }
+
+ private:
+  Selection selected(std::vector<Blunder>& found) {
+    const Gates& gates = problem_.trace.gates;
+    std::vector<Blunder> blunders = find_blunders(extender_.base());
+    if (!blunders.empty() && explained_by_an_effect(blunders)) blunders.clear();
+    Selection selection = blunders.empty() ? select_effects(problem_, statistics_, gates, progress_)
+                                           : nothing_selected(extender_, gates);
+    tell_rounds(selection.effects);
+    found = std::move(blunders);
+    return selection;
+  }
+
+  void report(const Selection& selection, ClosedLoop& closed) {
+    const Gates& gates = problem_.trace.gates;
+    TraceResult& out = closed.trace;
+    if (progress_) progress_("describing what is left", 0.0);
     report_effects(selection, out);
     report_rest(selection, closed);
-    report_limits(selection, out);
+    if (!limit_.allows([&] { report_limits(selection, out); }))
+      out.not_looked_at.emplace_back("detection limits");
     out.instrument = shared_residuals(extender_.base());
     name_instrument(out);
     const std::string other_cause =
@@ -58,19 +79,43 @@ class Loop {
     if (!out.blunders.empty()) out.advice.insert(out.advice.begin(), blunder_advice(out.blunders));
     out.verdict = verdict(out, !other_cause.empty());
     if (other_cause.empty() && out.blunders.empty() &&
-        out.rounds.size() == selection.effects.size())
-      out.fragile = smallest_change(problem_, extender_, selection, gates);
-    out.cross_validation =
-        cross_validate(extender_.base().fit, extender_.extended(selection.effects).fit, gates);
+        out.rounds.size() == selection.effects.size() && !limit_.allows([&] {
+          out.fragile = smallest_change(problem_, statistics_, selection, gates);
+        }))
+      out.not_looked_at.emplace_back("the smallest change of a gate that changes the verdict");
+    if (!limit_.allows([&] {
+          out.cross_validation = cross_validate(extender_.base().fit,
+                                                extender_.extended(selection.effects).fit, gates);
+        }))
+      out.not_looked_at.emplace_back("prediction over gaps");
     if (!selection.effects.empty() && !out.cross_validation.empty())
       out.gain = gain_of(out.cross_validation);
-    out.searches = extender_.searches();
     if (!selection.effects.empty())
       closed.extended = extender_.take_in_declared_band(selection.effects);
-    return closed;
   }
 
- private:
+  /// The declared model, and what it leaves: nothing that was found has been held against all its
+  /// rivals.
+  void report_unfinished(ClosedLoop& closed) {
+    const Gates& gates = problem_.trace.gates;
+    const FittedModel& base = extender_.base();
+    TraceResult& out = closed.trace;
+    out.unfinished = true;
+    out.verdict = TraceVerdict::unnamed;
+    const SearchRound* const first = extender_.searched({});
+    const Whitened data = first ? first->data : Whitened(base.fit.linear, base.fit.noise);
+    out.lack_of_fit_p = lack_of_fit(base.fit.linear, data.noise(), gates).p_value;
+    if (first) out.refused = tried(*first, gates, nullptr, extender_.summary({}).rms_um);
+    for (TriedEffect& effect : out.refused)
+      if (!effect.refused)
+        effect.refused = "the time limit came before it was held against its rivals";
+    const Structure structure = find_structure(base.model, data, base.fit.linear);
+    out.unnamed = describe(base.model, structure, data, base.fit.linear);
+    out.unnamed->p_value = out.lack_of_fit_p;
+    closed.widening = widening(base.model, base.fit, structure,
+                               first ? first->tested : std::vector<TestedCandidate>());
+  }
+
   /// Whether an effect of all profiles leaves less of the residual than the blunder that leaves
   /// least, or leaves no profile that disagrees: the sign of a drift, too, turns with the direction
   /// of the cut.
@@ -146,8 +191,9 @@ class Loop {
     const FittedModel& without = extender_.extended(others);
     const TestedCandidate& own = *find_tested(round, selection.effects[i], gates);
     for (const TestedCandidate* rival : round.rivals(own, gates))
-      out.advice.push_back(separating_measurement(problem_, profiles_, without.model, without.fit,
-                                                  round.data, own.refined, rival->refined));
+      out.advice.push_back(separating_measurement(problem_, extender_.profiles(), without.model,
+                                                  without.fit, round.data, own.refined,
+                                                  rival->refined));
   }
 
   void report_rest(const Selection& selection, ClosedLoop& closed) {
@@ -171,9 +217,14 @@ class Loop {
       return;
     }
     const Structure structure = find_structure(fitted.model, last.data, fitted.fit.linear);
-    out.unnamed = describe(structure, last.data, fitted.fit.linear);
+    out.unnamed = describe(fitted.model, structure, last.data, fitted.fit.linear);
     out.unnamed->p_value = std::min(selection.lack_of_fit.p_value, repeated_p);
-    closed.widening = widening(fitted.model, fitted.fit, structure, last);
+    if (!limit_.allows([&] {
+          out.unnamed->forms = describe_in_forms(extender_, selection.effects, *out.unnamed);
+        }))
+      out.not_looked_at.emplace_back("short formulas of what is left");
+    if (!out.unnamed->forms.empty()) out.unnamed->to_confirm = what_separates(*out.unnamed);
+    closed.widening = widening(fitted.model, fitted.fit, structure, last.tested);
   }
 
   /// What a process without a name would do in the place of the effects that are not sure.
@@ -182,7 +233,7 @@ class Loop {
     const FittedModel& without = extender_.extended(all_but(selection.effects, selection.unsure));
     const Whitened data(without.fit.linear, last.data.noise(), last.data.undescribed());
     return widening(fitted.model, fitted.fit,
-                    find_structure(without.model, data, without.fit.linear), last);
+                    find_structure(without.model, data, without.fit.linear), last.tested);
   }
 
   void report_limits(const Selection& selection, TraceResult& out) {
@@ -201,9 +252,10 @@ class Loop {
   }
 
   const Problem& problem_;
-  const std::vector<Profile>& profiles_;
   const Progress& progress_;
+  TimeLimit limit_;
   ModelExtender extender_;
+  SetStatistics statistics_;
 };
 
 }  // namespace

@@ -22,6 +22,25 @@ Eigen::MatrixXd model_span(const Linearisation& linear) {
   return out;
 }
 
+BesideLevelling::BesideLevelling(const Linearisation& linear, Eigen::MatrixXd columns,
+                                 Eigen::MatrixXd targets)
+    : rest(std::move(targets)) {
+  ProfileBases nuisances;
+  for (const Observation* observation : linear.observations) nuisances.add(observation->nuisances);
+  columns = nuisances.beside(std::move(columns));
+  nuisances.take_out(rest);
+  values = least_squares(columns, rest).values;
+  rest -= columns * values;
+}
+
+/// Amplitudes' and shapes' columns, stacked, with the priors' rows.
+Eigen::MatrixXd stacked_model(const Linearisation& linear) {
+  Eigen::MatrixXd out =
+      stack(linear, linear.prior_rows.cols(), [&](std::size_t i) { return linear.columns[i]; });
+  out.bottomRows(linear.prior_rows.rows()) = linear.prior_rows;
+  return out;
+}
+
 Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
                    Eigen::MatrixXd undescribed)
     : noise_(std::move(noise)), undescribed_(std::move(undescribed)) {
@@ -32,12 +51,15 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
   first_.push_back(values_);
   rows_ = values_ + linear.prior_rows.rows();
   if (undescribed_.cols() == 0) undescribed_.resize(rows_, 0);
-  const Eigen::MatrixXd model = model_span(linear);
-  Eigen::MatrixXd span(rows_, model.cols() + undescribed_.cols());
-  span.leftCols(model.cols()) = model;
-  span.rightCols(undescribed_.cols()) = undescribed_;
-  whiten(span);
-  basis_ = orthonormal(std::move(span));
+  for (std::size_t i = 0; i < noise_.size(); ++i) {
+    Eigen::MatrixXd own = linear.observations[i]->nuisances;
+    noise_[i].whiten(own);
+    own_.add(std::move(own));
+  }
+  Eigen::MatrixXd shared(rows_, linear.prior_rows.cols() + undescribed_.cols());
+  shared << stacked_model(linear), undescribed_;
+  whiten(shared);
+  shared_ = orthonormal(own_.beside(std::move(shared)));
   residual_ = stack(linear, 1, [&](std::size_t i) { return linear.residuals[i]; });
   residual_.tail(linear.prior_rows.rows()) = linear.prior_residuals;
   residual_ = outside(residual_);
@@ -50,8 +72,48 @@ void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
 
 Eigen::MatrixXd Whitened::outside(Eigen::MatrixXd stacked) const {
   whiten(stacked);
-  stacked -= basis_ * (basis_.transpose() * stacked).eval();
+  own_.take_out(stacked);
+  stacked -= shared_ * (shared_.transpose() * stacked).eval();
   return stacked;
+}
+
+Eigen::MatrixXd Whitened::inside(const Eigen::MatrixXd& white, Eigen::Index first) const {
+  const Eigen::Index end = first + white.rows();
+  const auto is_there = [&](std::size_t i) { return first_[i] >= first && first_[i + 1] <= end; };
+  Eigen::Index next = shared_.cols(), size = next;
+  for (std::size_t i = 0; i < own_.size(); ++i) size += is_there(i) ? own_[i].cols() : 0;
+  Eigen::MatrixXd out(size, white.cols());
+  out.topRows(next) = shared_.middleRows(first, white.rows()).transpose() * white;
+  for (std::size_t i = 0; i < own_.size(); ++i) {
+    if (!is_there(i)) continue;
+    out.middleRows(next, own_[i].cols()) =
+        own_[i].transpose() * white.middleRows(first_[i] - first, count(i));
+    next += own_[i].cols();
+  }
+  return out;
+}
+
+Whitened::Shown Whitened::shown_in(std::size_t profile, Eigen::MatrixXd columns) const {
+  const Eigen::MatrixXd& own = own_[profile];
+  noise_[profile].whiten(columns);
+  columns -= own * (own.transpose() * columns).eval();
+  const Eigen::Index first = first_[profile], rows = count(profile);
+  Shown out;
+  out.gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  out.gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+  out.gram.triangularView<Eigen::StrictlyUpper>() = out.gram.transpose();
+  out.shared = shared_.middleRows(first, rows).transpose() * columns;
+  out.products = columns.transpose() * residual_.segment(first, rows);
+  return out;
+}
+
+Eigen::MatrixXd Whitened::outside_in(const std::vector<Eigen::Index>& rows,
+                                     Eigen::MatrixXd white) const {
+  const ProfileBases own = own_.in(rows);
+  const Eigen::MatrixXd shared = orthonormal(own.beside(shared_(rows, Eigen::all)));
+  own.take_out(white);
+  white -= shared * (shared.transpose() * white).eval();
+  return white;
 }
 
 }  // namespace slideway

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "slideway/identify/fit.hpp"
+#include "slideway/identify/profile_bases.hpp"
 
 namespace slideway {
 
@@ -40,8 +41,23 @@ class Whitened {
   /// The same, then without what the model and the nuisances span.
   [[nodiscard]] Eigen::MatrixXd outside(Eigen::MatrixXd stacked) const;
 
-  /// Orthonormal, rows() by k: what the model and the nuisances span.
-  [[nodiscard]] const Eigen::MatrixXd& basis() const { return basis_; }
+  /// White columns in some rows, without what the model and the nuisances span there.
+  /// @param rows  rising, with those of the priors; as many as `white` has
+  [[nodiscard]] Eigen::MatrixXd outside_in(const std::vector<Eigen::Index>& rows,
+                                           Eigen::MatrixXd white) const;
+
+  /// Its transpose times white rows that are zero elsewhere: those of whole profiles from row
+  /// `first` on, or all.
+  [[nodiscard]] Eigen::MatrixXd inside(const Eigen::MatrixXd& white, Eigen::Index first) const;
+
+  /// What columns of one profile show beside its nuisances. Over profiles, with sums of each: the
+  /// Gram matrix of the columns outside the model's span is gram - sharedᵀ shared.
+  struct Shown {
+    Eigen::MatrixXd gram;      // of the white columns
+    Eigen::MatrixXd shared;    // of what else is free with them
+    Eigen::VectorXd products;  // with the residual
+  };
+  [[nodiscard]] Shown shown_in(std::size_t profile, Eigen::MatrixXd columns) const;
 
   /// Stacked columns that are left free beside the model.
   [[nodiscard]] const Eigen::MatrixXd& undescribed() const { return undescribed_; }
@@ -55,7 +71,8 @@ class Whitened {
   std::vector<Eigen::Index> first_;
   Eigen::Index values_ = 0;
   Eigen::Index rows_ = 0;
-  Eigen::MatrixXd basis_;
+  ProfileBases own_;        // of the nuisances
+  Eigen::MatrixXd shared_;  // of what else is free, orthogonal to those
   Eigen::VectorXd residual_;
 };
 
@@ -80,6 +97,18 @@ template <typename Of>
 Eigen::MatrixXd stack(const Linearisation& linear, Eigen::Index columns, Of&& of) {
   return stack(linear.observations, linear.prior_rows.rows(), columns, of);
 }
+
+/// Least squares of stacked targets by stacked columns, the nuisances of each profile left free:
+/// they are taken out of both first (Frisch, Waugh and Lovell).
+struct BesideLevelling {
+  BesideLevelling(const Linearisation& linear, Eigen::MatrixXd columns, Eigen::MatrixXd targets);
+
+  Eigen::MatrixXd values;  // of the columns, one column each target
+  Eigen::MatrixXd rest;    // of the targets
+};
+
+/// Columns of the model's amplitudes and shapes, stacked, with the rows of the priors.
+Eigen::MatrixXd stacked_model(const Linearisation& linear);
 
 /// What the model makes, stacked: nuisances of each profile in columns of their own, then
 /// amplitudes and shapes.

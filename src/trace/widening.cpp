@@ -43,13 +43,13 @@ double Widening::variance(const Eigen::RowVectorXd& row) const {
 }
 
 Widening widening(const Model& model, const Solution& fit, const Structure& structure,
-                  const SearchRound& last) {
+                  const std::vector<TestedCandidate>& refused) {
   Widening out;
   out.process = response(fit, stack(fit.linear, structure.columns[0].cols(),
                                     [&](std::size_t i) { return structure.columns[i]; })) *
                 structure.process.sizes.asDiagonal();
   out.refused.resize(out.process.rows(), 0);
-  for (const TestedCandidate& each : last.tested) {
+  for (const TestedCandidate& each : refused) {
     if (each.refined.delta_bic > -model.gates.delta_bic || !each.is_possible()) continue;
     out.refused.conservativeResize(Eigen::NoChange, out.refused.cols() + 1);
     out.refused.rightCols(1) =

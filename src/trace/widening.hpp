@@ -17,6 +17,6 @@ struct Widening {
 };
 
 Widening widening(const Model& model, const Solution& fit, const Structure& structure,
-                  const SearchRound& last);
+                  const std::vector<TestedCandidate>& refused);
 
 }  // namespace slideway

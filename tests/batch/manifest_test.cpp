@@ -4,7 +4,7 @@
 
 #include "slideway/base/error.hpp"
 
-namespace slideway {
+namespace slideway::manifest_test {
 namespace {
 
 using testing::HasSubstr;
@@ -78,4 +78,4 @@ TEST(Shard, EveryIdIsInOneAndShardsAreEven) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::manifest_test

@@ -15,7 +15,7 @@
 #include "slideway/base/sanitizer.hpp"
 #include "slideway/batch/item.hpp"
 
-namespace slideway {
+namespace slideway::process_pool_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -148,4 +148,4 @@ TEST(ProcessPool, EndWithTheirParent) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::process_pool_test

@@ -5,8 +5,9 @@
 #include "base/temporary_folder.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
+#include "slideway/batch/pool.hpp"
 
-namespace slideway {
+namespace slideway::results_test {
 namespace {
 
 using testing::ElementsAre;
@@ -50,6 +51,33 @@ TEST_F(Results, WholeLinesAreReadAndTornOnesCounted) {
     std::size_t torn = 9;
     EXPECT_THAT(ids(folder_.file("r", whole + last.substr(0, size)), &torn), ElementsAre("a", "b"));
     EXPECT_EQ(torn, size > 0 ? 1U : 0U) << size;
+  }
+}
+
+TEST_F(Results, ALineWithoutStatusIsTorn) {
+  std::string without = line("a");
+  without.replace(without.find(R"("ok")"), 4, "null");
+  std::size_t torn = 0;
+  EXPECT_THAT(ids(folder_.file("r", without + line("b")), &torn), ElementsAre("b"));
+  EXPECT_EQ(torn, 1U);
+}
+
+// Found by the fuzz target `results`: the JSON library's own error left the program.
+TEST_F(Results, DamagedEvidenceIsRefusedWithItsId) {
+  const Manifest manifest = parse_manifest("id,problem,machine\na,p.toml,M\n", "m.csv");
+  for (const char* evidence :
+       {"null", "{}", "3", R"({"parameters":{},"units":[],"rows":[],"values":[]})",
+        R"({"parameters":["p"],"units":["m"],"rows":[[1,2]],"values":[1]})",
+        R"({"parameters":["p"],"units":["m"],"rows":[[null]],"values":[1]})",
+        R"({"parameters":["p"],"units":["m"],"rows":[[1]],"values":["x"]})",
+        R"({"parameters":["p"],"units":["m"],"rows":[[1]],"values":[1e300]})"}) {
+    std::string damaged = line("a");
+    damaged.replace(damaged.find(R"("evidence":null)"), 15,
+                    R"("evidence":)" + std::string(evidence));
+    const auto path = folder_.file("r", damaged);
+    EXPECT_EQ(refusal([&] { pool_machines(manifest, path); }),
+              path.string() + ": id 'a': its evidence is damaged")
+        << evidence;
   }
 }
 
@@ -122,4 +150,4 @@ TEST_F(Results, VerifyWantsEveryIdOnce) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::results_test

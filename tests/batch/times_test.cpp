@@ -3,7 +3,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/batch/pool.hpp"
 
-namespace slideway {
+namespace slideway::times_test {
 namespace {
 
 using testing::HasSubstr;
@@ -31,4 +31,4 @@ TEST(Times, AreNumbersOrDates) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::times_test

@@ -44,7 +44,7 @@ TEST_P(BadManifests, IsRefusedInOneLine) {
 INSTANTIATE_TEST_SUITE_P(Bad, BadManifests, testing::ValuesIn(kBadManifests),
                          [](const auto& bad) { return bad.param.name; });
 
-const BadUsage kBadUsages[] = {
+const BadUsage kBadBatchUsages[] = {
     {"BatchWithoutManifest", {"batch"}, {"batch: MANIFEST is missing", "'problem'"}},
     {"BatchWithoutOut", {"batch", "m.csv"}, {"batch: --out RESULTS.jsonl is missing"}},
     {"BatchWithTwoManifests",
@@ -80,12 +80,12 @@ TEST_P(BatchUsage, IsRefusedInOneLine) {
   EXPECT_THAT(names_in(folder_.path()), testing::IsEmpty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Bad, BatchUsage, testing::ValuesIn(kBadUsages),
+INSTANTIATE_TEST_SUITE_P(Bad, BatchUsage, testing::ValuesIn(kBadBatchUsages),
                          [](const auto& bad) { return bad.param.name; });
 
 }  // namespace
 
 std::span<const BadManifest> bad_manifests() { return kBadManifests; }
-std::span<const BadUsage> bad_batch_usages() { return kBadUsages; }
+std::span<const BadUsage> bad_batch_usages() { return kBadBatchUsages; }
 
 }  // namespace slideway

@@ -14,8 +14,8 @@ TEST_P(FileFormat, IsRefusedInOneLine) { expect_refused(); }
 
 const ProblemText kNoUnits{.columns = "", .units = ""};
 
-BadInput bad(const std::string& name, const std::string& bytes,
-             const std::vector<std::string>& fragments) {
+BadInput bad_file(const std::string& name, const std::string& bytes,
+                  const std::vector<std::string>& fragments) {
   return {name, kNoUnits.text(), bytes, 3, fragments};
 }
 
@@ -78,22 +78,23 @@ std::string nested(int depth) {
 }
 
 const BadInput kArchives[] = {
-    bad("X3pCutOff", half(written(".x3p")), {"face.csv: zip: no whole zip archive"}),
-    bad("X3pWithAWrongChecksum", x3p(x3p_main(64, data_list(64)), kWrongSum),
-        {"face.csv: main.xml: the MD5 checksum is", "ignore the checksum"}),
-    bad("ZipBomb", deflated({{"main.xml", std::string(1'200'000, ' ')}}),
-        {"face.csv: zip: entry 'main.xml': 1200000 bytes declared, at most 1048576"}),
-    bad("PathOutOfTheArchive",
-        deflated({{"main.xml", x3p_main(64, data_list(64))}, {"../evil", "x"}}),
-        {"face.csv: zip: entry '../evil': its path leads out"}),
-    bad("ArchiveInTheArchive", deflated({{"more.zip", "x"}}), {"is an archive in the archive"}),
-    bad("X3pEntityBomb",
-        x3p("<!DOCTYPE a [<!ENTITY b \"&c;&c;\"><!ENTITY c \"&d;&d;\">]><a>&b;</a>"),
-        {"face.csv: main.xml: a DOCTYPE is not accepted"}),
-    bad("X3pNestedDeeply", x3p(nested(1000)), {"nested deeper than 32"}),
-    bad("X3pOfMorePointsThanItHolds", x3p(x3p_main(1'000'000'000'000, kLink)), {"face.csv: "}),
-    bad("X3pOfMoreDatumsThanItHolds", x3p(x3p_main(1'000'000'000'000, data_list(64))),
-        {"face.csv: main.xml", "64 Datum where"}),
+    bad_file("X3pCutOff", half(written(".x3p")), {"face.csv: zip: no whole zip archive"}),
+    bad_file("X3pWithAWrongChecksum", x3p(x3p_main(64, data_list(64)), kWrongSum),
+             {"face.csv: main.xml: the MD5 checksum is", "ignore the checksum"}),
+    bad_file("ZipBomb", deflated({{"main.xml", std::string(1'200'000, ' ')}}),
+             {"face.csv: zip: entry 'main.xml': 1200000 bytes declared, at most 1048576"}),
+    bad_file("PathOutOfTheArchive",
+             deflated({{"main.xml", x3p_main(64, data_list(64))}, {"../evil", "x"}}),
+             {"face.csv: zip: entry '../evil': its path leads out"}),
+    bad_file("ArchiveInTheArchive", deflated({{"more.zip", "x"}}),
+             {"is an archive in the archive"}),
+    bad_file("X3pEntityBomb",
+             x3p("<!DOCTYPE a [<!ENTITY b \"&c;&c;\"><!ENTITY c \"&d;&d;\">]><a>&b;</a>"),
+             {"face.csv: main.xml: a DOCTYPE is not accepted"}),
+    bad_file("X3pNestedDeeply", x3p(nested(1000)), {"nested deeper than 32"}),
+    bad_file("X3pOfMorePointsThanItHolds", x3p(x3p_main(1'000'000'000'000, kLink)), {"face.csv: "}),
+    bad_file("X3pOfMoreDatumsThanItHolds", x3p(x3p_main(1'000'000'000'000, data_list(64))),
+             {"face.csv: main.xml", "64 Datum where"}),
     bad_request("TextKeysForX3p", written(".x3p"), "delimiter = \",\"\n",
                 {"face.csv: is X3P", "belong to delimited text"}),
     bad_request("ArealFileWithoutALine", x3p(x3p_main(32, data_list(64), "SUR")), "",
@@ -108,20 +109,22 @@ const std::string kNist =
     "0.5\n-1.25\n7\n</DATA_POINT_VALUES></DATAFILE></DATA>";
 
 const BadInput kPlain[] = {
-    bad("SdfCutOff", half(written(".sdf")), {"face.csv: "}),
-    bad("SdfOfMorePointsThanItHolds",
-        replaced(written(".sdf"), "NumPoints = 64", "NumPoints = 4000000000"), {"face.csv: "}),
-    bad("SdfOfANegativeNumberOfPoints",
-        replaced(written(".sdf"), "NumPoints = 64", "NumPoints = -64"), {"face.csv: "}),
-    bad("SmdCutOff", half(written(".smd")), {"face.csv: "}),
-    bad("SmdWithAWrongChecksum", replaced(written(".smd"), "0.25", "0.75"),
-        {"ignore the checksum"}),
-    bad("PrfCutOff", half(written(".prf")), {"face.csv: "}),
-    bad("NistXmlCutOff", half(kNist), {"face.csv: "}),
-    bad("NistXmlEntityBomb",
+    bad_file("SdfCutOff", half(written(".sdf")), {"face.csv: "}),
+    bad_file("SdfOfMorePointsThanItHolds",
+             replaced(written(".sdf"), "NumPoints = 64", "NumPoints = 4000000000"), {"face.csv: "}),
+    bad_file("SdfOfANegativeNumberOfPoints",
+             replaced(written(".sdf"), "NumPoints = 64", "NumPoints = -64"), {"face.csv: "}),
+    bad_file("SmdCutOff", half(written(".smd")), {"face.csv: "}),
+    bad_file("SmdWithAWrongChecksum", replaced(written(".smd"), "0.25", "0.75"),
+             {"ignore the checksum"}),
+    bad_file("PrfCutOff", half(written(".prf")), {"face.csv: "}),
+    bad_file("NistXmlCutOff", half(kNist), {"face.csv: "}),
+    bad_file(
+        "NistXmlEntityBomb",
         replaced(kNist, "SYSTEM \"data.dtd\"", "[<!ENTITY b \"&c;&c;\"><!ENTITY c \"&d;&d;\">]"),
         {"a DOCTYPE that declares entities is not accepted"}),
-    bad("NistXmlOfMorePointsThanItHolds", replaced(kNist, ">3<", ">3000000000<"), {"face.csv: "}),
+    bad_file("NistXmlOfMorePointsThanItHolds", replaced(kNist, ">3<", ">3000000000<"),
+             {"face.csv: "}),
     {"LongLine", ProblemText{}.text(), std::string(4'000'000, '1'), 3, {"face.csv: "}},
     {"LongRow",
      ProblemText{}.text(),

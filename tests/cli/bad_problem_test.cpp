@@ -3,9 +3,9 @@
 namespace slideway {
 namespace {
 
-class Problem : public BadInputTest {};
+class BadProblem : public BadInputTest {};
 
-TEST_P(Problem, IsRefusedInOneLine) { expect_refused(); }
+TEST_P(BadProblem, IsRefusedInOneLine) { expect_refused(); }
 
 // The parts in order: machine, low_band, file, columns, units, profile_more, effect, more.
 BadInput bad(const std::string& name, const ProblemText& problem,
@@ -16,6 +16,13 @@ BadInput bad(const std::string& name, const ProblemText& problem,
 BadInput bad_text(const std::string& name, const std::string& text,
                   const std::vector<std::string>& fragments) {
   return {name, text, face_csv(64), 2, fragments};
+}
+
+// Of a file that does not state them.
+BadInput bad_units(const std::string& name, const std::string& units,
+                   const std::vector<std::string>& fragments) {
+  return {name, ProblemText{.columns = "", .units = units}.text(), "x,z\n0,1\n1,2\n2,1\n", 2,
+          fragments};
 }
 
 std::string body(const std::string& name, int lower) {
@@ -32,10 +39,10 @@ const BadInput kKeys[] = {
          "accepted: name file kind"}),
     bad_text("UnknownKeyOfTheFile", "titel = \"x\"\n" + kGood,
              {"problem.toml:1: titel: unknown key", "did you mean 'title'?", "accepted: title"}),
-    bad("PositionUnitMissing", {.units = "value_unit = \"um\"\n"},
-        {"problem.toml:5: profile.position_unit: missing", "accepted: m mm um nm inch s"}),
-    bad("ValueUnitMissing", {.units = "position_unit = \"mm\"\n"},
-        {"problem.toml:5: profile.value_unit: missing", "accepted: m mm um nm inch"}),
+    bad_units("PositionUnitMissing", "value_unit = \"um\"\n",
+              {"problem.toml:5: profile.position_unit: missing", "accepted: m mm um nm inch s"}),
+    bad_units("ValueUnitMissing", "position_unit = \"mm\"\n",
+              {"problem.toml:5: profile.value_unit: missing", "accepted: m mm um nm inch"}),
     bad("UnitThatIsNone", {.units = "position_unit = \"mm\"\nvalue_unit = \"micron\"\n"},
         {"problem.toml:11: profile.value_unit", "\"micron\"", "accepted: m mm um nm inch"}),
     bad("UnitOfASlopeForAHeight", {.units = "position_unit = \"mm\"\nvalue_unit = \"arcsec\"\n"},
@@ -50,6 +57,8 @@ const BadInput kKeys[] = {
         {"problem.toml:12: profile.center_mm: must be a finite number"}),
     bad("TableForAListOfTables", {.more = "[trace]\ncandidates = { a = 1 }\n"},
         {"problem.toml:15: trace.candidates: must be a list of texts", "accepted: straightness"}),
+    bad("TimeLimitThatIsOver", {.more = "[trace]\ntime_limit_s = 0\n"},
+        {"problem.toml:15: trace.time_limit_s: must be greater than 0, not 0"}),
     bad("NegativeFeed", {.profile_more = "feed_mm_per_min = -2\n"},
         {"problem.toml:12: profile.feed_mm_per_min: must be greater than 0, not -2"}),
     bad("WindowUpsideDown", {.profile_more = "window = [10.0, 2.0]\n"},
@@ -63,7 +72,7 @@ const BadInput kKeys[] = {
     bad("LevelOutOfRange", {.low_band = "[low_band]\nlevel = 31\n"},
         {"problem.toml:4: low_band.level", "from 0 to 30, not 31"}),
 };
-INSTANTIATE_TEST_SUITE_P(BadKey, Problem, testing::ValuesIn(kKeys),
+INSTANTIATE_TEST_SUITE_P(BadKey, BadProblem, testing::ValuesIn(kKeys),
                          [](const auto& input) { return input.param.name; });
 
 const BadInput kNames[] = {
@@ -87,7 +96,7 @@ const BadInput kNames[] = {
     bad("ProfileNameUsedTwice", {.effect = ProblemText{.machine = "", .low_band = ""}.text()},
         {"problem.toml:13: profile.name: 'face' is used twice", "accepted: a name of its own"}),
 };
-INSTANTIATE_TEST_SUITE_P(BadName, Problem, testing::ValuesIn(kNames),
+INSTANTIATE_TEST_SUITE_P(BadName, BadProblem, testing::ValuesIn(kNames),
                          [](const auto& input) { return input.param.name; });
 
 const BadInput kWholes[] = {
@@ -117,7 +126,7 @@ const BadInput kWholes[] = {
         {"problem.toml:12: profile.cut_radius_mm: 'face': 1, but", "r = 63",
          "give the outer radius"}),
 };
-INSTANTIATE_TEST_SUITE_P(BadWhole, Problem, testing::ValuesIn(kWholes),
+INSTANTIATE_TEST_SUITE_P(BadWhole, BadProblem, testing::ValuesIn(kWholes),
                          [](const auto& input) { return input.param.name; });
 
 const BadInput kSyntax[] = {
@@ -134,7 +143,7 @@ const BadInput kSyntax[] = {
     bad_text("Nested", "a = " + std::string(5000, '[') + "\n", {"problem.toml:1: no valid TOML"}),
     bad_text("Empty", "", {"problem.toml: profile: missing", "at least one [[profile]]"}),
 };
-INSTANTIATE_TEST_SUITE_P(BadSyntax, Problem, testing::ValuesIn(kSyntax),
+INSTANTIATE_TEST_SUITE_P(BadSyntax, BadProblem, testing::ValuesIn(kSyntax),
                          [](const auto& input) { return input.param.name; });
 
 class ProblemPath : public ProgramTest {};
@@ -176,10 +185,10 @@ TEST_F(ProblemPath, TakesTheDataDirectoryFromOptionBeforeVariable) {
 }  // namespace
 
 std::vector<BadInputs> bad_problems() {
-  return {{"BadKey/Problem", kKeys},
-          {"BadName/Problem", kNames},
-          {"BadWhole/Problem", kWholes},
-          {"BadSyntax/Problem", kSyntax}};
+  return {{"BadKey/BadProblem", kKeys},
+          {"BadName/BadProblem", kNames},
+          {"BadWhole/BadProblem", kWholes},
+          {"BadSyntax/BadProblem", kSyntax}};
 }
 
 }  // namespace slideway

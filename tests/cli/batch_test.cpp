@@ -9,7 +9,7 @@
 #include "cli/bad_input.hpp"
 #include "slideway/base/sanitizer.hpp"
 
-namespace slideway {
+namespace slideway::batch_test {
 namespace {
 
 using testing::Each;
@@ -60,7 +60,7 @@ class Batch : public ProgramTest {
     return nullptr;
   }
 
-  /// The report of identify, without what is there for its page alone.
+  /// The report of identify, without curves and without what was tried and not taken.
   [[nodiscard]] std::string alone() const {
     Json report = Json::parse(contents(path("alone.json")));
     for (const char* key : {"model", "setups", "what_if"}) report[key] = Json::array();
@@ -69,6 +69,13 @@ class Batch : public ProgramTest {
       report[model]["uncertainty_budget"] = Json::array();
       if (report[model]["straightness"].is_null()) continue;
       for (Json& series : report[model]["straightness"]["curve"]) series = Json::array();
+    }
+    for (Json& entry : report["ranking"])
+      for (Json& series : entry["running"]) series = Json::array();
+    if (Json& trace = report["trace"]; !trace.is_null()) {
+      trace["refused"] = Json::array();
+      for (Json& round : trace["rounds"]) round["candidates"] = Json::array();
+      for (Json& limit : trace["detection_limits"]) limit["by_shape"] = Json::array();
     }
     return report.dump();
   }
@@ -310,4 +317,4 @@ INSTANTIATE_TEST_SUITE_P(Mpi, BatchRanks, testing::Values(1, 2, 4));
 #endif
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::batch_test

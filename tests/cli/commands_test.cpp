@@ -10,7 +10,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::vector<std::string> kCommands{"identify", "rank",      "fit",
+const std::vector<std::string> kCommands{"identify", "rank",      "fit",    "plan",
                                          "simulate", "decompose", "effects"};
 
 class Program : public ProgramTest {};
@@ -47,6 +47,7 @@ TEST_F(Program, HelpOfACommandListsTheOptionsOfTheInterface) {
       {"identify", {"PROBLEM", "--json FILE", "--quiet", "--data DIR", "--strict", "--no-trace"}},
       {"rank", {"PROBLEM", "FILE.csv", "--signal COL", "--candidates COL...", "--json", "--quiet"}},
       {"fit", {"PROBLEM", "--json FILE", "--quiet", "--data DIR", "--strict"}},
+      {"plan", {"PROBLEM", "--json FILE", "--html FILE", "--out DIR", "--data DIR", "--quiet"}},
       {"simulate", {"PROBLEM", "--out DIR", "--seed N", "--data DIR"}},
       {"decompose", {"FILE", "--wavelet", "--level", "--boundary", "--out OUT.csv"}},
       {"effects", {"[NAME|FILE.toml]", "--problem FILE", "--json FILE", "--quiet"}}};
@@ -75,11 +76,10 @@ TEST_P(Usage, IsRefusedInOneLine) {
 }
 
 const BadUsage kBadUsages[] = {
-    {"NoCommand", {}, {"no command", "slideway COMMAND [options] INPUT", "--help"}},
-    {"EmptyCommand", {""}, {"unknown command ''", "accepted: identify"}},
+    {"EmptyCommand", {""}, {"unknown command ''", "accepted: demo"}},
     {"UnknownCommand",
      {"identfy", "problem.toml"},
-     {"unknown command 'identfy'", "did you mean 'identify'?", "accepted: identify rank"}},
+     {"unknown command 'identfy'", "did you mean 'identify'?", "accepted: demo init"}},
     {"UnknownOptionOfTheProgram",
      {"--verson"},
      {"unknown option '--verson'", "did you mean '--version'?", "accepted:"}},
@@ -96,6 +96,9 @@ const BadUsage kBadUsages[] = {
     {"OptionOfAnotherCommand",
      {"rank", "problem.toml", "--strict"},
      {"rank: unknown option '--strict'", "accepted:"}},
+    {"TimeLimitThatIsNoTime",
+     {"identify", "problem.toml", "--time-limit", "-1"},
+     {"identify: --time-limit: accepted: seconds above 0"}},
     {"MissingOptionValue",
      {"identify", "problem.toml", "--json"},
      {"identify:", "'--json' is missing", "usage: slideway identify PROBLEM"}},

@@ -6,7 +6,7 @@
 #include "slideway/base/units.hpp"
 #include "slideway/format/format.hpp"
 
-namespace slideway {
+namespace slideway::convert_test {
 namespace {
 
 using testing::HasSubstr;
@@ -71,4 +71,4 @@ TEST_F(Convert, RefusesInOneLineAndWritesNothing) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::convert_test

@@ -6,7 +6,7 @@
 #include "cli/bad_input.hpp"
 #include "slideway/format/table.hpp"
 
-namespace slideway {
+namespace slideway::decompose_test {
 namespace {
 
 using testing::HasSubstr;
@@ -103,4 +103,4 @@ TEST_F(Decompose, RefusesBadDataInOneLine) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::decompose_test

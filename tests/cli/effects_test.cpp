@@ -5,7 +5,7 @@
 #include "cli/run_program.hpp"
 #include "slideway/report/layout.hpp"
 
-namespace slideway {
+namespace slideway::effects_test {
 namespace {
 
 using nlohmann::json;
@@ -37,7 +37,10 @@ const std::map<std::string, std::string> kEffects{{"straightness", "x"},
                                                   {"local_form", "x"},
                                                   {"centring", "X"},
                                                   {"chord", "r"},
-                                                  {"hysteresis", "x"}};
+                                                  {"hysteresis", "x"},
+                                                  {"zero_drift", "t_read"},
+                                                  {"instrument_zero", "X"},
+                                                  {"artefact_form", "x"}};
 
 class Effects : public ProgramTest {};
 
@@ -152,4 +155,4 @@ parameters = [{ name = "a", unit = "um/s" }]
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::effects_test

@@ -2,7 +2,7 @@
 #include "problems/program.hpp"
 #include "slideway/base/text.hpp"
 
-namespace slideway {
+namespace slideway::faults_document_test {
 namespace {
 
 /// "MarkOfAMissingValue" as "mark of a missing value".
@@ -96,4 +96,4 @@ TEST(Documents, FaultsAreWhatTheProgramSays) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::faults_document_test

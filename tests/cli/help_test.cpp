@@ -7,7 +7,7 @@
 #include "slideway/base/file.hpp"
 #include "slideway/report/layout.hpp"
 
-namespace slideway {
+namespace slideway::help_test {
 namespace {
 
 using testing::Contains;
@@ -81,6 +81,8 @@ const std::string kGood = kProfile + kEffect;
 // A problem with a key too many in each section, by the section's heading in the help.
 const std::map<std::string, std::string> kTooMany{
     {"", "zzz = 1\n" + kGood},
+    {"[about]", "[about]\nzzz = 1\n" + kGood},
+    {"[tolerance]", "[tolerance]\nzzz = 1\n" + kGood},
     {"[machine]", "[machine]\nzzz = 1\n" + kGood},
     {"[[machine.body]]", "[[machine.body]]\nzzz = 1\n" + kGood},
     {"[low_band]", "[low_band]\nzzz = 1\n" + kGood},
@@ -93,6 +95,7 @@ const std::map<std::string, std::string> kTooMany{
     {"priors = [{ ... }]", kGood + "priors = [{ zzz = 1 }]\n"},
     {"[runout]", kGood + "[runout]\nzzz = 1\n"},
     {"[trace]", kGood + "[trace]\nzzz = 1\n"},
+    {"[[plan.cut]]", kGood + "[[plan.cut]]\nname = \"b\"\nzzz = 1\n"},
     {"[truth]", kGood + "[truth]\nzzz = 1\n"}};
 
 TEST_F(Help, ListsTheKeysOfTheProblemFileThatTheReaderAccepts) {
@@ -103,13 +106,18 @@ TEST_F(Help, ListsTheKeysOfTheProblemFileThatTheReaderAccepts) {
     if (line.starts_with("    ") && line[4] != ' ')
       documented[section].insert(line.substr(4, line.find(' ', 4) - 4));
   }
-  for (const char* table :
-       {"machine", "low_band", "profile", "channel", "effect", "runout", "trace", "truth"})
+  for (const char* table : {"about", "tolerance", "machine", "low_band", "profile", "channel",
+                            "effect", "runout", "trace", "plan", "truth"})
     documented[""].insert(table);
+  const std::set<std::string> of_a_file{
+      "file",      "delimiter", "decimal", "encoding", "header_lines", "line",     "mask",
+      "leave_out", "from_mm",   "to_mm",   "role",     "time_column",  "time_unit"};
   const std::set<std::string> of_any = documented["[[effect]]"];
   for (const char* kind : {"formula", "channel"})
     documented[std::string("[[effect]] name = \"") + kind + "\""].insert(of_any.begin(),
                                                                          of_any.end());
+  for (const std::string& key : documented["[[profile]]"])
+    if (!of_a_file.contains(key)) documented["[[plan.cut]]"].insert(key);
   for (const auto& [heading, problem] : kTooMany) {
     write_file(path("problem.toml"), problem);
     const std::string why = run({"fit", "problem.toml"}).err;
@@ -138,7 +146,7 @@ TEST_F(Help, MakesManualPagesOfTheSameWords) {
     // A line that begins with a period or an apostrophe is a request.
     for (const std::string& line : lines_of(page)) {
       if (!line.empty() && (line[0] == '.' || line[0] == '\'')) {
-        EXPECT_THAT(line, testing::MatchesRegex("\\.(TH|SH|TP|B|BR|br) ?.*")) << command;
+        EXPECT_THAT(line, testing::MatchesRegex("\\.(TH|SH|TP|B|BR|br|ad) ?.*")) << command;
       }
     }
   }
@@ -181,4 +189,4 @@ TEST_F(Help, CompletionScriptsAreGoodShell) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::help_test

@@ -2,7 +2,7 @@
 
 #include "cli/run_program.hpp"
 
-namespace slideway {
+namespace slideway::html_test {
 namespace {
 
 using testing::HasSubstr;
@@ -56,4 +56,4 @@ TEST_F(Html, WhatIsNoReportIsRefused) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::html_test

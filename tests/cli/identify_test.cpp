@@ -7,7 +7,7 @@
 #include "cli/bad_input.hpp"
 #include "slideway/report/layout.hpp"
 
-namespace slideway {
+namespace slideway::identify_test {
 namespace {
 
 using nlohmann::json;
@@ -213,4 +213,4 @@ TEST_F(Fit, PrintsText) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::identify_test

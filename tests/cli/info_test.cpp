@@ -7,7 +7,7 @@
 #include "cli/bad_input.hpp"
 #include "slideway/base/file.hpp"
 
-namespace slideway {
+namespace slideway::info_test {
 namespace {
 
 using nlohmann::json;
@@ -191,4 +191,4 @@ TEST_F(Info, ClosesTheLinesOfAProblemWithoutAnEffect) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::info_test

@@ -4,7 +4,7 @@
 
 #include "cli/bad_input.hpp"
 
-namespace slideway {
+namespace slideway::interrupted_test {
 namespace {
 
 using testing::IsSubsetOf;
@@ -78,4 +78,4 @@ INSTANTIATE_TEST_SUITE_P(Signal, Interrupted, testing::Values(SIGINT, SIGTERM),
                          });
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::interrupted_test

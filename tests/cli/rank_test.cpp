@@ -4,7 +4,7 @@
 
 #include "cli/bad_input.hpp"
 
-namespace slideway {
+namespace slideway::rank_test {
 namespace {
 
 using nlohmann::json;
@@ -127,4 +127,4 @@ TEST_F(Rank, RefusesBadDataInOneLine) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::rank_test

@@ -7,7 +7,7 @@
 #include "cli/run_program.hpp"
 #include "slideway/base/file.hpp"
 
-namespace slideway {
+namespace slideway::results_test {
 namespace {
 
 using nlohmann::json;
@@ -33,6 +33,24 @@ TEST_F(Results, ExportWritesStraightnessOverTheMeasuredTravel) {
   EXPECT_THAT(lines.back(), HasSubstr("\t0.000000000000"));
   EXPECT_THAT(done.out, HasSubstr("\nX\tEZX\n"));
   EXPECT_THAT(done.out, HasSubstr("// Values are errors"));
+}
+
+TEST_F(Results, ExportWritesACalibrationCertificateOnceItsFactsAreThere) {
+  const ProgramRun bare = run({"export", "way.json", "--to", "dcc"});
+  EXPECT_TRUE(is_refused(bare, 3));
+  EXPECT_THAT(bare.err, HasSubstr("[about] lacks certificate, country, date, "));
+  json report = json::parse(contents(path("way.json")));
+  for (const char* key : {"certificate", "machine", "serial", "manufacturer", "responsible"})
+    report["about"][key] = "given";
+  report["about"].update({{"country", "DE"},
+                          {"date", "2026-11-23"},
+                          {"laboratory", "Test room, Aachen"},
+                          {"customer", "Turned Parts, Bonn"}});
+  write_file(path("whole.json"), report.dump());
+  const ProgramRun done = run({"export", "whole.json", "--to", "dcc", "--out", "way.xml"});
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_THAT(contents(path("way.xml")), HasSubstr("<si:unit>\\micro\\metre</si:unit>"));
+  EXPECT_TRUE(is_refused(run({"export", "whole.json", "--to", "dcc", "--step", "1"}), 2));
 }
 
 TEST_F(Results, ExportWritesFilesAndKeepsItsInput) {
@@ -87,4 +105,4 @@ TEST_F(Results, DiffRefusesInOneLine) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::results_test

@@ -4,7 +4,7 @@
 
 #include "cli/bad_input.hpp"
 
-namespace slideway {
+namespace slideway::simulate_test {
 namespace {
 
 using testing::ElementsAre;
@@ -144,4 +144,4 @@ TEST_F(Simulate, IntoAFileFails) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::simulate_test

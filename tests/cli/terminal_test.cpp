@@ -10,7 +10,7 @@
 
 #include "cli/bad_input.hpp"
 
-namespace slideway {
+namespace slideway::terminal_test {
 namespace {
 
 using testing::ContainsRegex;
@@ -125,4 +125,4 @@ TEST_F(OnTerminal, BatchSaysHowMuchIsDoneAndLeft) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::terminal_test

@@ -5,7 +5,7 @@
 
 #include "effects/effect_cases.hpp"
 
-namespace slideway {
+namespace slideway::carriage_test {
 namespace {
 
 using namespace testing_support;
@@ -181,4 +181,4 @@ TEST(GantrySag, IsNothingOutsideTheSpan) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::carriage_test

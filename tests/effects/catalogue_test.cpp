@@ -5,7 +5,7 @@
 #include "effects/effect_cases.hpp"
 #include "slideway/base/error.hpp"
 
-namespace slideway {
+namespace slideway::catalogue_test {
 namespace {
 
 using namespace testing_support;
@@ -36,7 +36,8 @@ TEST(Catalogue, HoldsTheEffectsOfTheInterface) {
                           "slide_periodic", "gantry_sag", "revolution_periodic", "spindle_runout",
                           "feed_marks", "step", "centre_height", "speed_effect", "edge_roll_off",
                           "cup", "traverse_datum", "centre_step", "traverse_periodic",
-                          "chucking_lobes", "local_form", "centring", "chord", "hysteresis"));
+                          "chucking_lobes", "local_form", "centring", "chord", "hysteresis",
+                          "zero_drift", "instrument_zero", "artefact_form"));
 }
 
 TEST(Catalogue, TellsTheErrorsOfTheCarriagesByTermAndParameter) {
@@ -128,4 +129,4 @@ TEST(Catalogue, RefusesBodiesThatDoNotCarryTheToolAlongTheAxis) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::catalogue_test

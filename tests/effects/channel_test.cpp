@@ -12,7 +12,7 @@
 #include "slideway/base/random.hpp"
 #include "slideway/effects/contract.hpp"
 
-namespace slideway {
+namespace slideway::channel_test {
 namespace {
 
 using namespace testing_support;
@@ -87,6 +87,25 @@ TEST(ChannelEffect, CanBeCountedFromTheStartOfTheCut) {
   EXPECT_NEAR(y[26], 0.01 * time_at(face, 26), 1e-11);
 }
 
+// A level in a room that warms: stations read from the far end, slopes in µrad for each degree.
+TEST(ChannelEffect, OnTheReadingTimeChangesASlopeToo) {
+  Channel room = log_of([](double t) { return 20.0 + 0.01 * t; }, 1100.0);
+  room.clock = IndependentVariable::reading_time;
+  for (const Case& each : {all_cases()[3], all_cases()[5]}) {
+    const double unit = each.setup.quantity == Quantity::height ? 1.0 : 1e-3;
+    const Eigen::VectorXd y = column(room, {.name = "T"}, each);
+    for (Eigen::Index i = 1; i + 1 < y.size(); ++i) {
+      // The means reach over the spacing of the stations; the pace is uneven by 5 s in 50.
+      const double t = each.setup.reading_times->at(each.positions[static_cast<std::size_t>(i)]);
+      EXPECT_NEAR(y[i], unit * (20.0 + 0.01 * t), unit * 1e-9);
+    }
+  }
+  room.at.resize(50);
+  room.values.resize(50);
+  EXPECT_THAT(channel_effect(room, {.name = "T"})(lathe(), kTravel)->lacking(all_cases()[3].setup),
+              ElementsAre(HasSubstr("from 720 to 1000 s")));
+}
+
 TEST(ChannelEffect, TakesUnequalSpacing) {
   const Case face = all_cases()[0];
   Channel log{.name = "T", .at = {0.0, 7.0, 40.0, 41.5, 97.0, 200.0, 222.0, 300.0}};
@@ -154,10 +173,12 @@ TEST(ChannelEffect, RefusesWhatIsNoLog) {
   };
   EXPECT_THROW(made({0.0, 1.0}, {1.0, 2.0}), UsageError);
   EXPECT_THROW(made({0.0, 2.0, 1.0}, {1.0, 2.0, 3.0}), UsageError);
+  EXPECT_THROW(made({0.0, 1.0, 1e300}, {1.0, 2.0, 3.0}), UsageError);
+  EXPECT_THROW(made({0.0, 1.0, 2.0}, {1.0, -1e300, 3.0}), UsageError);
   EXPECT_THROW((void)channel_effect(log_of([](double t) { return t; }),
                                     {.name = "T", .free_lag = true, .free_tau = true}),
                UsageError);
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::channel_test

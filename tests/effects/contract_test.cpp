@@ -9,7 +9,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/effects/contract.hpp"
 
-namespace slideway {
+namespace slideway::contract_test {
 namespace {
 
 using namespace testing_support;
@@ -63,8 +63,8 @@ class EffectContract : public ::testing::TestWithParam<std::string> {
 TEST_P(EffectContract, IsDescribedInFull) {
   const Description& d = effect_->description();
   EXPECT_EQ(d.name, GetParam());
-  for (const std::string& text : {d.standard_name, d.formula, d.source, d.cause, d.typical,
-                                  d.confounded_with, d.separated_by})
+  for (const std::string& text : {d.plain_name, d.standard_name, d.formula, d.source, d.cause,
+                                  d.typical, d.confounded_with, d.separated_by})
     EXPECT_FALSE(text.empty());
 }
 
@@ -340,4 +340,4 @@ INSTANTIATE_TEST_SUITE_P(Catalogue, EffectContract, ::testing::ValuesIn(effect_n
                          [](const auto& entry) { return entry.param; });
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::contract_test

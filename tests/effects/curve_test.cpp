@@ -7,7 +7,7 @@
 #include "effects/effect_cases.hpp"
 #include "slideway/base/error.hpp"
 
-namespace slideway {
+namespace slideway::curve_test {
 namespace {
 
 using namespace testing_support;  // NOLINT(google-build-using-namespace)
@@ -104,4 +104,4 @@ TEST(Curve, TakesNoDegreeAndAPolynomialNoResolution) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::curve_test

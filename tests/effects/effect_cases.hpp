@@ -26,6 +26,13 @@ inline Setup setup_of(Kind kind, Quantity quantity, double first, double last) {
   setup.cut_direction = CutDirection::inward;
   if (kind == Kind::face) setup.cut_radius_mm = 10.0;
   setup.traverse_mm_per_s = 0.5;
+  // Read from the far end, faster and faster, on a clock that ran before.
+  ReadingTimes times;
+  for (int i = 0; i <= 4; ++i) {
+    times.positions_mm.push_back(first + (last - first) * i / 4.0);
+    times.times_s.push_back(1000.0 - 50.0 * i - 5.0 * i * i);
+  }
+  setup.reading_times = std::make_shared<const ReadingTimes>(std::move(times));
   setup.first_mm = first;
   setup.last_mm = last;
   return setup;
@@ -55,6 +62,9 @@ inline std::vector<Case> all_cases() {
   cases.push_back(cases.back());
   cases.back().name = "slide slope over a base";
   cases.back().setup.base_mm = 10.0;
+  cases.push_back(cases.back());
+  cases.back().name = "slide slope over a base, reversed";
+  cases.back().setup.reversed = true;
   return cases;
 }
 
@@ -71,7 +81,8 @@ inline constexpr TravelRange kTravel{
 inline std::unique_ptr<Effect> make(const std::string& name, const TravelRange& range = kTravel,
                                     Lever lever = Lever::paper, int degree = 5) {
   EffectOptions options;
-  if (name == "straightness" || name == "vertical_straightness") options.degree = degree;
+  if (name == "straightness" || name == "vertical_straightness" || name == "artefact_form")
+    options.degree = degree;
   if (name == "gantry_sag") options.span_mm = 700.0;
   return make_effect(name, options, lathe(lever), range);
 }

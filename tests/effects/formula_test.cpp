@@ -11,7 +11,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/base/parallel.hpp"
 
-namespace slideway {
+namespace slideway::formula_test {
 namespace {
 
 using namespace testing_support;
@@ -100,6 +100,7 @@ TEST(Formula, HasEveryVariableInItsUnit) {
                                                   {"theta", kPi * 7.0 / 6.0},
                                                   {"t", kTime},
                                                   {"m", 2.5 / 0.5},
+                                                  {"t_read", 972.5},
                                                   {"k", kTurns},
                                                   {"s", kDistance},
                                                   {"R", 10.0},
@@ -268,4 +269,4 @@ TEST(Formula, IsSearchedAsFinelyAsItsColumnsChange) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::formula_test

@@ -6,7 +6,7 @@
 
 #include "effects/heights.hpp"
 
-namespace slideway {
+namespace slideway::placing_terms_test {
 namespace {
 
 using namespace testing_support;
@@ -133,5 +133,17 @@ TEST(Hysteresis, ChangesSignWithTheDirection) {
   EXPECT_EQ(make("hysteresis")->lacking_together({&inward, &inward}).size(), 1U);
 }
 
+TEST(Hysteresis, NeedsTwoFacesOfEachDirectionAndOneReading) {
+  Case inward = face({0.0, 5.0, 10.0}), outward = inward;
+  inward.setup.cut_direction = CutDirection::inward;
+  outward.setup.cut_direction = CutDirection::outward;
+  const slideway::Setup &in = inward.setup, &out = outward.setup;
+  const auto effect = make("hysteresis");
+  EXPECT_EQ(effect->lacking_together({&in, &in, &out}).size(), 1U);
+  EXPECT_TRUE(effect->lacking_together({&in, &out, &in, &out}).empty());
+  inward.setup.kind = outward.setup.kind = Kind::slide;
+  EXPECT_TRUE(effect->lacking_together({&in, &out}).empty());
+}
+
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::placing_terms_test

@@ -5,7 +5,7 @@
 
 #include "effects/effect_cases.hpp"
 
-namespace slideway {
+namespace slideway::readings_test {
 namespace {
 
 using namespace testing_support;
@@ -72,6 +72,56 @@ TEST(SlideReadings, BaseAveragesAWaveByTheSinc) {
   EXPECT_LT((half - 2.0 / kPi * local).norm(), 1e-13 * local.norm());
 }
 
+// 0.3 a minute from the first reading of all on, be it µm or µrad; turned over, the other way.
+TEST(InstrumentReadings, ZeroDriftsWithTheTimeOfTheReading) {
+  TravelRange session = kTravel;
+  session.read_from_s = 700.0;
+  const auto effect = make("zero_drift", session);
+  const Eigen::VectorXd rate = Eigen::VectorXd::Constant(1, 0.3);
+  for (Case each : {slide(Quantity::height), slide(Quantity::slope, 100.0)}) {
+    const double unit = each.setup.quantity == Quantity::height ? 1e-3 : 1e-6;
+    each.positions = {0.0, 300.0, 600.0};  // read at 1000, 880 and 720 s
+    const Eigen::VectorXd z = signal(*effect, each, rate);
+    each.setup.reversed = true;
+    const Eigen::VectorXd turned = signal(*effect, each, rate);
+    for (const auto& [i, minutes] : {std::pair(0, 5.0), std::pair(1, 3.0), std::pair(2, 1.0 / 3)})
+      EXPECT_NEAR(z[i], unit * 0.3 * minutes, 1e-15 * unit);
+    EXPECT_EQ(turned, -z);
+  }
+}
+
+// P_2 = (3 u² - 1) / 2 and P_3 = (5 u³ - 3 u) / 2 of u = x / 300 - 1.
+TEST(InstrumentReadings, FormOfAnArtefactIsReadWithTheSignOfItsPosition) {
+  const auto effect = make("artefact_form", kTravel, Lever::paper, 3);
+  Eigen::VectorXd values(2);
+  values << 0.5, -0.2;
+  const auto form = [](double x) {
+    const double u = x / 300.0 - 1.0;
+    return 1e-3 * (0.25 * (3.0 * u * u - 1.0) - 0.1 * (5.0 * u * u * u - 3.0 * u));
+  };
+  Case height = slide(Quantity::height);
+  const Case chord = slide(Quantity::slope, 100.0);
+  const Eigen::VectorXd z = signal(*effect, height, values), m = signal(*effect, chord, values);
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    const double x = height.positions[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(z[i], form(x), 1e-17);
+    EXPECT_NEAR(m[i], (form(x + 50.0) - form(x - 50.0)) / 100.0, 1e-17);
+  }
+  height.setup.reversed = true;
+  EXPECT_EQ(signal(*effect, height, values), -z);
+  const slideway::Setup turned = height.setup, as_it_was = chord.setup;
+  EXPECT_TRUE(effect->lacking_together({&turned, &as_it_was}).empty());
+  EXPECT_EQ(effect->lacking_together({&turned, &turned}).size(), 1U);
+}
+
+TEST(InstrumentReadings, ZeroIsTheSameInAllLinesButATurnedOne) {
+  Case line = slide(Quantity::slope, 100.0);
+  const Eigen::VectorXd zero = Eigen::VectorXd::Constant(1, 20.0);
+  EXPECT_TRUE(signal(*make("instrument_zero"), line, zero).isConstant(20e-6, 1e-15));
+  line.setup.reversed = true;
+  EXPECT_TRUE(signal(*make("instrument_zero"), line, zero).isConstant(-20e-6, 1e-15));
+}
+
 TEST(SlideReadings, SlopesSeeNoDriftOfHeight) {
   const slideway::Setup slope = slide(Quantity::slope).setup;
   for (const char* name :
@@ -83,4 +133,4 @@ TEST(SlideReadings, SlopesSeeNoDriftOfHeight) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::readings_test

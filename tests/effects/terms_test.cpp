@@ -6,7 +6,7 @@
 
 #include "effects/heights.hpp"
 
-namespace slideway {
+namespace slideway::terms_test {
 namespace {
 
 using namespace testing_support;
@@ -248,4 +248,4 @@ TEST(SearchRange, StaysWithinWhatTheProfileShows) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::terms_test

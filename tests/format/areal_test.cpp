@@ -6,7 +6,7 @@
 
 #include "slideway/base/error.hpp"
 
-namespace slideway {
+namespace slideway::areal_test {
 namespace {
 
 using testing::DoubleNear;
@@ -108,4 +108,4 @@ TEST(GridOfPoints, FindsRows) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::areal_test

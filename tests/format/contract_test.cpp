@@ -7,7 +7,7 @@
 #include "slideway/base/units.hpp"
 #include "slideway/format/format.hpp"
 
-namespace slideway {
+namespace slideway::contract_test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -155,4 +155,4 @@ TEST(Formats, AreWrittenByEndingInCapitalsOrNot) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::contract_test

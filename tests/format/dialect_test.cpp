@@ -7,7 +7,7 @@
 #include "slideway/base/text.hpp"
 #include "slideway/format/table.hpp"
 
-namespace slideway {
+namespace slideway::dialect_test {
 namespace {
 
 using testing::DoubleEq;
@@ -200,4 +200,4 @@ TEST(Dialect, DoesAsItIsAsked) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::dialect_test

@@ -12,7 +12,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/format/table.hpp"
 
-namespace slideway {
+namespace slideway::large_table_test {
 namespace {
 
 constexpr std::size_t kRows = 300'000;  // several chunks of 256 KiB
@@ -152,4 +152,4 @@ TEST(LargeTable, NamesTheLineOfTheFirstFault) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::large_table_test

@@ -8,7 +8,7 @@
 #include "format/hostile.hpp"
 #include "slideway/base/text.hpp"
 
-namespace slideway {
+namespace slideway::nist_xml_test {
 namespace {
 
 using testing::ElementsAre;
@@ -141,4 +141,4 @@ TEST(NistXml, RefusesHostileFiles) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::nist_xml_test

@@ -4,7 +4,7 @@
 
 #include "format/hostile.hpp"
 
-namespace slideway {
+namespace slideway::prf_test {
 namespace {
 
 using testing::DoubleEq;
@@ -83,4 +83,4 @@ TEST(Prf, RefusesHostileFiles) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::prf_test

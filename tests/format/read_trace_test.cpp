@@ -6,7 +6,7 @@
 #include "slideway/format/format.hpp"
 #include "support/measured_data.hpp"
 
-namespace slideway {
+namespace slideway::read_trace_test {
 namespace {
 
 using testing::ElementsAre;
@@ -89,4 +89,4 @@ TEST(TextSamples, AreReadAsTheirInstrumentsWroteThem) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::read_trace_test

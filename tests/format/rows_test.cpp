@@ -4,7 +4,7 @@
 
 #include "slideway/base/error.hpp"
 
-namespace slideway {
+namespace slideway::rows_test {
 namespace {
 
 using testing::ElementsAre;
@@ -60,4 +60,4 @@ TEST(Rows, AreRefusedByLine) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::rows_test

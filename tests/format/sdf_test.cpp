@@ -8,7 +8,7 @@
 
 #include "format/hostile.hpp"
 
-namespace slideway {
+namespace slideway::sdf_test {
 namespace {
 
 using testing::DoubleEq;
@@ -173,4 +173,4 @@ TEST(Sdf, RefusesHostileFiles) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::sdf_test

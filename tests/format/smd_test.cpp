@@ -4,7 +4,7 @@
 
 #include "format/hostile.hpp"
 
-namespace slideway {
+namespace slideway::smd_test {
 namespace {
 
 using namespace std::string_literals;
@@ -97,4 +97,4 @@ TEST(Smd, RefusesHostileFiles) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::smd_test

@@ -14,7 +14,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 
-namespace slideway {
+namespace slideway::table_test {
 namespace {
 
 using testing::ElementsAre;
@@ -224,4 +224,4 @@ TEST_F(ReadTable, RoundsEveryValueAsStrtodDoes) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::table_test

@@ -11,7 +11,7 @@
 #include "format/x3p_checksum.hpp"
 #include "format/zip_archive.hpp"
 
-namespace slideway {
+namespace slideway::x3p_test {
 namespace {
 
 using testing::DoubleEq;
@@ -368,4 +368,4 @@ TEST(X3p, RefusesTricksWithNames) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::x3p_test

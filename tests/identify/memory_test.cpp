@@ -116,5 +116,39 @@ INSTANTIATE_TEST_SUITE_P(
                .steep = true}),
     [](const auto& test) { return test.param.name; });
 
+// Two faces, each with a texture of first order, each read twice with as much noise of the
+// instrument: four traces know the way as two of half the noise would.
+TEST(Repeats, OfOneTextureSayNoMoreOfTheWayThanOneOfThem) {
+  const Problem problem = cases::problem(Lever::paper, 0, {cases::effect("straightness", 4)});
+  const Memory texture{.name = "texture", .first_order = 1.0, .decay = 0.9};
+  int held = 0, counted = 0;
+  for (int run = 0; run < kTraces; ++run) {
+    RandomStream random(static_cast<std::uint64_t>(run), "repeats of a texture");
+    std::vector<Profile> profiles;
+    for (const char* surface : {"a", "b"}) {
+      const Profile common = way(surface, texture, random);
+      for (const char* again : {"1", "2"}) {
+        Profile& read = profiles.emplace_back(
+            cases::profile(common.name + again, Kind::face, common.positions, common.values));
+        read.surface = surface;
+        for (double& value : read.values) value += 0.5 * kMicrometre * random.normal();
+      }
+    }
+    const Model model = build_model(problem, profiles);
+    const Solution fitted = fit(model);
+    for (const Eigen::Index degree : {2, 3, 4}) {
+      const Spread spread = fitted.uncertainty.of(fitted.parameters.jacobian.row(degree));
+      const boost::math::students_t student(spread.degrees_of_freedom.value_or(1e6));
+      const double k = quantile(complement(student, 0.025));
+      held += std::abs(fitted.parameters.values[degree]) <= k * spread.standard_uncertainty ? 1 : 0;
+      ++counted;
+    }
+  }
+  RecordProperty("held", held);
+  // Less three standard errors of 120 independent runs. Four independent traces would claim a
+  // standard uncertainty smaller by a factor of 1.4 and hold in five cases of six.
+  EXPECT_GE(held, counted * (0.93 - 3.0 * std::sqrt(0.93 * 0.07 / kTraces)));
+}
+
 }  // namespace
 }  // namespace slideway

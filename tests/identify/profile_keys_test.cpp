@@ -32,6 +32,48 @@ TEST_F(ProblemFile, GivesAProfileALowBandOfItsOwn) {
   EXPECT_EQ(own.boundary, Boundary::periodic);
 }
 
+TEST_F(ProblemFile, KnowsWhenStationsWereReadAndWhichWayRound) {
+  const ProfileEntry entry =
+      read(kMachine +
+           profile("kind = \"slide\"\ntime_column = \"t_min\"\ntime_unit = \"min\"\n"
+                   "reversed = true\n") +
+           kEffect)
+          .profiles[0];
+  EXPECT_EQ(entry.source.request.time_column, "t_min");
+  EXPECT_EQ(entry.source.time_unit, "min");
+  EXPECT_TRUE(entry.profile.setup.reversed);
+  EXPECT_FALSE(read(kMachine + profile() + kEffect).profiles[0].profile.setup.reversed);
+  EXPECT_THAT(profile_refusal("time_column = 3"),
+              HasSubstr(": profile.time_unit: missing; accepted: s min h"));
+  EXPECT_THAT(profile_refusal("time_column = 3\ntime_unit = \"ms\""),
+              HasSubstr(":10: profile.time_unit: \"ms\""));
+  EXPECT_THAT(profile_refusal("time_unit = \"s\""),
+              HasSubstr(": profile.time_column: missing; accepted: a column"));
+  EXPECT_THAT(profile_refusal("kind = \"slide\"\nreversed = 1"),
+              HasSubstr(":10: profile.reversed: must be true or false"));
+  EXPECT_THAT(profile_refusal("reversed = true"),
+              HasSubstr(":9: profile.reversed: belongs to kind = \"slide\" only"));
+}
+
+// Two instruments drift each in its own way; what is read by one has one drift.
+TEST_F(ProblemFile, GivesEachInstrumentItsOwnZero) {
+  const auto with = [&](const std::string& scope) {
+    std::vector<std::string> names;
+    const std::string level = "kind = \"slide\"\ninstrument = \"level\"\n";
+    for (const DeclaredEffect& each :
+         read(kMachine + profile(level) + profile(level, "b") + profile("kind = \"slide\"\n", "c") +
+              "[[effect]]\nname = \"zero_drift\"\n" + scope)
+             .effects)
+      names.push_back(term_name(each.name, each.options.profiles));
+    return names;
+  };
+  EXPECT_THAT(with(""), ElementsAre("zero_drift[feed2,b]", "zero_drift[c]"));
+  EXPECT_THAT(with("profiles = [\"feed2\", \"b\"]"), ElementsAre("zero_drift[feed2,b]"));
+  EXPECT_THAT(with("scope = \"all\""), ElementsAre("zero_drift"));
+  EXPECT_THAT(with("scope = \"profile\""),
+              ElementsAre("zero_drift[feed2]", "zero_drift[b]", "zero_drift[c]"));
+}
+
 TEST_F(ProblemFile, PutsALevelIntoAProfileByItsKey) {
   const Problem problem = read_problem(write(kMachine + profile() + kEffect), {},
                                        std::vector<Override>{{"profile.feed2.level", "2"}});
@@ -133,7 +175,7 @@ TEST_F(ProblemFile, RefusesProfilesThatAreNone) {
   };
   EXPECT_THAT(refused("profiles = [\"feed3\"]\n"), HasSubstr("did you mean 'feed2'?"));
   EXPECT_THAT(refused("profiles = []\n"), HasSubstr("profiles: is empty; accepted: feed2"));
-  EXPECT_THAT(refused("scope = \"cut\"\n"), HasSubstr("accepted: all profile"));
+  EXPECT_THAT(refused("scope = \"cut\"\n"), HasSubstr("accepted: all instrument profile"));
   EXPECT_THAT(refused("profiles = [\"feed2\"]\n[[effect]]\nname = \"cup\"\n"),
               HasSubstr("declared twice for the same body and profile"));
 }

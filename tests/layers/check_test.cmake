@@ -39,6 +39,7 @@ expect(include/slideway/base/a.hpp "// no guard\n" "no #pragma once")
 expect(src/identify/a.cpp "#include <ceres/ceres.h>\n#include <toml++/toml.h>\n" "")
 expect(src/report/a.cpp "#include <ceres/ceres.h>\n" "ceres/ belongs in the sources of")
 expect(src/cli/a.cpp "#include <toml++/toml.h>\n" "toml\\+\\+/ belongs in the sources of")
+expect(src/cli/a.cpp "#include <httplib.h>\n" "httplib.h belongs in the sources of: serve")
 expect(src/cli/a.cpp "#include <nlohmann/json.hpp>\n" "")
 expect(src/cli/a.cpp "#include <pybind11/pybind11.h>\n" "pybind11/ belongs in the sources of")
 expect(include/slideway/report/a.hpp "${once}#include <nlohmann/json.hpp>\n"

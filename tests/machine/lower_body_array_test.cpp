@@ -4,7 +4,7 @@
 
 #include "slideway/base/error.hpp"
 
-namespace slideway {
+namespace slideway::lower_body_array_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -55,4 +55,4 @@ TEST(LowerBodyArray, RefusesLowerBodiesThatAreNotThere) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::lower_body_array_test

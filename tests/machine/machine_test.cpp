@@ -7,7 +7,7 @@
 
 #include "slideway/base/error.hpp"
 
-namespace slideway {
+namespace slideway::machine_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -125,4 +125,4 @@ TEST(Machine, NamesErrorsAsIso230Part1Does) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::machine_test

@@ -4,7 +4,7 @@
 
 #include "slideway/machine/machine.hpp"
 
-namespace slideway {
+namespace slideway::sensitivity_test {
 namespace {
 
 constexpr Pose kPose{.radius = 100.0, .z = 50.0, .overhang = 20.0};
@@ -71,4 +71,4 @@ TEST(Sensitivity, IsTheDerivativeOfTheExactChain) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::sensitivity_test

@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-namespace slideway {
+namespace slideway::transform_test {
 namespace {
 
 // Eq. (2) as printed, the four matrices one by one.
@@ -55,4 +55,4 @@ TEST(Transform, FirstOrderDiffersFromExactBySecondOrder) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::transform_test

@@ -221,7 +221,7 @@ class Agreement(unittest.TestCase):
         kept = lambda line: not line.startswith("│") or line.startswith(("│ Verdict", "│ Result"))
         # A page takes room in the box: a sentence of two lines is then cut after the first.
         lines = lambda said: [line.removesuffix(" …") for line in said.splitlines() if kept(line)]
-        self.assertEqual(lines(str(found)), lines(text))
+        self.assertEqual(lines(found.text), lines(text))
 
 
 if __name__ == "__main__":

@@ -40,7 +40,8 @@ std::string effects_document() {
       "# The effects\n\n"
       "The catalogue, made by `slideway effects --json -` (`ctest -R Documents`). An effect is "
       "a\nfunction of one independent variable: r radius, x slide coordinate, t machining time, k "
-      "turns of\nthe spindle, s cutting distance, X trace position, m measuring time.\n\n"
+      "turns of\nthe spindle, s cutting distance, X trace position, m measuring time, t_read "
+      "reading time.\n\n"
       "<!-- output: help effects -->\n```text\n```\n";
   const Json document = Json::parse(output_of("effects --json -"));
   for (const Json& effect : document["effects"]) {
@@ -93,10 +94,18 @@ TEST(Documents, ReadmeShowsWhatTheProgramSays) {
 }
 
 TEST(Documents, GuidesShowWhatTheProgramSays) {
-  for (const char* name : {"docs/getting-started.md", "docs/problem-file.md"}) {
+  for (const char* name : {"docs/getting-started.md", "docs/problem-file.md", "docs/plan.md",
+                           "docs/causes.md", "docs/usage.md"}) {
     const std::filesystem::path guide = source_folder() / name;
     expect_current(guide, with_current_output(std::string(FileBytes(guide).text())));
   }
+}
+
+TEST(Documents, PictureOfReadmeIsWhatTheProgramDraws) {
+  const TemporaryFolder folder;
+  const std::string result = (folder.path() / "result.json").string();
+  output_of("identify problems/demo/problem.toml --quiet --curves --json " + result);
+  expect_current(source_folder() / "docs/demo.svg", output_of("report " + result + " --svg -"));
 }
 
 TEST(Documents, EffectsAreTheCatalogue) {

@@ -126,6 +126,24 @@ TEST_F(Real, LatheBedRun5DoesNotFitRuns2To4AndSaysWhere) {
       << check.at_mm;
 }
 
+// Least squares by numpy with a form that is free at every station and a rate in each run: 5.5 to
+// 7.1 µrad/min, each ± 17 to 20 (2 u); the four runs went one way at an even pace, so that a drift
+// is a bow. A smooth form knows a little more.
+TEST_F(Real, StationTimesOfTheLatheBedShowNoDriftAndExcludeNone) {
+  const Result result = identify_shipped("real/lathe-bed-times.toml");
+  for (const char* run : {"run2", "run3", "run4", "run5"}) {
+    const FittedParameter& rate =
+        determined(result, std::string("zero_drift[") + run + "].rate_per_min");
+    EXPECT_LT(std::abs(*rate.value), *rate.expanded_uncertainty) << run;
+    EXPECT_GT(*rate.expanded_uncertainty, 10.0) << run;
+    EXPECT_LT(*rate.expanded_uncertainty, 20.0) << run;
+  }
+  const auto uncertainty = [](const Result& of) {
+    return *of.final->straightness->errors.front().expanded_uncertainty;
+  };
+  EXPECT_GT(uncertainty(result), 2.0 * uncertainty(identify_shipped("real/lathe-bed-curve.toml")));
+}
+
 // A Gaussian process apart from this program, runs 2 to 5 together: 32.9 ± 3.0 µm; each run under
 // the noise of all: 33.0 ± 5.4, 35.4 ± 5.5, 31.7 ± 5.5, 38.5 ± 5.8 µm, every pair |E_n| <= 0.86.
 TEST_F(Real, RunsOfTheLatheBedAgreeOnOneCurve) {

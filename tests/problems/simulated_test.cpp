@@ -8,11 +8,13 @@
 #include "problems/shipped.hpp"
 #include "slideway/identify/model.hpp"
 #include "slideway/identify/ranking.hpp"
+#include "slideway/trace/analysis.hpp"
 
 namespace slideway {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 constexpr double kThreeDecimals = 5e-4;
 
@@ -174,6 +176,25 @@ TEST(TwoOverhangs, TellThePitchFromTheStraightness) {
   const Result one_lever = identify_shipped("three-levels/problem.toml");
   EXPECT_LT(10.0 * *determined(result, "straightness.b2").standard_uncertainty,
             *determined(one_lever, "straightness.b2").standard_uncertainty);
+}
+
+// Two time constants and coolant that is switched, made by the process (data/make_data.cpp).
+TEST(Coolant, IsNamedByTheLogAndHasNoNameWithoutIt) {
+  const auto analysed = [](const std::string& name) {
+    const Problem problem = shipped_problem(name);
+    return analyse(problem, read_profiles(problem));
+  };
+  const Analysis without = analysed("coolant/without-log.toml");
+  EXPECT_EQ(without.trace->verdict, TraceVerdict::unnamed);
+  EXPECT_THAT(without.trace->rounds, IsEmpty());
+  const Analysis with = analysed("coolant/problem.toml");
+  EXPECT_EQ(with.trace->verdict, TraceVerdict::explained);
+  ASSERT_EQ(with.trace->rounds.size(), 1U);
+  EXPECT_EQ(with.trace->rounds.front().accepted, "spindle_temperature");
+  EXPECT_THAT(with.trace->rounds.front().ambiguous_with, IsEmpty());
+  expect_recovered(with.result, "spindle_temperature.a", 0.2);
+  expect_recovered(with.result, "spindle_temperature.tau_s", 15.0);
+  expect_recovered(with.result, "squareness.dbeta_xz", 2.0e-5);
 }
 
 TEST(AxisRanking, PutsYFirstAndZLastBeforeAndAfterTheLowBand) {

@@ -63,6 +63,53 @@ TEST_F(ReadProfile, LeavesOutWhatIsMasked) {
   EXPECT_THAT(profile_.notes, Contains("3 samples left out by the problem's mask"));
 }
 
+class TimedProfile : public ReadProfile {
+ protected:
+  TimedProfile() {
+    source_.request.time_column = "t_min";
+    source_.time_unit = "min";
+  }
+  [[nodiscard]] const ReadingTimes& times() const { return *profile_.setup.reading_times; }
+};
+
+TEST_F(TimedProfile, KeepsTheTimeOfEachStationInSeconds) {
+  read("x_mm,z_um,t_min\n0,1,2.5\n2,3,1\n10,2,1\n");
+  EXPECT_THAT(times().positions_mm, ElementsAre(0.0, 2.0, 10.0));
+  EXPECT_THAT(times().times_s, ElementsAre(150.0, 60.0, 60.0));
+}
+
+// Out of six rows one is outside the window, one masked, one without a value, one left out.
+TEST_F(TimedProfile, LetsATimeFollowItsRow) {
+  source_.window = {0.0, 20.0};
+  source_.mask = {{9.5, 10.5}};
+  source_.left_out_rows = {4};
+  read("x_mm,z_um,t_min\n30,9,\n12,1,1\n10,1,2\n8,1,3\n6,,4\n4,1,5\n2,1,7\n");
+  EXPECT_THAT(profile_.positions, ElementsAre(2.0, 4.0, 12.0));
+  EXPECT_THAT(times().positions_mm, ElementsAre(2.0, 4.0, 12.0));
+  EXPECT_THAT(times().times_s, ElementsAre(420.0, 300.0, 60.0));
+}
+
+TEST_F(TimedProfile, MeansTimesLikePositions) {
+  source_.most_samples = 4;
+  read("x_mm,z_um,t_min\n0,0,0\n1,0,1\n2,0,4\n3,0,6\n4,0,7\n5,0,8\n6,0,9\n7,0,20\n");
+  EXPECT_THAT(profile_.positions, ElementsAre(0.5, 2.5, 4.5, 6.5));
+  EXPECT_THAT(times().times_s, ElementsAre(30.0, 300.0, 450.0, 870.0));
+}
+
+TEST_F(TimedProfile, RefusesAStationWithoutATimeAndAnotherUnit) {
+  EXPECT_THAT([&] { read("x_mm,z_um,t_min\n0,1,0\n2,3,\n"); },
+              ThrowsMessage<DataError>(
+                  StartsWith(file() + ": data row 2: no reading time; accepted: a finite number")));
+  EXPECT_THAT([&] { read("x_mm,z_um,t_min\n0,1,0\n2,3,inf\n"); },
+              ThrowsMessage<DataError>(HasSubstr("column 't_min'")));
+  EXPECT_THAT([&] { read("x_mm,z_um\n0,1\n2,3\n"); },
+              ThrowsMessage<DataError>(HasSubstr("'t_min'")));
+  source_.request.time_column = "t_s";
+  EXPECT_THAT([&] { read("x_mm,z_um,t_s\n0,1,0\n2,3,1\n"); },
+              ThrowsMessage<DataError>(
+                  HasSubstr("the header has the unit s, the problem time_unit = \"min\"")));
+}
+
 TEST_F(ReadProfile, MasksInTheUnitOfTheProblem) {
   source_.position_unit = "um";
   source_.mask = {{1500.0, 2500.0}};
@@ -236,10 +283,12 @@ TEST_F(ReadProfile, HoldsTheUnitOfTheHeaderAgainstTheSource) {
               ThrowsMessage<DataError>(HasSubstr("unit um, the problem value_unit = \"urad\"")));
 }
 
-TEST_F(ReadProfile, GuessesNoUnitOfText) {
+TEST_F(ReadProfile, TakesTheUnitThatAHeaderStatesAndGuessesNone) {
   source_.value_unit.clear();
-  EXPECT_THAT([&] { read("x_mm,z_um\n0,1\n1,2\n"); },
+  EXPECT_THAT([&] { read("x_mm,z\n0,1\n1,2\n"); },
               ThrowsMessage<UsageError>(HasSubstr("value_unit is missing")));
+  read("x_mm,z_nm\n0,1\n1,2\n");
+  EXPECT_DOUBLE_EQ(profile_.values[1], 2e-6);  // mm
 }
 
 TEST_F(ReadProfile, SaysWhichSizesLookLikeBlunders) {

@@ -14,9 +14,10 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 constexpr IndependentVariable kVariables[] = {
-    IndependentVariable::radius,        IndependentVariable::slide,    IndependentVariable::time,
-    IndependentVariable::revolution,    IndependentVariable::distance, IndependentVariable::trace,
-    IndependentVariable::measuring_time};
+    IndependentVariable::radius,         IndependentVariable::slide,
+    IndependentVariable::time,           IndependentVariable::revolution,
+    IndependentVariable::distance,       IndependentVariable::trace,
+    IndependentVariable::measuring_time, IndependentVariable::reading_time};
 
 // The paper's face: radius 10 mm at 110 rpm.
 Setup face(double feed, CutDirection direction) {
@@ -27,6 +28,8 @@ Setup face(double feed, CutDirection direction) {
   setup.cut_radius_mm = 10.0;
   setup.traverse_mm_per_s = 0.5;
   setup.last_mm = 10.0;
+  setup.reading_times =
+      std::make_shared<const ReadingTimes>(ReadingTimes{{0.0, 4.0, 10.0}, {70.0, 30.0, 36.0}});
   return setup;
 }
 
@@ -36,10 +39,10 @@ class Variables : public testing::Test {
   std::vector<double> positions_{0.0, 6.0, 10.0};
 };
 
-TEST(IndependentVariable, HasOneLetter) {
-  std::string letters;
-  for (const IndependentVariable variable : kVariables) letters += symbol(variable);
-  EXPECT_EQ(letters, "rxtksXm");
+TEST(IndependentVariable, HasTheSymbolOfTheFormulas) {
+  std::vector<std::string> symbols;
+  for (const IndependentVariable variable : kVariables) symbols.emplace_back(symbol(variable));
+  EXPECT_THAT(symbols, ElementsAre("r", "x", "t", "k", "s", "X", "m", "t_read"));
 }
 
 TEST_F(Variables, WholeCutTakesTheTimeTurnsAndPathOfTheFeed) {
@@ -85,6 +88,15 @@ TEST_F(Variables, FaceTakesBothSidesOfADiameterAlike) {
   EXPECT_EQ(stations.measuring_time(2), 20.0);
 }
 
+TEST_F(Variables, ReadingTimeIsThatOfTheStationAndStraightBetweenStations) {
+  const auto setup = face(2.0, CutDirection::inward);
+  const std::vector<double> positions{-1.0, 0.0, 1.0, 4.0, 7.0, 10.0, 11.0};
+  const Stations stations(positions, setup, machine_);
+  std::vector<double> times;
+  for (Eigen::Index i = 0; i < stations.size(); ++i) times.push_back(stations.reading_time(i));
+  EXPECT_THAT(times, ElementsAre(70.0, 70.0, 60.0, 30.0, 33.0, 36.0, 36.0));
+}
+
 TEST_F(Variables, SlideReadingRunsFromEitherEnd) {
   auto setup = face(30.0, CutDirection::outward);
   setup.kind = Kind::slide;
@@ -108,6 +120,7 @@ TEST(MissingFor, NamesTheKeysThatWouldMakeAVariableKnown) {
               ElementsAre("feed_mm_per_min", "cut_direction", "spindle_rpm"));
   EXPECT_THAT(missing_for(IndependentVariable::measuring_time, bare),
               ElementsAre("traverse_mm_per_s"));
+  EXPECT_THAT(missing_for(IndependentVariable::reading_time, bare), ElementsAre("time_column"));
 }
 
 TEST(MissingFor, FindsNothingInACompleteSetup) {

@@ -8,7 +8,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/report/layout.hpp"
 
-namespace slideway {
+namespace slideway::comparison_test {
 namespace {
 
 using nlohmann::json;
@@ -72,4 +72,4 @@ TEST(Comparison, RefusesOneParameterInTwoUnits) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::comparison_test

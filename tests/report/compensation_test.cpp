@@ -13,7 +13,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/identify/result_fields.hpp"
 
-namespace slideway {
+namespace slideway::compensation_test {
 namespace {
 
 using testing::Contains;
@@ -325,6 +325,16 @@ TEST(Compensation, RefusesWhatTheLoopDoubts) {
   EXPECT_THAT(compensation(given).left_out, Contains(HasSubstr("ambiguous")));
 }
 
+TEST(Compensation, TakesAnEffectOfOneProfileForNoSecondCarriage) {
+  Analysis given = analysis(Lever::split);
+  given.result.final->parameters.push_back(
+      fitted("thermal_drift[fine].amplitude_um", "A", "µm", 1.0, 0.01));
+  EXPECT_FALSE(compensation(given).straightness_mm.empty());
+  given.result.final->parameters.push_back(
+      fitted("straightness[upper].b2", "b_2", "mm^-1", 1e-7, 1e-9));
+  EXPECT_THROW(compensation(given), DataError);
+}
+
 TEST(Compensation, RefusesWhatItCanNotTable) {
   EXPECT_THROW(compensation(Analysis{}), DataError);
   EXPECT_THROW(compensation(analysis(Lever::split), -1.0), UsageError);
@@ -337,4 +347,4 @@ TEST(Compensation, RefusesWhatItCanNotTable) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::compensation_test

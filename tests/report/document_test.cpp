@@ -10,7 +10,7 @@
 #include "slideway/base/file.hpp"
 #include "slideway/report/report.hpp"
 
-namespace slideway {
+namespace slideway::document_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -101,10 +101,10 @@ TEST_F(Document, PassesOverKeysItDoesNotKnow) {
   EXPECT_EQ(refusal("/inputs/0/colour", "blue"), "read");
 }
 
-TEST_F(Document, TakesOutWhatATerminalWouldObey) {
+TEST_F(Document, TakesOutWhatATerminalWouldObeyButLineBreaks) {
   Result result;
-  result.title = "µm\x1b[31m\n";
-  EXPECT_EQ(read_report(file(json_report({result}))).result.title, "µm?[31m?");
+  result.title = "µm\x1b[31m\r\n";
+  EXPECT_EQ(read_report(file(json_report({result}))).result.title, "µm?[31m?\n");
 }
 
 TEST_F(Document, NamesPlaceAndWhatIsAccepted) {
@@ -143,4 +143,4 @@ TEST_F(Document, RefusesEveryTruncationInOneLine) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::document_test

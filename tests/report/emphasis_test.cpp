@@ -5,7 +5,7 @@
 #include "report/sample_result.hpp"
 #include "slideway/report/report.hpp"
 
-namespace slideway {
+namespace slideway::emphasis_test {
 namespace {
 
 using testing::HasSubstr;
@@ -38,4 +38,4 @@ TEST(Emphasis, HasAColourForEveryVerdict) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::emphasis_test

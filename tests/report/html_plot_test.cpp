@@ -4,7 +4,7 @@
 
 #include "slideway/base/error.hpp"
 
-namespace slideway {
+namespace slideway::html_plot_test {
 namespace {
 
 using testing::HasSubstr;
@@ -51,4 +51,4 @@ TEST(Plot, RefusesWhatCannotBeDrawn) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::html_plot_test

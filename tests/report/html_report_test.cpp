@@ -7,7 +7,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/report/report.hpp"
 
-namespace slideway {
+namespace slideway::html_report_test {
 namespace {
 
 using testing::HasSubstr;
@@ -75,12 +75,62 @@ std::string refusal(const std::string& json) {
 
 TEST(HtmlReport, SaysWhatWasMissingAndWhatItHadBent) {
   const std::string page = html_report(sample_analysis());
-  EXPECT_THAT(page, HasSubstr("Thermal drift was missing and is in the model now."));
+  EXPECT_THAT(page,
+              HasSubstr("; thermal drift was missing and had moved squareness Δβxz by 10 U."));
   // (3.0 - 2.8)e-6 / 2e-8
   EXPECT_THAT(page, HasSubstr("moved squareness Δβxz by 10 U: thermal drift"));
   EXPECT_THAT(page, HasSubstr("(3.000 ± 0.020)\u00a0×\u00a010<sup>−6</sup>"));  // declared
   EXPECT_THAT(page, HasSubstr("the joint fit does not bear it out"));
   EXPECT_THAT(page, HasSubstr("measure a second feed"));
+}
+
+TEST(HtmlReport, SaysInTheFirstSentenceWhatDominatesAndWhetherTheRunOutAgrees) {
+  EXPECT_THAT(html_report(sample_analysis()),
+              HasSubstr("Squareness, 2.800 ± 0.020 µm/m, dominates; the run-out agrees; thermal"));
+}
+
+TEST(HtmlReport, PutsWhatHarmsMostFirst) {
+  Analysis analysis = sample_analysis();
+  analysis.result.crosscheck.squareness->verdict = Consistency::inconsistent;
+  Conformity flat;
+  flat.what = "flatness";
+  flat.verdict = ConformityVerdict::does_not_conform;
+  analysis.result.conformity = {flat};
+  EXPECT_THAT(html_report(analysis),
+              HasSubstr("Flatness does not conform; the run-out contradicts the squareness; "));
+}
+
+TEST(HtmlReport, DrawsAStaircaseThroughTheMiddleOfItsSteps) {
+  Analysis analysis = sample_analysis();
+  ProfileCurves& curves = analysis.details.curves->profiles[0];
+  curves.position_mm = {0.0, 1.0, 2.0, 3.0, 4.0, 5.0};
+  curves.raw = {1.0, 1.2, 0.8, 2.0, 2.2, 1.8};
+  curves.low_band = {1.0, 1.0, 1.0, 2.0, 2.0, 2.0};
+  curves.model_before = curves.low_band;
+  curves.residual_before.assign(6, 0.0);
+  EXPECT_THAT(html_report(analysis), HasSubstr("\"position\":[1.0,4.0],"));
+}
+
+TEST(HtmlReport, HasAMapOfAFaceAndNoneOfASlide) {
+  Analysis analysis = sample_analysis();
+  ProfileCurves& curves = analysis.details.curves->profiles[0];
+  curves.position_mm = {-2.0, -1.0, 0.0, 1.0, 2.0, 3.0};
+  curves.raw = curves.low_band = curves.model_before = {2.0, 1.0, 0.0, 1.0, 2.0, 3.0};
+  curves.residual_before.assign(6, 0.0);
+  analysis.details.setups = {{"feed2", {}}};
+  EXPECT_THAT(html_report(analysis), HasSubstr("Face feed2 as a map"));
+  for (InputSummary& in : analysis.result.inputs) in.kind = Kind::slide;
+  EXPECT_THAT(html_report(analysis), Not(HasSubstr("as a map")));
+}
+
+TEST(HtmlReport, HasWhatASignatureNeeds) {
+  Analysis analysis = sample_analysis();
+  analysis.result.about = {{"operator", "A. Person"}, {"evaluated", "2026-11-23"}};
+  analysis.result.conformity.emplace_back().what = "flatness";
+  const std::string page = html_report(analysis);
+  for (const char* text : {"A. Person", "2026-11-23", "Uncertainty budget of the carriages",
+                           "Decision rule", "Signature", "slideway 0.2.0"})
+    EXPECT_THAT(page, HasSubstr(text));
 }
 
 TEST(HtmlReport, GivesTheSquarenessInThreeUnitsWithTwoDigitsOfUncertainty) {
@@ -102,7 +152,8 @@ TEST(HtmlReport, OfASlideSpeaksOfNoFace) {
   for (InputSummary& in : analysis.result.inputs) in.kind = Kind::slide;
   const std::string page = html_report(analysis);
   EXPECT_THAT(page, HasSubstr("Straightness of a slide from readings along it"));
-  EXPECT_THAT(page, Not(HasSubstr("turned face")));
+  for (const char* word : {"turned face", "workpiece", "Workpiece", "cut radius"})
+    EXPECT_THAT(page, Not(HasSubstr(word)));
 }
 
 TEST(HtmlReport, AsksForNothingFromOutside) {
@@ -175,4 +226,4 @@ TEST(HtmlReport, AnyWrongValueIsAPageOrARefusal) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::html_report_test

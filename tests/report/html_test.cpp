@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace slideway {
+namespace slideway::html_test {
 namespace {
 
 TEST(Html, EscapesEveryTextAndAttribute) {
@@ -28,4 +28,4 @@ TEST(Html, JoinsPieces) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::html_test

@@ -8,7 +8,7 @@
 #include "slideway/report/document.hpp"
 #include "slideway/report/report.hpp"
 
-namespace slideway {
+namespace slideway::json_report_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -147,4 +147,4 @@ TEST(JsonReport, StaysValidWhereAFileNameIsNotUtf8) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::json_report_test

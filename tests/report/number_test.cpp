@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace slideway {
+namespace slideway::number_test {
 namespace {
 
 using testing::AllOf;
@@ -100,4 +100,4 @@ TEST(ToDigits, CountsInPlainDecimals) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::number_test

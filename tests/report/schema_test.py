@@ -59,9 +59,21 @@ def reports():
         yield "batch", json.loads(results.read_text(encoding="utf-8"))["report"]
 
 
+def plan_faults(problem):
+    command = [program, "plan", source / "problems" / problem / "problem.toml", "--json", "-"]
+    plan = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
+    described = json.loads((source / "docs/plan.schema.json").read_text(encoding="utf-8"))
+    for error in jsonschema.Draft202012Validator(described).iter_errors(plan):
+        yield f"{error.json_path}: {error.message}"
+
+
 failed = 0
 for name, report in reports():
     for fault in faults(report):
         print(f"{name}: {fault}")
+        failed += 1
+for name in ("three-levels", "milling-machine-way"):
+    for fault in plan_faults(name):
+        print(f"plan {name}: {fault}")
         failed += 1
 sys.exit(failed > 0)

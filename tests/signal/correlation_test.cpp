@@ -13,7 +13,7 @@
 #include "slideway/base/text.hpp"
 #include "support/measured_data.hpp"
 
-namespace slideway {
+namespace slideway::correlation_test {
 namespace {
 
 using testing::DoubleNear;
@@ -249,4 +249,4 @@ TEST(CorrelationPValue, IsOneForNoCorrelationAndZeroForPerfect) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::correlation_test

@@ -6,7 +6,7 @@
 
 #include "slideway/base/error.hpp"
 
-namespace slideway {
+namespace slideway::daubechies_test {
 namespace {
 
 using testing::DoubleNear;
@@ -105,4 +105,4 @@ TEST(Daubechies, RefusesOtherNamesAndSaysWhatIsAccepted) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::daubechies_test

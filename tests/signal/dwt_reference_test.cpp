@@ -9,7 +9,7 @@
 #include "slideway/signal/dwt.hpp"
 #include "support/measured_data.hpp"
 
-namespace slideway {
+namespace slideway::dwt_reference_test {
 namespace {
 
 using testing::DoubleNear;
@@ -83,4 +83,4 @@ TEST(DwtReference, AgreesWithMatlab) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::dwt_reference_test

@@ -10,7 +10,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/signal/decomposition.hpp"
 
-namespace slideway {
+namespace slideway::dwt_test {
 namespace {
 
 using testing::DoubleNear;
@@ -214,4 +214,4 @@ TEST(Bands, OfNoLevelAreNone) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::dwt_test

@@ -9,7 +9,7 @@
 
 #include "slideway/base/random.hpp"
 
-namespace slideway {
+namespace slideway::exponential_mixture_test {
 namespace {
 
 /// Memories from two values to four times a trace of n, a spectrum near f^-slope.
@@ -151,4 +151,4 @@ TEST(ExponentialMixture, WithWeightsOfAPowerHasASpectrumOfThatPower) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::exponential_mixture_test

@@ -6,7 +6,7 @@
 
 #include "signal/noise.hpp"
 
-namespace slideway {
+namespace slideway::lagged_products_test {
 namespace {
 
 // Sums of n products of normal numbers reach n, and each step may be off by half a last digit.
@@ -45,4 +45,4 @@ TEST(LaggedGrams, AreTheProductsOfTheRowsWithThoseBefore) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::lagged_products_test

@@ -3,7 +3,7 @@
 #include "signal/noise.hpp"
 #include "slideway/signal/correlation.hpp"
 
-namespace slideway {
+namespace slideway::ljung_box_test {
 namespace {
 
 std::vector<double> second_order(std::size_t n, double phi1, double phi2) {
@@ -32,4 +32,4 @@ TEST(LjungBox, FindsWhiteNoiseWhiteAndCorrelatedNoiseNot) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::ljung_box_test

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace slideway {
+namespace slideway::low_band_parts_test {
 namespace {
 
 std::vector<double> uniform(Eigen::Index n) {
@@ -52,4 +52,4 @@ TEST(ApplyInParts, TakesNoLevelManyLevelsAndAGrid) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::low_band_parts_test

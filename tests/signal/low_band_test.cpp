@@ -11,7 +11,7 @@
 #include "slideway/signal/bands.hpp"
 #include "slideway/signal/decomposition.hpp"
 
-namespace slideway {
+namespace slideway::low_band_test {
 namespace {
 
 using testing::DoubleNear;
@@ -250,4 +250,4 @@ TEST(LowBand, RefusesPositionsThatTurnBackOrAreNoNumbers) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::low_band_test

@@ -12,7 +12,7 @@
 #include "slideway/base/text.hpp"
 #include "slideway/signal/decomposition.hpp"
 
-namespace slideway {
+namespace slideway::pywavelets_test {
 namespace {
 
 using testing::DoubleNear;
@@ -123,4 +123,4 @@ TEST(PyWavelets, AgreesOnMultilevelTransformsOfRandomLengths) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::pywavelets_test

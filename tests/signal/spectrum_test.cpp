@@ -9,7 +9,7 @@
 #include "signal/noise.hpp"
 #include "slideway/base/units.hpp"
 
-namespace slideway {
+namespace slideway::spectrum_test {
 namespace {
 
 constexpr double kEpsilon = 2.2e-16;
@@ -81,4 +81,4 @@ TEST(AmplitudeSpectrum, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::spectrum_test

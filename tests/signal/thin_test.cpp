@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace slideway {
+namespace slideway::thin_test {
 namespace {
 
 using testing::Contains;
@@ -40,4 +40,4 @@ TEST(Envelope, HoldsTheSeries) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::thin_test

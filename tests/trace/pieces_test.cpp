@@ -10,6 +10,7 @@
 #include "search.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
 #include "trace/faces.hpp"
 
@@ -74,13 +75,47 @@ TEST(Whitened, TurnsTheCovarianceOfAFirstOrderNoiseIntoTheUnitMatrix) {
       kRounding);
 }
 
-TEST(Whitened, ResidualLiesOutsideAnOrthonormalBasis) {
+/// What the model and the nuisances span, orthonormal: by one QR over all of it.
+Eigen::MatrixXd basis_of(const Bench& bench, const Whitened& data) {
+  Eigen::MatrixXd span = model_span(bench.fitted.linear);
+  data.whiten(span);
+  return orthonormal(std::move(span));
+}
+
+TEST(Whitened, ResidualLiesOutsideWhatTheModelSpans) {
+  const Bench bench;
+  const Whitened data = bench.white();
+  const Eigen::MatrixXd basis = basis_of(bench, data);
+  EXPECT_LT((basis.transpose() * data.residual()).norm(), kRounding * data.residual().norm());
+}
+
+TEST(Whitened, PartOfItLiesOutsideWhatTheModelSpansInThatPart) {
+  const Bench bench;
+  const Whitened data = bench.white();
+  const Eigen::MatrixXd whole = basis_of(bench, data);
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index row = 0; row < data.rows(); ++row)
+    if (row % 3 != 0 || row >= data.values()) rows.push_back(row);
+  const Eigen::MatrixXd part = orthonormal(whole(rows, Eigen::all));
+  const Eigen::MatrixXd columns = Eigen::MatrixXd::Random(std::ssize(rows), 4);
+  const Eigen::MatrixXd expected = columns - part * (part.transpose() * columns);
+  EXPECT_LT((data.outside_in(rows, columns) - expected).norm(), kRounding * columns.norm());
+}
+
+TEST(Whitened, ShowsOfOneProfileWhatColumnsOfAllRowsDo) {
   const Whitened data = Bench().white();
-  const Eigen::MatrixXd& b = data.basis();
-  EXPECT_LT(
-      (b.transpose() * b - Eigen::MatrixXd::Identity(b.cols(), b.cols())).cwiseAbs().maxCoeff(),
-      kRounding);
-  EXPECT_LT((b.transpose() * data.residual()).norm(), kRounding * data.residual().norm());
+  for (std::size_t i = 0; i < data.observations(); ++i) {
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(data.rows(), 3);
+    columns.middleRows(data.first_row(i), data.count(i)).setRandom();
+    const Whitened::Shown shown =
+        data.shown_in(i, columns.middleRows(data.first_row(i), data.count(i)));
+    const Eigen::MatrixXd outside = data.outside(columns);
+    EXPECT_LT((shown.gram - shown.shared.transpose() * shown.shared - outside.transpose() * outside)
+                  .norm(),
+              kRounding * shown.gram.norm());
+    EXPECT_LT((shown.products - outside.transpose() * data.residual()).norm(),
+              kRounding * outside.norm() * data.residual().norm());
+  }
 }
 
 /// Noise of the low band of the test's faces, mm: exponentially correlated noise averaged over 32
@@ -126,8 +161,9 @@ TEST(Projection, GainIsTheFallOfTheSumOfSquares) {
   // Without the columns the residual is data.residual(); with them, by one QR over everything.
   Eigen::MatrixXd white = columns;
   data.whiten(white);
-  Eigen::MatrixXd all(data.rows(), data.basis().cols() + 3);
-  all << data.basis(), white;
+  const Eigen::MatrixXd basis = basis_of(bench, data);
+  Eigen::MatrixXd all(data.rows(), basis.cols() + 3);
+  all << basis, white;
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(all);
   const Eigen::VectorXd solution = qr.solve(data.residual());
   const double left = (data.residual() - all * solution).squaredNorm();
@@ -179,9 +215,10 @@ TEST(Calibration, PValueAndThresholdAreInverse) {
 }
 
 TEST(NullResiduals, AreOutsideTheModelAndRepeat) {
-  const Whitened data = Bench().white();
+  const Bench bench;
+  const Whitened data = bench.white();
   const Eigen::MatrixXd null = null_residuals(data, {});
-  EXPECT_LT((data.basis().transpose() * null).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_LT((basis_of(bench, data).transpose() * null).cwiseAbs().maxCoeff(), kRounding);
   EXPECT_EQ(null, null_residuals(data, {}));
   EXPECT_NE(null.col(0), null.col(1));
 }
@@ -189,10 +226,11 @@ TEST(NullResiduals, AreOutsideTheModelAndRepeat) {
 // Noise as known: the squares of null residuals are χ² with as many degrees of freedom as there
 // are rows beside the basis.
 TEST(NullResiduals, HaveTheSizeOfWhiteNoise) {
-  const Whitened data = Bench().white();
+  const Bench bench;
+  const Whitened data = bench.white();
   Gates gates;
   gates.resamples = 200;
-  const auto freedom = static_cast<double>(data.rows() - data.basis().cols());
+  const auto freedom = static_cast<double>(data.rows() - basis_of(bench, data).cols());
   const double mean = null_residuals(data, gates).colwise().squaredNorm().mean();
   // Five standard deviations of the mean of 200: 6e-7 of correct programs fail.
   EXPECT_NEAR(mean, freedom, 5.0 * std::sqrt(2.0 * freedom / gates.resamples));

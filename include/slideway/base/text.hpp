@@ -37,6 +37,9 @@ std::string hexadecimal(std::span<const unsigned char> bytes);
 /// longer, and '?' for control characters (C0, C1, writing direction) and for invalid UTF-8.
 std::string printable(std::string_view text, std::size_t limit = 24);
 
+/// A name of the problem file as words: "tool_wear" is "tool wear".
+std::string in_words(std::string name);
+
 /// " (did you mean 'squareness'?)" for the accepted word nearest to a mistyped one, or "" if none
 /// is near (edit distance above a third of the word's length, capital letters aside).
 std::string did_you_mean(std::string_view word, std::span<const std::string> accepted);

@@ -25,6 +25,15 @@ Times read_times(const Manifest& manifest);
 std::vector<PooledMachine> pool_machines(const Manifest& manifest,
                                          const std::filesystem::path& results);
 
+struct PooledResults {
+  std::vector<PooledMachine> machines;
+  bool are_dates = false;  // of the times; of two kinds, those of the first item's are taken
+};
+
+/// The same without the manifest, by the `machine` and `time` of each line.
+/// @throws DataError  the results cannot be read
+PooledResults pool_machines(const std::filesystem::path& results);
+
 /// The machines for people, and as a JSON array. @param are_dates  as Times has it
 std::string pooled_text(const std::vector<PooledMachine>& machines, bool are_dates);
 std::string pooled_json(const std::vector<PooledMachine>& machines, bool are_dates);

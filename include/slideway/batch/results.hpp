@@ -18,6 +18,7 @@ struct ResultHead {
   std::string id, status, reason;
   Fingerprint print;
   std::string version;
+  std::string machine = {}, time = {};  // as the manifest has them
 };
 
 /// The head of a line of the results; none if it has not all that a line has.

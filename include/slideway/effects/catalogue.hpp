@@ -27,6 +27,10 @@ const Effect& specimen(const std::string& name);
 /// ("squareness.dbeta_xz") is of; none for a name that is not in the catalogue.
 MotionError motion_error_of(const std::string& name);
 
+/// A term ("tool_wear", "step[feed2]") for people, with the profiles it is confined to. A name that
+/// is not in the catalogue is the user's own: its words.
+std::string plain_name(const std::string& term);
+
 /// Whether a parameter ("straightness.b0") is fixed by a convention; see Parameter::by_convention.
 bool fixed_by_convention(const std::string& parameter);
 

@@ -11,7 +11,7 @@ namespace slideway {
 /// A quantity that was logged beside the profiles, on the clock of one of their variables.
 struct Channel {
   std::string name;
-  IndependentVariable clock = IndependentVariable::time;  // or measuring_time, slide
+  IndependentVariable clock = IndependentVariable::time;  // or measuring_time, reading_time, slide
   std::string unit = "1";                                 // of the values
   std::vector<double> at;                                 // s (slide: mm), increasing
   std::vector<double> values;                             // as many, finite
@@ -32,10 +32,11 @@ struct ChannelResponse {
 /// what moves does not count).
 double noise_of(const Channel& channel);
 
-/// The effect h = gain · q: q, straight between its values, is taken through the response and
-/// averaged over the spacing of the stations, which is the filter against aliases.
-/// @throws UsageError  fewer than three values, places that do not increase, a free lag and a free
-///                     τ at once
+/// The effect h = gain · q, on the clock reading_time also of slopes: q, straight between its
+/// values, is taken through the response and averaged over the spacing of the stations, which is
+/// the filter against aliases.
+/// @throws UsageError  fewer than three values, places that do not increase, a number beyond 1e100,
+///                     a free lag and a free τ at once
 EffectFactory channel_effect(Channel channel, const ChannelResponse& response);
 
 }  // namespace slideway

@@ -51,6 +51,7 @@ enum class MotionError {
 /// What a person wants to know about an effect.
 struct Description {
   std::string name;           // as in the problem file
+  std::string plain_name;     // what a workshop calls it: "spindle run-out"
   std::string standard_name;  // ISO 230-1 / 230-3 / 230-7 term, with the symbol where there is one
   std::string formula;        // "A (1 - exp(-t/τ))"
   std::string source;         // "Eq. (15)", "ISO 230-3"
@@ -67,6 +68,8 @@ struct Description {
   /// Its form is that of a measured cause, not of a law with free shapes: where both fit, it
   /// outranks what is no error of the carriages.
   bool measured = false;
+  /// An error of what measures: each instrument has a size of its own, which its traces share.
+  bool of_instrument = false;
 };
 
 /// One shape parameter: which of the parameters it is, and where to look for it.
@@ -94,6 +97,7 @@ struct TravelRange {
   double z_min = 0.0, z_max = 0.0;          // mm
   double coarsest_feed_mm = 0.0;            // largest feed per turn; 0: unknown
   double beam_span_mm = 0.0;                // between the supports of the cross-beam; 0: unknown
+  double read_from_s = 0.0;                 // earliest reading time; 0: unknown
 };
 
 /// How the form of a slide is described.

@@ -26,9 +26,10 @@ using FormulaFunction =
 /// An effect written down as a formula.
 ///
 /// It gives µm of a height or µrad of a slope, from the variables r x X z (mm), theta (rad), t m
-/// (s), k (turns), s (m), R (cut_radius_mm), feed (mm/min), rpm (1/min), pi, and its parameters.
-/// A parameter that enters linearly is an amplitude; its unit begins with um (the formula is of
-/// heights) or urad (of slopes). All others are shapes, searched between their bounds.
+/// t_read (s), k (turns), s (m), R (cut_radius_mm), feed (mm/min), rpm (1/min), pi, and its
+/// parameters. A parameter that enters linearly is an amplitude; its unit begins with um (the
+/// formula is of heights) or urad (of slopes). All others are shapes, searched between their
+/// bounds.
 struct Formula {
   std::string name;  // of the effect, in the report
   std::string text;  // "a * (1 - exp(-t / tau))"

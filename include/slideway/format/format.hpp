@@ -29,6 +29,7 @@ struct Trace {
   std::string value_unit;              // the same, or one of kSlopeUnits
   std::vector<std::string> decisions;  // what the reader detected or decided, one sentence each
   std::optional<Areal> areal;          // of an areal file if no line is chosen; no points then
+  std::vector<double> times;           // as many if the request names a time column, else none
 };
 
 /// Consecutive points of a trace.
@@ -36,7 +37,9 @@ struct TracePart {
   const std::string &position_unit, &value_unit;  // as in Trace
   bool states_units;                              // the format always does
   std::span<const double> positions, values;
-  double share;  // of the file, read with this part
+  double share;                        // of the file, read with this part
+  std::span<const double> times = {};  // as in Trace
+  std::string_view time_unit = {};     // "s"; empty if the file does not say
 };
 using TakePoints = std::function<void(const TracePart&)>;
 
@@ -44,6 +47,7 @@ using TakePoints = std::function<void(const TracePart&)>;
 struct TraceRequest {
   std::string position_column = "1";  // text: header name or 1-based number
   std::string value_column = "2";
+  std::string time_column;          // text: when each point was read; empty: not asked for
   std::string delimiter;            // text: "," ";" "tab" "blank"
   std::string decimal;              // text: "." ","
   std::string encoding;             // text: "utf-8" "utf-16" "latin-1"
@@ -51,6 +55,11 @@ struct TraceRequest {
   std::string line;  // areal files: "row:12" "column:3" (1-based) "diameter:30" (degrees)
   bool areal_without_line = false;  // what such a file holds, or an error
   bool ignore_checksum = false;
+};
+
+/// Whether a file says what its positions and its values are in.
+struct StatedUnits {
+  bool position = false, value = false;
 };
 
 /// A file format. A reader gets the whole file, trusts nothing in it, and needs memory in
@@ -67,6 +76,10 @@ class Format {
 
   /// Whether a file of this format always states its units. Delimited text does not.
   [[nodiscard]] virtual bool states_units() const { return true; }
+
+  /// Whether this content states the units of the two columns asked for.
+  [[nodiscard]] virtual StatedUnits stated_units(std::string_view bytes,
+                                                 const TraceRequest& request) const;
 
   /// Whether write() is supported.
   [[nodiscard]] virtual bool is_writable() const { return true; }
@@ -98,6 +111,10 @@ struct TraceFile {
 
 /// The format that recognises a file's content.
 const Format& recognised_format(std::string_view bytes);
+
+/// Which units a file states, as far as can be told without reading its points: none of a file that
+/// is not there, both of one that read_trace() will refuse.
+StatedUnits stated_units(const std::filesystem::path& path, const TraceRequest& request);
 
 /// The format to write, by the ending of a file name.
 /// @throws UsageError  no writable format has this ending

@@ -29,6 +29,14 @@ struct Table {
   std::string sha256;                  // of the file's bytes
 };
 
+/// What stands above the rows of delimited text, and how they are written.
+struct TableHead {
+  std::vector<std::string> names;            // of all columns, as in Table
+  std::vector<std::string> units;            // of all columns; empty where the header says nothing
+  std::vector<std::string> requested_units;  // of the columns asked for
+  std::string decision;                      // how the text is parsed, in words
+};
+
 /// Consecutive rows of a table.
 struct TablePart {
   const Table& table;  // its names and units
@@ -50,6 +58,9 @@ using TakeRows = std::function<void(const TablePart&)>;
 ///                     return inside a line
 /// @throws UsageError  an unknown delimiter, decimal mark or encoding
 Table parse_table(std::string_view bytes, const TableRequest& request);
+
+/// What parse_table() finds before it reads a row. @throws DataError, UsageError  as it does
+TableHead parse_head(std::string_view bytes, const TableRequest& request);
 
 /// parse_table() in parts: `take` is called with all rows in order; the returned table has none.
 Table parse_table(std::string_view bytes, const TableRequest& request, const TakeRows& take);

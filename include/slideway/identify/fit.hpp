@@ -30,6 +30,10 @@ struct Solution {
   std::optional<double> other_form;
 };
 
+/// @throws UsageError  no profile is to be fitted
+/// @throws DataError   fewer low-band values than parameters
+void require_enough_data(const Model& model);
+
 /// Fits all profiles jointly by generalised least squares, Eq. (16): solve() under noise_under(),
 /// each in turn until the noise stays.
 ///

@@ -19,12 +19,16 @@ struct Gates {
   double holdout_share = 0.1;
   double modulation_widths = 5.0;
   double modulation_share = 0.1;
+  double feed_harmonics = 16.0;
+  double folded_widths = 2.0;
 
   // What a name must be better than.
   double process_margin = 0.0;
   double local_form_margin = 0.0;
   double unnamed_tie = 5.0;
   double stable_share = 0.8;
+  double most_forms = 3.0;
+  double form_share = 0.5;
 
   // When the residual is structure.
   double lack_of_fit_p = 1e-3;
@@ -69,6 +73,7 @@ struct Gates {
   double refine_share = 0.6;
   double most_refined = 12.0;
   double rival_reach = 4.0;
+  double planned_size = 3.0;
   double tried_changes = 4.0;
   double noise_spread = 1.0;
 

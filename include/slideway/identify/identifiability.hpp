@@ -25,6 +25,11 @@ struct Rank {
 ///                  gone, not as small
 Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale, double tolerance);
 
+/// Size of one unit of each parameter in the data, for telling a coefficient from rounding.
+/// @param jacobian  P by A, d(parameters)/d(amplitudes, shapes)
+/// @param scale     A, norm of each column
+Eigen::VectorXd parameter_scale(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& scale);
+
 /// Null directions in terms of parameters a person can read: each has one parameter of its own that
 /// appears in no other: the one with the highest Parameter::gauge, which may be set to 0.
 struct NullDirections {

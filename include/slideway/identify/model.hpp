@@ -32,6 +32,11 @@ struct ModelTerm {
 /// "step[feed2,feed3]".
 std::string term_name(const std::string& effect, const std::vector<std::string>& profiles);
 
+/// The options of an effect that has a size of its own with each instrument that read these
+/// profiles: with one instrument as they are.
+std::vector<EffectOptions> of_each_instrument(const EffectOptions& options,
+                                              const std::vector<const Profile*>& profiles);
+
 /// The shape parameters of a term among those of all terms.
 inline std::span<const double> shapes_of(const ModelTerm& term, const Eigen::VectorXd& shapes) {
   return {shapes.data() + term.first_shape, term.effect->shapes().size()};

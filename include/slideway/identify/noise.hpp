@@ -31,6 +31,11 @@ class Noise {
   /// The same noise with all variances multiplied.
   [[nodiscard]] Noise scaled(double factor) const;
 
+  /// The same noise as one of several repeats weighs by it: the variances of texture and memory
+  /// multiplied. m repeats that have them in common say no more of what is slow than one, and each
+  /// has m times the variance.
+  [[nodiscard]] Noise repeated(double factor) const;
+
   bool declared = false;   // white, as the problem file has it; else estimated from the residual
   bool overruled = false;  // a declared uncertainty was there, and the residual refutes it
   std::size_t pool = 0;    // profiles with the same one have their memory in common
@@ -44,7 +49,10 @@ class Noise {
   [[nodiscard]] bool is_estimated() const { return !declared && !alternatives.empty(); }
   [[nodiscard]] bool is_white() const { return covariance_.is_white(); }
 
-  /// Of one value about the mean of the trace.
+  /// The factor of repeated().
+  [[nodiscard]] double repeats() const { return repeats_; }
+
+  /// Of one value about the mean of the trace, repeated or not.
   [[nodiscard]] double standard_deviation() const;
 
   /// Square root of the spectral density at one cycle a trace: the standard deviation of white
@@ -75,6 +83,7 @@ class Noise {
 
   ExponentialMixture covariance_;
   Eigen::Index values_ = 0;
+  double repeats_ = 1.0;
   std::vector<double> stations_;
   std::shared_ptr<const MixtureFactor> factor_;
 };

@@ -9,6 +9,7 @@
 
 #include "slideway/effects/effect.hpp"
 #include "slideway/identify/assumption.hpp"
+#include "slideway/identify/fault.hpp"
 #include "slideway/identify/gates.hpp"
 #include "slideway/profile/profile.hpp"
 #include "slideway/signal/low_band.hpp"
@@ -40,7 +41,13 @@ struct TraceOptions {
   std::vector<std::string> candidates;  // of the catalogue; "all" is written out
   std::vector<DeclaredEffect> own;      // besides: the user's own, and those with options
   int max_effects = 3;
+  std::optional<double> time_limit_s;  // of the loop; none: as long as it needs
   Gates gates;
+};
+
+/// Limits of a workpiece, for its conformity.
+struct Tolerance {
+  std::optional<double> flatness_um, straightness_um, squareness_um_per_m;
 };
 
 /// What `simulate` makes profiles from.
@@ -69,6 +76,8 @@ struct ProfileEntry {
 struct Problem {
   std::filesystem::path path;
   std::string title;
+  std::map<std::string, std::string> about;  // [about] as it stands
+  Tolerance tolerance;
   std::vector<Body> bodies;  // the paper's lathe unless the file lists its own
   Lever lever = Lever::paper;
   double beam_span_mm = 0.0;  // between the supports of the cross-beam (gantry_sag); 0: unknown
@@ -96,6 +105,12 @@ struct Problem {
 Problem read_problem(const std::filesystem::path& path,
                      const std::optional<std::filesystem::path>& data_dir = std::nullopt);
 
+/// The same, with every fault added to `faults` instead of the first one thrown; nothing if there
+/// are any.
+std::optional<Problem> read_problem(const std::filesystem::path& path,
+                                    const std::optional<std::filesystem::path>& data_dir,
+                                    Faults& faults);
+
 /// The same of a file that may do without [[effect]], for what looks at its profiles alone.
 Problem read_profiles_of_problem(
     const std::filesystem::path& path,
@@ -104,6 +119,9 @@ Problem read_profiles_of_problem(
 /// Reads all profiles of a problem, in order, and tells which part of their bytes has been read.
 /// @throws DataError, UsageError
 std::vector<Profile> read_profiles(const Problem& problem, const ReadProgress& progress = {});
+
+/// The profiles that can be read; why the others cannot is added to `faults`.
+std::vector<Profile> read_profiles(const Problem& problem, Faults& faults);
 
 /// The effects of a file that problems share (`effects = ["our-lathes.toml"]`): [[effect]] tables,
 /// each a formula with cause, source and typical size.
@@ -115,9 +133,8 @@ std::vector<DeclaredEffect> read_effect_file(const std::filesystem::path& path);
 std::vector<Assumption> assumptions(const Problem& problem, const std::vector<Profile>& profiles);
 
 /// The problem file without its [truth], each profile's `file` replaced by one of `files` with the
-/// columns x_mm and z_um (slopes: slope_urad), no window and no
-/// leave_out. The same text on every machine.
-/// REQUIRES one file per profile.
+/// columns x_mm, z_um (slopes: slope_urad) and, with a time column, t_s; no window and no
+/// leave_out. The same text on every machine. REQUIRES one file per profile.
 /// @throws UsageError  the problem file can no longer be read
 std::string simulated_problem_text(const Problem& problem, const std::vector<std::string>& files);
 

@@ -37,6 +37,10 @@ struct TomlEntry {
 Problem read_problem(const TomlValue& tree,
                      const std::optional<std::filesystem::path>& data_dir = std::nullopt);
 
+/// The files that a problem file names (`file` of any table, `effects` of the root), as it names
+/// them; none of a text that is no TOML. @throws DataError  it cannot be read
+std::vector<std::string> files_named(const std::filesystem::path& problem);
+
 /// Numbers by the name of their [[profile]], in its position_unit and value_unit.
 using GivenTraces = std::map<std::string, Trace>;
 

@@ -69,6 +69,10 @@ struct Profile {
   }
 };
 
+/// Names of profiles by the instrument that read them: of one name, or of none and of one kind;
+/// always of one quantity.
+std::vector<std::vector<std::string>> by_instrument(const std::vector<const Profile*>& profiles);
+
 /// How to get a profile out of a file: what the problem file says of it. A unit is empty only if
 /// the file states it.
 struct ProfileSource {
@@ -76,6 +80,7 @@ struct ProfileSource {
   TraceRequest request;
   std::string position_unit;                        // of kLengthUnits; "s": time * feed_mm_per_min
   std::string value_unit;                           // of kLengthUnits or kSlopeUnits
+  std::string time_unit;                            // of kTimeUnits; of a time column
   std::optional<std::pair<double, double>> window;  // in position_unit
   std::vector<std::pair<double, double>> mask;      // parts treated as missing, in position_unit
   std::vector<std::size_t> left_out_rows;           // data rows treated as missing, from 1
@@ -99,7 +104,8 @@ using ReadProgress = std::function<void(double done)>;
 /// @param progress  is told which part of the file has been read
 /// @throws DataError   what read_trace() refuses; a unit in the header that is not the source's;
 ///                     naming file and row: unsorted or repeated positions, positions of a slide
-///                     that differ in their last digits only, too few rows
+///                     that differ in their last digits only, too few rows, a time column without
+///                     a time
 /// @throws UsageError  no unit, no feed where the positions are times, a row to leave out that is
 ///                     not there
 /// @throws KeyError    a cut smaller than the trace; a centre so far away that the radius is one

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +20,14 @@ enum class Kind {
 enum class Quantity { height, slope };
 enum class CutDirection { inward, outward };
 
+/// When the stations of a profile were read; straight between them, constant beyond.
+struct ReadingTimes {
+  std::vector<double> positions_mm;  // strictly increasing
+  std::vector<double> times_s;       // as many, in any order: a reading may run either way, or rest
+
+  [[nodiscard]] double at(double position_mm) const;
+};
+
 /// How one profile was cut and measured. Lengths mm, times s.
 struct Setup {
   Kind kind = Kind::face;
@@ -36,16 +45,27 @@ struct Setup {
       cut_radius_mm;  // of a face; set to the largest r of the trace when left out
   double start_s = 0.0;
   std::optional<double> traverse_mm_per_s;
-  std::optional<double> nose_radius_mm;  // of the tool that cut a face
+  std::shared_ptr<const ReadingTimes> reading_times;  // null: unknown
+  std::optional<double> nose_radius_mm;               // of the tool that cut a face
+  bool reversed = false;     // of a slide: what is the instrument's has the other sign
   double azimuth_deg = 0.0;  // of a face: direction of the trace, X > 0, on the workpiece
   double first_mm = 0.0;     // smallest and largest trace position
   double last_mm = 0.0;
 };
 
 /// The independent variable of an effect: what its form is a function of, one per kind of cause.
-enum class IndependentVariable { radius, slide, time, revolution, distance, trace, measuring_time };
+enum class IndependentVariable {
+  radius,
+  slide,
+  time,
+  revolution,
+  distance,
+  trace,
+  measuring_time,
+  reading_time
+};
 
-/// One letter, as the literature of the project has it: r x t k s X m.
+/// As the literature of the project has it: r x t k s X m t_read.
 std::string_view symbol(IndependentVariable variable);
 
 /// Keys of the problem file a profile lacks before that variable is known, e.g.
@@ -90,6 +110,11 @@ class Stations {
   /// IndependentVariable::measuring_time known.
   [[nodiscard]] double measuring_time(Eigen::Index i) const {
     return (positions_[i] - setup_->first_mm) / *setup_->traverse_mm_per_s;
+  }
+  /// When the station was read, s of the session's clock. REQUIRES
+  /// IndependentVariable::reading_time known.
+  [[nodiscard]] double reading_time(Eigen::Index i) const {
+    return setup_->reading_times->at(positions_[i]);
   }
 
  private:

@@ -8,6 +8,9 @@ namespace slideway {
 /// JSON Schema 2020-12 of a report: docs/report.schema.json.
 std::string report_schema();
 
+/// The same of a plan: docs/plan.schema.json.
+std::string plan_schema();
+
 /// The report as Python dataclasses: src/python/slideway/report.py.
 std::string report_classes();
 

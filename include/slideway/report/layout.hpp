@@ -16,16 +16,17 @@ std::size_t code_points(std::string_view utf8);
 /// A word that fits on no line is broken. Ends with a newline.
 std::string paragraph(std::string_view first, std::string_view words);
 
+enum class TextColumn {
+  text,    // flush left
+  name,    // flush left; the middle is left out where the line would get too long
+  effect,  // the same, but long enough for the names of the catalogue
+  number   // flush right
+};
+
 /// Aligned columns, two blanks of indent and two between columns.
 class TextTable {
  public:
-  enum class Column {
-    text,    // flush left
-    name,    // flush left; the middle is left out where the line would get too long
-    effect,  // the same, but long enough for the names of the catalogue
-    number   // flush right
-  };
-  TextTable(std::vector<std::string> headings, std::vector<Column> columns);
+  TextTable(std::vector<std::string> headings, std::vector<TextColumn> columns);
 
   /// REQUIRES cells.size() to be the number of columns.
   void add(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
@@ -35,7 +36,7 @@ class TextTable {
  private:
   [[nodiscard]] std::vector<std::size_t> widths() const;
 
-  std::vector<Column> columns_;
+  std::vector<TextColumn> columns_;
   std::vector<std::vector<std::string>> rows_;  // the first one are the headings
 };
 

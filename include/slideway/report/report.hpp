@@ -24,6 +24,14 @@ std::string html_report(const Analysis& analysis);
 /// @throws DataError  as read_report()
 std::string html_report(std::string_view json, const std::string& name);
 
+/// One picture, a stand-alone SVG: the profile whose residual the loop has lowered most, the final
+/// model, and what each model leaves of it.
+/// @throws DataError  an analysis without curves
+std::string svg_report(const Analysis& analysis);
+
+/// The same of what json_report() wrote. @throws DataError  as read_report()
+std::string svg_report(std::string_view json, const std::string& name);
+
 /// What the profiles are, the report's `inputs`, `low_band` and `closure`: schema
 /// "slideway.data/1".
 std::string data_json(const Result& result);

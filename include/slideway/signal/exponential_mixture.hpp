@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -60,11 +61,13 @@ class MixtureFactor {
   enum class Direction { whiten, colour };
   using Terms = ExponentialMixture::Terms;
 
-  explicit MixtureFactor(const ExponentialMixture& noise, std::vector<double> steps,
-                         Eigen::Index n);
-  [[nodiscard]] Terms decay(Eigen::Index row) const;
+  void factorise(const ExponentialMixture& noise, const std::vector<double>& steps);
+  void set_decays(const Terms& rates, const std::vector<double>& steps);
+  [[nodiscard]] const Terms& decay(Eigen::Index row) const {
+    return decays_[decay_of_.empty() ? 0 : decay_of_[static_cast<std::size_t>(row)]];
+  }
   template <int Count>
-  void factorise(double variance);
+  void factorise(double variance, const Terms& amplitudes);
   template <int Count, int Columns, Direction direction>
   void filter(double* first, Eigen::Index stride) const;
   template <int Count, Direction direction>
@@ -72,11 +75,11 @@ class MixtureFactor {
   template <Direction direction>
   void filter_all(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
-  std::vector<double> steps_;  // to the value before; empty: all 1
-  int count_ = 0;              // of terms: 0, 1 or all
-  Terms rates_, amplitudes_;   // of one term: the first
-  std::vector<double> gains_;  // count_ per value
-  Eigen::ArrayXd deviation_;   // sqrt(D)
+  int count_ = 0;                        // of terms: 0, 1 or all
+  std::vector<Terms> decays_;            // over each step between neighbours that occurs
+  std::vector<std::uint32_t> decay_of_;  // which of them leads to a value; empty: the only one
+  std::vector<double> gains_;            // count_ per value, times the amplitudes
+  Eigen::ArrayXd deviation_;             // sqrt(D)
 };
 
 }  // namespace slideway

@@ -15,6 +15,13 @@ struct LowBandOptions {
   Boundary boundary = Boundary::symmetric;
 };
 
+/// Where stations lie more than so many of their usual steps apart is a gap between them: a station
+/// that was left out makes two, rounded ones differ by less.
+inline constexpr double kGapSteps = 1.9;
+
+/// The level raised until so many samples leave at most so many values.
+LowBandOptions with_at_most(LowBandOptions options, std::size_t samples, std::size_t values);
+
 /// The low band of a profile as a linear operator: samples at given positions -> approximation
 /// coefficients of the last level. Data and the model's columns go through the same operator, so
 /// that neither block averaging nor the way to a uniform grid biases a fit.

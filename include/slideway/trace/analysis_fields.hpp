@@ -30,17 +30,46 @@ inline constexpr auto kRecord<TraceRound> = record(
     field("parameters", &TraceRound::parameters), field("candidates", &TraceRound::candidates));
 
 template <>
-inline constexpr auto kRecord<Unnamed> =
-    record("Unnamed", "What is left and has no name: how much, where, on which clock.",
-           field("rms_um", &Unnamed::rms_um), field("pv_um", &Unnamed::pv_um),
-           field("rms_urad", &Unnamed::rms_urad), field("pv_urad", &Unnamed::pv_urad),
-           field("p_value", &Unnamed::p_value), field("profile", &Unnamed::profile),
-           field("from_mm", &Unnamed::from_mm), field("to_mm", &Unnamed::to_mm),
-           field("clock", &Unnamed::clock), field("log_evidence", &Unnamed::log_evidence),
-           field("correlation_length", &Unnamed::correlation_length),
-           field("correlation_unit", &Unnamed::correlation_unit),
-           field("dominant_period_mm", &Unnamed::dominant_period_mm),
-           field("odd_share", &Unnamed::odd_share));
+inline constexpr auto kRecord<UnnamedForm> =
+    record("UnnamedForm", "A short formula that describes what is left: no cause.",
+           field("form", &UnnamedForm::form),
+           field("formula", &UnnamedForm::formula, "in um of a height, urad of a slope"),
+           field("profiles", &UnnamedForm::profiles, "those it describes; empty: all"),
+           field("instead_of", &UnnamedForm::instead_of,
+                 "the accepted effect it takes the place of; empty: none"),
+           field("parameters", &UnnamedForm::parameters),
+           field("delta_bic", &UnnamedForm::delta_bic, "against the effects as accepted"),
+           field("before_rms_um", &UnnamedForm::before_rms_um),
+           field("after_rms_um", &UnnamedForm::after_rms_um),
+           field("before_rms_urad", &UnnamedForm::before_rms_urad),
+           field("after_rms_urad", &UnnamedForm::after_rms_urad),
+           field("before_holdout_rms_um", &UnnamedForm::before_holdout_rms_um),
+           field("after_holdout_rms_um", &UnnamedForm::after_holdout_rms_um),
+           field("candidate", &UnnamedForm::candidate, "[[trace.candidate]] of a problem file"));
+
+template <>
+inline constexpr auto kRecord<UnnamedCurve> =
+    record("UnnamedCurve", "What is left without a name, as a curve over its variable.",
+           field("variable", &UnnamedCurve::variable), field("unit", &UnnamedCurve::unit),
+           field("value_unit", &UnnamedCurve::value_unit), drawn("at", &UnnamedCurve::at, "", 7),
+           drawn("residual", &UnnamedCurve::residual),
+           drawn("expanded_uncertainty", &UnnamedCurve::expanded_uncertainty));
+
+template <>
+inline constexpr auto kRecord<Unnamed> = record(
+    "Unnamed", "What is left and has no name: how much, where, on which clock.",
+    field("rms_um", &Unnamed::rms_um), field("pv_um", &Unnamed::pv_um),
+    field("rms_urad", &Unnamed::rms_urad), field("pv_urad", &Unnamed::pv_urad),
+    field("p_value", &Unnamed::p_value), field("profile", &Unnamed::profile),
+    field("from_mm", &Unnamed::from_mm), field("to_mm", &Unnamed::to_mm),
+    field("clock", &Unnamed::clock), field("log_evidence", &Unnamed::log_evidence),
+    field("correlation_length", &Unnamed::correlation_length),
+    field("correlation_unit", &Unnamed::correlation_unit),
+    field("dominant_period_mm", &Unnamed::dominant_period_mm),
+    field("odd_share", &Unnamed::odd_share),
+    field("forms", &Unnamed::forms, "formulas that describe it, best first"),
+    field("to_confirm", &Unnamed::to_confirm, "what to measure before a form is taken for a cause"),
+    field("curve", &Unnamed::curve));
 
 template <>
 inline constexpr auto kRecord<BlockPrediction> =
@@ -106,6 +135,9 @@ inline constexpr auto kRecord<SharedResidual> =
 template <>
 inline constexpr auto kRecord<TraceResult> = record(
     "Trace", "The closed loop.", field("verdict", &TraceResult::verdict),
+    field("unfinished", &TraceResult::unfinished,
+          "the time limit ended the search: no effect is named"),
+    field("not_looked_at", &TraceResult::not_looked_at, "what the time limit left out"),
     field("gates", &TraceResult::gates, "the limits that were used"),
     field("fragile", &TraceResult::fragile, "none: no change of one gate within its range does"),
     field("rounds", &TraceResult::rounds), field("unnamed", &TraceResult::unnamed),

@@ -99,6 +99,29 @@ struct SharedResidual {
   bool significant = false;                // then it is the instrument's error
 };
 
+/// A short formula that describes what is left without a name. It is no cause.
+struct UnnamedForm {
+  std::string form;                   // "bump + bump"
+  std::string formula;                // in µm (of slopes: µrad)
+  std::vector<std::string> profiles;  // those it describes; empty: all
+  std::string instead_of;             // the accepted effect it takes the place of; "": none
+  std::vector<FittedParameter> parameters;
+  double delta_bic = 0.0;                                 // against the effects as accepted
+  std::optional<double> before_rms_um, after_rms_um;      // residual of the height profiles
+  std::optional<double> before_rms_urad, after_rms_urad;  // and of the slope profiles
+  /// Predicted profiles, as those of a round, without the form and what it takes the place of, and
+  /// with the form.
+  std::optional<double> before_holdout_rms_um, after_holdout_rms_um;
+  std::string candidate;  // [[trace.candidate]] of a problem file
+};
+
+/// What is left without a name, as a curve over its variable.
+struct UnnamedCurve {
+  std::string variable, unit;  // "t", "s"
+  MicroUnit value_unit = MicroUnit::um;
+  std::vector<double> at, residual, expanded_uncertainty;
+};
+
 /// What is left and has no name.
 struct Unnamed {
   /// Of the smooth part, in the profile where it stands out most.
@@ -112,6 +135,9 @@ struct Unnamed {
   std::string correlation_unit;
   std::optional<double> dominant_period_mm;
   std::optional<double> odd_share;  // of its square on a diameter, 0: even, 1: odd
+  std::vector<UnnamedForm> forms;   // that describe it, best first
+  std::string to_confirm;           // what to measure before a form is taken for a cause
+  UnnamedCurve curve;
 };
 
 /// An effect the data cannot be asked for.
@@ -163,6 +189,8 @@ struct Fragile {
 
 struct TraceResult {
   TraceVerdict verdict = TraceVerdict::nothing_missing;
+  bool unfinished = false;                 // the time limit ended the search: no effect is named
+  std::vector<std::string> not_looked_at;  // what else the time limit left out
   std::vector<std::pair<std::string, double>> gates;  // the values that were used
   std::optional<Fragile> fragile;                     // none: no such change does
   std::vector<TraceRound> rounds;

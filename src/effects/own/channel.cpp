@@ -86,6 +86,11 @@ std::string unit_of_clock(const Channel& channel) {
   return channel.clock == IndependentVariable::slide ? "mm" : "s";
 }
 
+/// A cause logged while the profile was read changes what is read, be it a height or a slope.
+bool acts_on_the_reading(const Channel& channel) {
+  return channel.clock == IndependentVariable::reading_time;
+}
+
 Description describe(const Channel& channel, const ChannelResponse& response) {
   const std::string name = channel.name, t(symbol(channel.clock));
   const std::string lag = response.free_lag || response.lag_s != 0.0 ? " - lag" : "";
@@ -93,6 +98,7 @@ Description describe(const Channel& channel, const ChannelResponse& response) {
   if (response.free_tau || response.tau_s) formula += " after a first-order lag τ";
   if (response.since_start) formula += ", from the start of the cut";
   return {.name = response.name,
+          .plain_name = in_words(response.name),
           .standard_name = "a measured cause",
           .formula = formula,
           .source = "the log " + name,
@@ -104,7 +110,9 @@ Description describe(const Channel& channel, const ChannelResponse& response) {
 
 std::vector<Parameter> parameters_of(const Channel& channel, const ChannelResponse& response) {
   const double length = channel.at.back() - channel.at.front();
-  std::vector<Parameter> out{{"a", "a", "µm/(" + channel.unit + ")", 0.1}};
+  const std::string slope =
+      acts_on_the_reading(channel) ? ", slope: µrad/(" + channel.unit + ")" : "";
+  std::vector<Parameter> out{{"a", "a", "µm/(" + channel.unit + ")" + slope, 0.1}};
   if (response.free_lag)
     out.push_back(
         {"lag_s", "lag", unit_of_clock(channel), length / 100.0, 0.0, kLongestLag * length});
@@ -128,7 +136,9 @@ class ChannelEffect : public LinearEffect {
         channel_(std::move(channel)),
         response_(response) {}
 
-  [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_height(setup); }
+  [[nodiscard]] bool applies_to(const Setup& setup) const override {
+    return is_height(setup) || acts_on_the_reading(*channel_);
+  }
   [[nodiscard]] std::vector<std::string> lacking(const Setup& setup) const override;
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override;
@@ -139,9 +149,16 @@ class ChannelEffect : public LinearEffect {
 
  private:
   [[nodiscard]] VariableReading reading() const {
-    return channel_->clock == IndependentVariable::slide            ? slide_of
-           : channel_->clock == IndependentVariable::measuring_time ? measuring_time_of
-                                                                    : time_of;
+    switch (channel_->clock) {
+      case IndependentVariable::slide:
+        return slide_of;
+      case IndependentVariable::measuring_time:
+        return measuring_time_of;
+      case IndependentVariable::reading_time:
+        return reading_time_of;
+      default:
+        return time_of;
+    }
   }
   [[nodiscard]] double lag(std::span<const double> shape) const {
     return response_.free_lag ? shape[0] : response_.lag_s;
@@ -161,6 +178,7 @@ std::vector<std::string> ChannelEffect::lacking(const Setup& setup) const {
   if (setup.kind == Kind::face && setup.first_mm < setup.center_mm &&
       setup.center_mm < setup.last_mm)
     ends.push_back(setup.center_mm);
+  if (acts_on_the_reading(*channel_)) ends = setup.reading_times->positions_mm;
   const Machine machine(Machine::paper_lathe(), Lever::paper);
   const VariableRange range = range_of({ends, setup, machine}, reading());
   const double rounding = kOfTheEnds * range.extent();
@@ -185,10 +203,14 @@ void ChannelEffect::columns(const Stations& stations, std::span<const double> sh
   const Response response(*channel_, tau(shape));
   const VariableReading clock = reading();
   const double width = range_of(stations, clock).step, later = lag(shape);
-  const double start =
-      response_.since_start ? response.value(stations.setup().start_s - later) : 0.0;
+  const Setup& setup = stations.setup();
+  const double first = acts_on_the_reading(*channel_)
+                           ? std::ranges::min(setup.reading_times->times_s)
+                           : setup.start_s;
+  const double start = response_.since_start ? response.value(first - later) : 0.0;
+  const double unit = is_height(setup) ? 1.0 : kMicroradian / kMicrometre;
   for (Eigen::Index i = 0; i < stations.size(); ++i)
-    out(i, 0) = response.mean(clock(stations, i) - later, width) - start;
+    out(i, 0) = unit * (response.mean(clock(stations, i) - later, width) - start);
 }
 
 void ChannelEffect::derivatives(const Stations& stations, std::span<const double> shape, int which,
@@ -239,6 +261,11 @@ EffectFactory channel_effect(Channel channel, const ChannelResponse& response) {
     throw UsageError("channel '" + channel.name + "' has fewer than three values");
   if (std::ranges::adjacent_find(channel.at, std::ranges::greater_equal()) != channel.at.end())
     throw UsageError("channel '" + channel.name + "' does not increase on its clock");
+  constexpr double kMost = 1e100;  // whose integral is finite
+  const auto is_possible = [](double number) { return std::abs(number) < kMost; };
+  if (!std::ranges::all_of(channel.at, is_possible) ||
+      !std::ranges::all_of(channel.values, is_possible))
+    throw UsageError("channel '" + channel.name + "' has numbers beyond 1e100");
   if (response.free_lag && response.free_tau)
     throw UsageError("a free lag_s and a free tau_s; accepted: one of the two free");
   auto shared = std::make_shared<const Channel>(std::move(channel));

@@ -20,7 +20,7 @@ constexpr double kSearched = 40.0;  // steps over the range, at least
 IndependentVariable leading(const std::vector<const FormulaVariable*>& variables) {
   using enum IndependentVariable;
   for (const IndependentVariable each :
-       {distance, revolution, time, measuring_time, trace, slide, radius})
+       {distance, revolution, time, reading_time, measuring_time, trace, slide, radius})
     for (const FormulaVariable* variable : variables)
       if (variable->needs == each) return each;
   return radius;
@@ -32,6 +32,7 @@ Description describe(const FormulaParts& parts) {
     return text.empty() ? otherwise : text;
   };
   return {.name = formula.name,
+          .plain_name = in_words(formula.name),
           .standard_name = or_else(formula.standard_name, "an effect of the user's own"),
           .formula = formula.text,
           .source = or_else(formula.source, "the problem file"),

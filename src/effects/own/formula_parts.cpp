@@ -88,6 +88,7 @@ const std::vector<FormulaVariable>& formula_variables() {
       {"theta", azimuth_of, std::nullopt, true},
       {"t", time_of, time},
       {"m", measuring_time_of, measuring_time},
+      {"t_read", reading_time_of, reading_time},
       {"k", revolution_of, revolution},
       {"s", distance_m_of, distance, true},
       {"R", [](const Stations& s, Eigen::Index) { return s.setup().cut_radius_mm.value_or(0.0); },
@@ -109,7 +110,7 @@ FormulaParts::FormulaParts(const Formula& formula)
                                    : Expression(formula.text, names_of(formula))) {
   if (variables().empty())
     throw UsageError("column 1: no variable: the effect is the same everywhere; accepted: " +
-                     std::string("r x X z theta t m k s R feed rpm"));
+                     std::string("r x X z theta t m t_read k s R feed rpm"));
   sort_parameters();
   check_units();
   describe_parameters();

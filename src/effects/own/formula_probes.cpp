@@ -34,6 +34,7 @@ std::vector<double> variables_at(RandomStream& random) {
           (2.0 * random.uniform() - 1.0) * kPi,
           t,
           between(random, 0.5, 5000.0),
+          between(random, 0.5, 5000.0),
           t * rpm / kMinute,
           between(random, 0.01, 5000.0),
           radius,

@@ -8,7 +8,7 @@
 namespace slideway {
 namespace {
 
-constexpr int kHalvings = 14;
+constexpr int kStepHalvings = 14;
 constexpr double kGoodEnough = 1e-11;  // of the largest derivative: rounding is next
 constexpr double kSmall = 1e-6;        // of the largest derivative: the step resolves f
 constexpr double kWorse = 2.0;         // times the best error, once small: rounding has taken over
@@ -29,7 +29,7 @@ NumericDerivative numeric_derivative(const std::function<Eigen::MatrixXd(double)
   };
   NumericDerivative best{difference(), std::numeric_limits<double>::infinity()};
   std::vector<Eigen::MatrixXd> row{best.value};  // extrapolated once, twice, ... from this step
-  for (int i = 1; i < kHalvings; ++i) {
+  for (int i = 1; i < kStepHalvings; ++i) {
     h /= 2.0;
     std::vector<Eigen::MatrixXd> next{difference()};
     const double shrink = central ? 4.0 : 2.0;

@@ -8,9 +8,9 @@ namespace slideway {
 namespace {
 
 // (sqrt(r² + h²) - r)/h without the cancellation at large r.
-double value(double r, double h) { return h / (std::hypot(r, h) + r); }
+double centre_height_value(double r, double h) { return h / (std::hypot(r, h) + r); }
 
-double derivative(double r, double h) {
+double centre_height_derivative(double r, double h) {
   const double hypotenuse = std::hypot(r, h);
   return r / (hypotenuse * (hypotenuse + r));
 }
@@ -21,6 +21,7 @@ std::unique_ptr<Effect> make_centre_height(const Request& request) {
   request.accept_only({});
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description = {.name = "centre_height",
+                      .plain_name = "tool off centre height",
                       .standard_name = "offset of the tool edge from the spindle axis in Y",
                       .formula = "A (sqrt(r² + h²) - r)/h",
                       .source = "geometry of a cut that passes the axis at the distance h",
@@ -38,11 +39,11 @@ std::unique_ptr<Effect> make_centre_height(const Request& request) {
                       .steep_at_centre = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
       .reading = radius_of,
-      .value = value,
+      .value = centre_height_value,
       .applies_to = is_face_height,
       .shape = ShapeSpec{.parameter = {"height_mm", "h", "mm", 0.05, 1e-4, 10.0},
                          .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
-                         .derivative = derivative,
+                         .derivative = centre_height_derivative,
                          .range = [](const Stations&) {
                            return std::pair{0.005, 1.0};
                          }}});

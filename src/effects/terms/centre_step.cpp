@@ -5,20 +5,16 @@
 namespace slideway {
 namespace {
 
-double value(double x, double) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
+double centre_step_value(double x, double) { return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0; }
 
 // On one side of the axis it would be an offset.
-bool crosses_the_axis(const Setup& setup) {
-  return is_face_height(setup) && setup.first_mm < setup.center_mm &&
-         setup.center_mm < setup.last_mm;
-}
-
 }  // namespace
 
 std::unique_ptr<Effect> make_centre_step(const Request& request) {
   request.accept_only({});
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description = {.name = "centre_step",
+                      .plain_name = "step at the centre",
                       .standard_name = "synchronous axial error motion of the spindle, odd orders "
                                        "(ISO 230-7)",
                       .formula = "A sgn(X)",
@@ -35,7 +31,7 @@ std::unique_ptr<Effect> make_centre_step(const Request& request) {
                                       "spindle angle; on a radius it cannot be seen"},
       .amplitude = {"height_um", "A", "µm", 0.01},
       .reading = [](const Stations& stations, Eigen::Index i) { return stations.trace(i); },
-      .value = value,
+      .value = centre_step_value,
       .applies_to = crosses_the_axis});
 }
 

@@ -12,25 +12,19 @@ namespace {
 constexpr double kFarthest = 0.1;  // of the radius of the cut
 
 // (|x| - |x - off|)/off is sgn x outside a ramp between 0 and the offset.
-double value(double x, double off) {
+double centring_value(double x, double off) {
   if (off == 0.0) return x > 0.0 ? 1.0 : x < 0.0 ? -1.0 : 0.0;
   return std::clamp((2.0 * x - off) / std::abs(off), -1.0, 1.0);
 }
 
-double derivative(double x, double off) {
+double centring_derivative(double x, double off) {
   const bool on_ramp = off != 0.0 && std::abs(2.0 * x - off) < std::abs(off);
   return on_ramp ? -2.0 * x / (off * std::abs(off)) : 0.0;
 }
 
-std::pair<double, double> search(const Stations& stations) {
+std::pair<double, double> centring_search(const Stations& stations) {
   const double farthest = kFarthest * *stations.setup().cut_radius_mm;
   return {-farthest, farthest};
-}
-
-// On one side of the axis it would be an offset.
-bool crosses_the_axis(const Setup& setup) {
-  return is_face_height(setup) && setup.first_mm < setup.center_mm &&
-         setup.center_mm < setup.last_mm;
 }
 
 }  // namespace
@@ -40,6 +34,7 @@ std::unique_ptr<Effect> make_centring(const Request& request) {
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description =
           {.name = "centring",
+           .plain_name = "trace off centre",
            .standard_name = "trace off the centre of the face (ISO 12781)",
            .formula = "A (|X| - |X - X0|)/X0; A = -Θ X0 of a face with the slope Θ: A sgn X "
                       "where |X| > |X0|",
@@ -56,13 +51,13 @@ std::unique_ptr<Effect> make_centring(const Request& request) {
                            "azimuths: a step of the spindle goes with the azimuth"},
       .amplitude = {"height_um", "A", "µm", 0.01},
       .reading = [](const Stations& stations, Eigen::Index i) { return stations.trace(i); },
-      .value = value,
+      .value = centring_value,
       .applies_to = crosses_the_axis,
       .needs_cut_radius = true,
       .shape = ShapeSpec{.parameter = {"offset_mm", "X0", "mm", 0.05, -1e3, 1e3},
                          .shape = {.parameter = 1, .logarithmic = false, .stepwise = false},
-                         .derivative = derivative,
-                         .range = search}});
+                         .derivative = centring_derivative,
+                         .range = centring_search}});
 }
 
 }  // namespace slideway

@@ -9,9 +9,9 @@ namespace slideway {
 namespace {
 
 // sqrt(r² + d²) - r without the cancellation at large r.
-double value(double r, double d) { return d * d / (std::hypot(r, d) + r); }
+double chord_value(double r, double d) { return d * d / (std::hypot(r, d) + r); }
 
-double derivative(double r, double d) { return d / std::hypot(r, d); }
+double chord_derivative(double r, double d) { return d / std::hypot(r, d); }
 
 }  // namespace
 
@@ -20,6 +20,7 @@ std::unique_ptr<Effect> make_chord(const Request& request) {
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description =
           {.name = "chord",
+           .plain_name = "trace beside the diameter",
            .standard_name = "trace beside the diameter of the face (ISO 12781)",
            .formula = "Θ (sqrt(r² + d²) - r)",
            .source = "the form z at the radius sqrt(r² + d²) that the stylus is at, instead of r; "
@@ -35,11 +36,11 @@ std::unique_ptr<Effect> make_chord(const Request& request) {
       .amplitude = {"slope_um_per_m", "Θ", "µm/m", 10.0},
       .unit = kMicrometre / kMetre,
       .reading = radius_of,
-      .value = value,
+      .value = chord_value,
       .applies_to = is_face_height,
       .shape = ShapeSpec{.parameter = {"distance_mm", "d", "mm", 0.05, 1e-4, 10.0},
                          .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
-                         .derivative = derivative,
+                         .derivative = chord_derivative,
                          .range = [](const Stations&) {
                            return std::pair{0.005, 2.0};
                          }}});

@@ -9,13 +9,14 @@ namespace slideway {
 namespace {
 
 constexpr int kFewestLobes = 2, kMostLobes = 4;
-constexpr int kAmplitudes = 2 * (kMostLobes - kFewestLobes + 1);
+constexpr int kLobeAmplitudes = 2 * (kMostLobes - kFewestLobes + 1);
 constexpr double kHalfTurn = 180.0;         // degrees
 constexpr std::size_t kFewestAzimuths = 3;  // the form all traces share, cosine and sine
 constexpr double kSameAzimuth = 1e-6;       // degrees
 
-Description describe() {
+Description describe_chucking_lobes() {
   return {.name = "chucking_lobes",
+          .plain_name = "chucking lobes",
           .standard_name = "flatness deviation with lobes around the axis (ISO 12781)",
           .formula =
               "Σ_n (r/R)^n (a_n cos nθ + b_n sin nθ), n = 2, 3, 4; θ the azimuth_deg of the trace, "
@@ -54,7 +55,8 @@ double direction_of(double azimuth_deg) {
 class ChuckingLobes : public LinearEffect {
  public:
   ChuckingLobes()
-      : LinearEffect(describe(), lobe_parameters(), diagonal_map(kAmplitudes, kMicrometre)) {}
+      : LinearEffect(describe_chucking_lobes(), lobe_parameters(),
+                     diagonal_map(kLobeAmplitudes, kMicrometre)) {}
 
   [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_face_height(setup); }
 

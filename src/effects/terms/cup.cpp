@@ -16,6 +16,7 @@ std::unique_ptr<Effect> make_cup(const Request& request) {
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description =
           {.name = "cup",
+           .plain_name = "cupped workpiece",
            .standard_name = "axisymmetric flatness deviation, concave or convex (ISO 12781)",
            .formula = "A (r/R)²",
            .source = "plate bending under axisymmetric load",

@@ -13,9 +13,9 @@ double from_rim(const Stations& stations, Eigen::Index i) {
   return std::min(stations.radius(i) - *stations.setup().cut_radius_mm, 0.0);
 }
 
-double value(double distance, double width) { return std::exp(distance / width); }
+double edge_roll_off_value(double distance, double width) { return std::exp(distance / width); }
 
-double derivative(double distance, double width) {
+double edge_roll_off_derivative(double distance, double width) {
   return -distance / (width * width) * std::exp(distance / width);
 }
 
@@ -25,6 +25,7 @@ std::unique_ptr<Effect> make_edge_roll_off(const Request& request) {
   request.accept_only({});
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description = {.name = "edge_roll_off",
+                      .plain_name = "edge roll-off",
                       .standard_name = "edge of undefined shape at the rim (ISO 13715)",
                       .formula = "A exp((r - R)/w)",
                       .source = "empirical shape of a rim",
@@ -40,12 +41,12 @@ std::unique_ptr<Effect> make_edge_roll_off(const Request& request) {
                           "directions"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
       .reading = from_rim,
-      .value = value,
+      .value = edge_roll_off_value,
       .applies_to = is_face_height,
       .needs_cut_radius = true,
       .shape = ShapeSpec{.parameter = {"width_mm", "w", "mm", 0.1, 1e-3, 10.0},
                          .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
-                         .derivative = derivative,
+                         .derivative = edge_roll_off_derivative,
                          .range = [](const Stations&) {
                            return std::pair{0.02, 1.0};
                          }}});

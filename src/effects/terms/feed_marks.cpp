@@ -10,9 +10,10 @@ namespace {
 
 constexpr int kMostHarmonics = 8;
 
-Description describe() {
+Description describe_feed_marks() {
   return {
       .name = "feed_marks",
+      .plain_name = "feed marks",
       .standard_name = "kinematic roughness, scallop height f²/(8 r_ε)",
       .formula =
           "A (f/f_max)² (4u² - 1/3), u in [-1/2, 1/2] across each groove of width f; f_max the "
@@ -42,7 +43,8 @@ double scallop(const Stations& stations, Eigen::Index i) {
 class FeedMarks : public LinearEffect {
  public:
   explicit FeedMarks(double coarsest_feed_mm)
-      : LinearEffect(describe(), {{"amplitude_um", "A", "µm", 0.1}}, diagonal_map(1, kMicrometre)),
+      : LinearEffect(describe_feed_marks(), {{"amplitude_um", "A", "µm", 0.1}},
+                     diagonal_map(1, kMicrometre)),
         coarsest_feed_mm_(coarsest_feed_mm) {}
 
   [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_face_height(setup); }
@@ -84,7 +86,8 @@ std::vector<Parameter> harmonics(int degree) {
 class FeedMarksOfOneCut : public LinearEffect {
  public:
   explicit FeedMarksOfOneCut(int degree)
-      : LinearEffect(describe(), harmonics(degree), diagonal_map(2 * degree, kMicrometre)) {}
+      : LinearEffect(describe_feed_marks(), harmonics(degree),
+                     diagonal_map(2 * degree, kMicrometre)) {}
 
   [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_face_height(setup); }
 

@@ -12,8 +12,9 @@ namespace {
 // the slope of the locus of the load.
 constexpr double kPitchOfSag = 0.5;
 
-Description describe() {
+Description describe_gantry_sag() {
   return {.name = "gantry_sag",
+          .plain_name = "sag of the cross-beam",
           .standard_name = "E_ZX and E_BX of X from the elastic deflection of its beam (ISO 230-1)",
           .formula =
               "δ(x) - p_x δ'(x)/2 with δ(x) = A 16 x² (L - x)² / L⁴, L = span_mm; A counts "
@@ -34,7 +35,8 @@ Description describe() {
 class GantrySag : public LinearEffect {
  public:
   GantrySag(int body, double span)
-      : LinearEffect(describe(), {{"sag_um", "A", "µm", 0.1}}, diagonal_map(1, kMicrometre)),
+      : LinearEffect(describe_gantry_sag(), {{"sag_um", "A", "µm", 0.1}},
+                     diagonal_map(1, kMicrometre)),
         body_(body),
         span_(span) {}
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "../linear_effect.hpp"
@@ -7,25 +8,29 @@
 namespace slideway {
 namespace {
 
-constexpr int kAmplitudes = 3;
+constexpr int kHysteresisAmplitudes = 3;
 
-Description describe() {
-  return {.name = "hysteresis",
-          .standard_name = "reversal error of the straightness of X (ISO 230-2)",
-          .formula =
-              "±(h_0 + h_1 u + h_2 u²), + outward, - inward; u = r/R on a face, x over its "
-              "largest size along the slide",
-          .source = "ISO 230-2, reversal value",
-          .cause =
-              "clearance and friction of the guideway: the carriage leans the other way when "
-              "it travels the other way",
-          .typical = "below 20 nm (aerostatic), 0.05 to 1 µm (sliding ways)",
-          .variable = IndependentVariable::slide,
-          .confounded_with =
-              "with cuts in one direction only, straightness; a size of each cut's "
-              "own of thermal_drift",
-          .confounded_effects = {"straightness", "thermal_drift"},
-          .separated_by = "a second cut in each direction: what goes with the direction repeats"};
+Description describe_hysteresis() {
+  return {
+      .name = "hysteresis",
+      .plain_name = "reversal error",
+      .standard_name = "reversal error of the straightness of X (ISO 230-2)",
+      .formula =
+          "±(h_0 + h_1 u + h_2 u²), + outward, - inward; u = r/R on a face, x over its "
+          "largest size along the slide",
+      .source = "ISO 230-2, reversal value",
+      .cause =
+          "clearance and friction of the guideway: the carriage leans the other way when "
+          "it travels the other way",
+      .typical = "below 20 nm (aerostatic), 0.05 to 1 µm (sliding ways)",
+      .variable = IndependentVariable::slide,
+      .confounded_with =
+          "with cuts in one direction only, straightness; a size of each cut's "
+          "own of thermal_drift",
+      .confounded_effects = {"straightness", "thermal_drift"},
+      .separated_by =
+          "two cuts in each direction: what goes with the direction repeats, what one cut alone "
+          "has does not"};
 }
 
 double relative_place(const Stations& stations, Eigen::Index i) {
@@ -38,11 +43,11 @@ double relative_place(const Stations& stations, Eigen::Index i) {
 class Hysteresis : public LinearEffect {
  public:
   Hysteresis()
-      : LinearEffect(describe(),
+      : LinearEffect(describe_hysteresis(),
                      {{"offset_um", "h_0", "µm", 0.1},
                       {"tilt_um", "h_1", "µm", 0.1},
                       {"bow_um", "h_2", "µm", 0.1}},
-                     diagonal_map(kAmplitudes, kMicrometre)) {}
+                     diagonal_map(kHysteresisAmplitudes, kMicrometre)) {}
 
   [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_height(setup); }
 
@@ -55,13 +60,14 @@ class Hysteresis : public LinearEffect {
 
   [[nodiscard]] std::vector<std::string> lacking_together(
       const std::vector<const Setup*>& setups) const override {
-    bool inward = false, outward = false;
+    int inward = 0, outward = 0, needed = 1;
     for (const Setup* setup : setups) {
-      inward = inward || setup->cut_direction == CutDirection::inward;
-      outward = outward || setup->cut_direction == CutDirection::outward;
+      inward += setup->cut_direction == CutDirection::inward;
+      outward += setup->cut_direction == CutDirection::outward;
+      if (setup->kind == Kind::face) needed = 2;
     }
-    if (inward && outward) return {};
-    return {"cuts of both cut_direction"};
+    if (std::min(inward, outward) >= needed) return {};
+    return {needed == 1 ? "readings of both cut_direction" : "two cuts of each cut_direction"};
   }
 
   void columns(const Stations& stations, std::span<const double> /*shape*/,

@@ -8,6 +8,7 @@ std::unique_ptr<Effect> make_linear_drift(const Request& request) {
   request.accept_only({});
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description = {.name = "linear_drift",
+                      .plain_name = "steady drift",
                       .standard_name = "thermal distortion in Z at a constant rate (ISO 230-3)",
                       .formula = "a t",
                       .source = "ISO 230-3",

@@ -23,8 +23,9 @@ Eigen::ArrayXd gaussian(const Eigen::ArrayXd& u) {
   return (u.abs() < kReach).select((-0.5 * u.square()).exp(), 0.0);
 }
 
-Description describe() {
+Description describe_local_form() {
   return {.name = "local_form",
+          .plain_name = "local form of the slide",
           .standard_name = "E_ZX, local straightness error of X (ISO 230-1)",
           .formula = "A exp(-(x - x_0)²/(2 w²))",
           .source = "a deviation of the way at one place; Gaussian, so that it has no other end",
@@ -45,7 +46,7 @@ Description describe() {
 class LocalForm : public LinearEffect {
  public:
   LocalForm()
-      : LinearEffect(describe(),
+      : LinearEffect(describe_local_form(),
                      {{"amplitude_um", "A", "µm", 0.1},
                       {"position_mm", "x_0", "mm", 1.0, -kFarthestMm, kFarthestMm},
                       {"width_mm", "w", "mm", 1.0, kNarrowestMm, kWidestMm}},

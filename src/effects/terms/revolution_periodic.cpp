@@ -6,7 +6,7 @@ namespace slideway {
 namespace {
 
 // One groove per turn samples a face: above half a cycle per turn everything is an alias.
-std::pair<double, double> search(const Stations& stations) {
+std::pair<double, double> revolution_periodic_search(const Stations& stations) {
   const VariableRange range = range_of(stations, revolution_of);
   const double limit = 0.5 / range.step;
   const bool is_face = stations.setup().kind == Kind::face;
@@ -20,6 +20,7 @@ std::unique_ptr<Effect> make_revolution_periodic(const Request& request) {
   return std::make_unique<PeriodicEffect>(PeriodicSpec{
       .description =
           {.name = "revolution_periodic",
+           .plain_name = "axial spindle motion",
            .standard_name = "asynchronous axial error motion of the spindle (ISO 230-7)",
            .formula = "A cos(2πνk + φ), k = t rpm/60",
            .source = "ISO 230-7",
@@ -36,7 +37,7 @@ std::unique_ptr<Effect> make_revolution_periodic(const Request& request) {
       .rate = {"cycles_per_revolution", "ν", "1", 0.1, 0.0, 1e4},
       .rate_is_period = false,
       .reading = cutting_revolution_of,
-      .range = search,
+      .range = revolution_periodic_search,
       .applies_to = is_height});
 }
 

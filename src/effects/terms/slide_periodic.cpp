@@ -8,9 +8,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kTurn = 2.0 * kPi;
-
-std::pair<double, double> search(const Stations& stations) {
+std::pair<double, double> slide_periodic_search(const Stations& stations) {
   const VariableRange range = range_of(stations, slide_of);
   return {std::max(4.0 * range.step, 0.1), range.extent()};
 }
@@ -23,7 +21,7 @@ class SlidePeriodic : public PeriodicEffect {
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
     if (is_height(stations.setup())) return PeriodicEffect::columns(stations, shape, out);
-    const double wave = kTurn / shape[0];
+    const double wave = 2.0 * kPi / shape[0];
     const auto line = [wave](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value,
                              Eigen::ArrayXXd& slope) {
       const Eigen::ArrayXd cosine = (wave * x).cos(), sine = (wave * x).sin();
@@ -45,7 +43,7 @@ class SlidePeriodic : public PeriodicEffect {
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
     if (is_height(stations.setup()))
       return PeriodicEffect::derivatives(stations, shape, which, out);
-    const double wave = kTurn / shape[0];
+    const double wave = 2.0 * kPi / shape[0];
     const double change = -wave / shape[0];  // d wave / d period
     const auto line = [=](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value, Eigen::ArrayXXd& slope) {
       const Eigen::ArrayXd cosine = (wave * x).cos(), sine = (wave * x).sin();
@@ -62,6 +60,7 @@ std::unique_ptr<Effect> make_slide_periodic(const Request& request) {
   request.accept_only({});
   return std::make_unique<SlidePeriodic>(PeriodicSpec{
       .description = {.name = "slide_periodic",
+                      .plain_name = "wave along the slide",
                       .standard_name = "E_ZX, periodic straightness error motion of X (ISO 230-1)",
                       .formula = "A cos(2πx/λ + φ)",
                       .source = "effect of the guideway, periodic in the slide coordinate",
@@ -82,7 +81,7 @@ std::unique_ptr<Effect> make_slide_periodic(const Request& request) {
       .rate = {"period_mm", "λ", "mm", 1.0, 1e-3, 1e5},
       .rate_is_period = true,
       .reading = slide_of,
-      .range = search,
+      .range = slide_periodic_search,
       .applies_to = sees_carriage});
 }
 

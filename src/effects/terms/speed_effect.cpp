@@ -15,9 +15,11 @@ double log_speed_ratio(const Stations& stations, Eigen::Index i) {
   return std::log(std::max(stations.radius(i), kSmallestRadius) / *stations.setup().cut_radius_mm);
 }
 
-double value(double log_ratio, double exponent) { return std::expm1(-exponent * log_ratio); }
+double speed_effect_value(double log_ratio, double exponent) {
+  return std::expm1(-exponent * log_ratio);
+}
 
-double derivative(double log_ratio, double exponent) {
+double speed_effect_derivative(double log_ratio, double exponent) {
   return -log_ratio * std::exp(-exponent * log_ratio);
 }
 
@@ -27,6 +29,7 @@ std::unique_ptr<Effect> make_speed_effect(const Request& request) {
   request.accept_only({});
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description = {.name = "speed_effect",
+                      .plain_name = "effect of cutting speed",
                       .standard_name = "deflection by the cutting force, its dependence on the "
                                        "cutting speed",
                       .formula = "A ((max(r, 0.02 mm)/R)^-m - 1)",
@@ -42,12 +45,12 @@ std::unique_ptr<Effect> make_speed_effect(const Request& request) {
                       .steep_at_centre = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.01, 0.0},
       .reading = log_speed_ratio,
-      .value = value,
+      .value = speed_effect_value,
       .applies_to = is_face_height,
       .needs_cut_radius = true,
       .shape = ShapeSpec{.parameter = {"exponent", "m", "1", 0.2, 0.01, 1.0},
                          .shape = {.parameter = 1, .logarithmic = false, .stepwise = false},
-                         .derivative = derivative,
+                         .derivative = speed_effect_derivative,
                          .range = [](const Stations&) {
                            return std::pair{0.05, 0.6};
                          }}});

@@ -14,9 +14,9 @@ namespace {
 constexpr int kHarmonics = 2;
 constexpr int kAmplitudes = 4 * kHarmonics;  // cos, sin and their growth
 constexpr double kRpmNoReach = 1e-9;
-constexpr double kRpmReach = 0.02;  // share of the nominal speed that is searched
-constexpr int kMostDegree = 5;      // of the angle as a polynomial in time
-constexpr double kMostTurns = 1e3;  // of a drift
+constexpr double kRpmReach = 0.02;   // share of the nominal speed that is searched
+constexpr int kMostAngleDegree = 5;  // of the angle as a polynomial in time
+constexpr double kMostTurns = 1e3;   // of a drift
 
 std::vector<Parameter> runout_parameters(int degree) {
   std::vector<Parameter> list;
@@ -42,9 +42,10 @@ std::vector<Shape> runout_shapes(int degree) {
   return list;
 }
 
-Description describe() {
+Description describe_spindle_runout() {
   return {
       .name = "spindle_runout",
+      .plain_name = "spindle run-out",
       .standard_name =
           "synchronous axial and tilt error motion, run-out of a test bar "
           "(ISO 230-7)",
@@ -82,20 +83,22 @@ double scaled_position(const Stations& stations, Eigen::Index i) {
 }
 
 /// P_0 to P_degree at τ, the time of a reading along the slide from -1 to 1.
-std::array<double, kMostDegree + 1> legendre(const Stations& stations, Eigen::Index i) {
-  const double position = scaled_position(stations, i);
+/// Recurrence of Abramowitz and Stegun, Table 22.7.
+std::array<double, kMostAngleDegree + 1> legendre(const Stations& stations, double position) {
+  static constexpr double kRise[] = {1.0, 3.0 / 2.0, 5.0 / 3.0, 7.0 / 4.0, 9.0 / 5.0};
+  static constexpr double kFall[] = {0.0, 1.0 / 2.0, 2.0 / 3.0, 3.0 / 4.0, 4.0 / 5.0};
   const bool back = stations.setup().cut_direction == CutDirection::inward;
-  std::array<double, kMostDegree + 1> p{1.0, back ? -position : position};
-  for (int d = 1; d < kMostDegree; ++d)
-    p[d + 1] = ((2 * d + 1) * p[1] * p[d] - d * p[d - 1]) / (d + 1);
+  std::array<double, kMostAngleDegree + 1> p{1.0, back ? -position : position};
+  for (int d = 1; d < kMostAngleDegree; ++d)
+    p[d + 1] = kRise[d] * p[1] * p[d] - kFall[d] * p[d - 1];
   return p;
 }
 
 class SpindleRunout : public LinearEffect {
  public:
   explicit SpindleRunout(int degree)
-      : LinearEffect(describe(), runout_parameters(degree), diagonal_map(kAmplitudes, kMicrometre),
-                     runout_shapes(degree)) {}
+      : LinearEffect(describe_spindle_runout(), runout_parameters(degree),
+                     diagonal_map(kAmplitudes, kMicrometre), runout_shapes(degree)) {}
 
   [[nodiscard]] std::pair<double, double> search_range(int shape,
                                                        const Stations& stations) const override {
@@ -133,19 +136,21 @@ class SpindleRunout : public LinearEffect {
 
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
-    fill(stations, shape, out, [](Eigen::Index, int, double& /*c*/, double& /*s*/) {});
+    fill(stations, shape, out, [](Eigen::Index, double, int, double& /*c*/, double& /*s*/) {});
   }
 
   void derivatives(const Stations& stations, std::span<const double> shape, int which,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
-    fill(stations, shape, out, [&](Eigen::Index i, int h, double& cosine, double& sine) {
+    const auto slope_of = [&](Eigen::Index i, double position, int h, double& cosine,
+                              double& sine) {
       const double turns =
-          which == 0 ? stations.time(i) / kMinute : legendre(stations, i)[which + 1];
+          which == 0 ? stations.time(i) / kMinute : legendre(stations, position)[which + 1];
       const double angle = 2.0 * kPi * h * turns;
       const double slope = -angle * sine;
       sine = angle * cosine;
       cosine = slope;
-    });
+    };
+    fill(stations, shape, out, slope_of);
   }
 
   // The rate of the angle from one end of the drift to the other.
@@ -153,9 +158,12 @@ class SpindleRunout : public LinearEffect {
                                             std::span<const double> shape) const override {
     const VariableRange time = range_of(stations, time_of);
     double low = INFINITY, high = -INFINITY;
+    double before = turn(stations, shape, 0, scaled_position(stations, 0));
     for (Eigen::Index i = 1; i < stations.size(); ++i) {
       const double passed = stations.time(i) - stations.time(i - 1);
-      const double rate = (turn(stations, shape, i) - turn(stations, shape, i - 1)) / passed;
+      const double now = turn(stations, shape, i, scaled_position(stations, i));
+      const double rate = (now - before) / passed;
+      before = now;
       low = std::min(low, rate * time.extent());
       high = std::max(high, rate * time.extent());
     }
@@ -169,7 +177,7 @@ class SpindleRunout : public LinearEffect {
       const EffectOptions* declared) const override {
     EffectOptions options = declared ? *declared : EffectOptions{};
     std::vector<EffectOptions> out;
-    for (int degree = declared ? options.degree.value_or(1) + 1 : 1; degree <= kMostDegree;
+    for (int degree = declared ? options.degree.value_or(1) + 1 : 1; degree <= kMostAngleDegree;
          ++degree) {
       options.degree = degree;
       out.push_back(options);
@@ -183,10 +191,11 @@ class SpindleRunout : public LinearEffect {
 
  private:
   // κ: the angle of the spindle in turns.
-  static double turn(const Stations& stations, std::span<const double> shape, Eigen::Index i) {
+  static double turn(const Stations& stations, std::span<const double> shape, Eigen::Index i,
+                     double position) {
     double turns = stations.time(i) * shape[0] / kMinute;
     if (shape.size() == 1) return turns;
-    const auto p = legendre(stations, i);
+    const auto p = legendre(stations, position);
     for (std::size_t d = 1; d < shape.size(); ++d) turns += shape[d] * p[d + 1];
     return turns;
   }
@@ -198,12 +207,12 @@ class SpindleRunout : public LinearEffect {
     Phasor phasor;
     for (Eigen::Index i = 0; i < stations.size(); ++i) {
       const double position = scaled_position(stations, i);
-      phasor.turn_to(2.0 * kPi * turn(stations, shape, i));
+      phasor.turn_to(2.0 * kPi * turn(stations, shape, i, position));
       const double c = phasor.cosine(), s = phasor.sine();
       const double cosines[] = {c, (c - s) * (c + s)}, sines[] = {s, 2.0 * s * c};
       for (int h = 1; h <= kHarmonics; ++h) {
         double cosine = cosines[h - 1], sine = sines[h - 1];
-        line(i, h, cosine, sine);
+        line(i, position, h, cosine, sine);
         out.row(i).segment<4>(4 * (h - 1)) << cosine, sine, position * cosine, position * sine;
       }
     }
@@ -214,8 +223,8 @@ class SpindleRunout : public LinearEffect {
 
 std::unique_ptr<Effect> make_spindle_runout(const Request& request) {
   request.accept_only({"degree"});
-  return std::make_unique<SpindleRunout>(request.options.degree ? request.degree(1, kMostDegree)
-                                                                : 1);
+  return std::make_unique<SpindleRunout>(
+      request.options.degree ? request.degree(1, kMostAngleDegree) : 1);
 }
 
 }  // namespace slideway

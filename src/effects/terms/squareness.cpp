@@ -6,8 +6,9 @@
 namespace slideway {
 namespace {
 
-Description describe() {
+Description describe_squareness() {
   return {.name = "squareness",
+          .plain_name = "squareness",
           .standard_name =
               "E_B(0C)X, squareness of X motion to the spindle axis average line "
               "(ISO 230-1)",
@@ -32,7 +33,7 @@ class Squareness : public LinearEffect {
  public:
   explicit Squareness(int body)
       : LinearEffect(
-            describe(),
+            describe_squareness(),
             {{.name = "dbeta_xz", .symbol = "Δβxz", .unit = "rad", .scale = 1e-5, .gauge = 0}},
             diagonal_map(1, 1.0)),
         body_(body) {}

@@ -6,7 +6,7 @@
 namespace slideway {
 namespace {
 
-std::pair<double, double> search(const Stations& stations) {
+std::pair<double, double> step_search(const Stations& stations) {
   const VariableRange range = range_of(stations, radius_of);
   return {range.low + range.step, range.high - range.step};
 }
@@ -17,6 +17,7 @@ std::unique_ptr<Effect> make_step(const Request& request) {
   request.accept_only({});
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description = {.name = "step",
+                      .plain_name = "step",
                       .standard_name = "sudden change of the tool position during the cut",
                       .formula = "A where r < position, else 0",
                       .source = "an event of the cut, at one radius",
@@ -38,7 +39,7 @@ std::unique_ptr<Effect> make_step(const Request& request) {
       .shape = ShapeSpec{.parameter = {"position_mm", "r_c", "mm", 1.0, 0.0},
                          .shape = {.parameter = 1, .logarithmic = false, .stepwise = true},
                          .derivative = nullptr,
-                         .range = search}});
+                         .range = step_search}});
 }
 
 }  // namespace slideway

@@ -12,8 +12,6 @@
 namespace slideway {
 namespace {
 
-constexpr int kMostDegree = 20;
-
 // u in [-1, 1] over the slide travel of all profiles.
 struct Interval {
   double centre, half;
@@ -46,9 +44,10 @@ std::vector<Parameter> parameters_of(int first, int degree, const TravelRange& r
   return parameters;
 }
 
-Description describe() {
+Description describe_straightness() {
   return {
       .name = "straightness",
+      .plain_name = "straightness",
       .standard_name =
           "E_ZX, straightness error motion of X in the direction Z, with the pitch "
           "E_BX that follows from it (ISO 230-1)",
@@ -75,7 +74,7 @@ Description describe() {
 class Straightness : public LinearEffect {
  public:
   Straightness(int body, int first, int degree, const TravelRange& range)
-      : LinearEffect(describe(), parameters_of(first, degree, range),
+      : LinearEffect(describe_straightness(), parameters_of(first, degree, range),
                      powers_from_legendre(degree, interval_of(range))
                          .bottomRightCorner(degree + 1 - first, degree + 1 - first)),
         body_(body),
@@ -121,7 +120,7 @@ class Straightness : public LinearEffect {
     std::vector<EffectOptions> out;
     for (const int more : {1, 2, 4, 6}) {
       options.degree = known + more;
-      if (*options.degree <= kMostDegree) out.push_back(options);
+      if (*options.degree <= kMostPolynomialDegree) out.push_back(options);
     }
     return out;
   }
@@ -173,13 +172,14 @@ class Straightness : public LinearEffect {
 std::unique_ptr<Effect> make_straightness(const Request& request) {
   if (request.options.form == Form::curve) {
     request.accept_only({"body", "form", "resolution_mm"});
-    return make_curved_straightness(request.carriage(Axis::x), describe(), request.options,
-                                    request.range);
+    return make_curved_straightness(request.carriage(Axis::x), describe_straightness(),
+                                    request.options, request.range);
   }
   request.accept_only({"body", "degree", "form"});
   const int first = request.options.above ? *request.options.above + 1 : 0;
   return std::make_unique<Straightness>(request.carriage(Axis::x), first,
-                                        request.degree(first, kMostDegree), request.range);
+                                        request.degree(first, kMostPolynomialDegree),
+                                        request.range);
 }
 
 }  // namespace slideway

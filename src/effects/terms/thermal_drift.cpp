@@ -13,9 +13,11 @@ double since_start(const Stations& stations, Eigen::Index i) {
   return std::max(stations.time(i), 0.0);
 }
 
-double value(double t, double tau) { return -std::expm1(-t / tau); }
+double thermal_drift_value(double t, double tau) { return -std::expm1(-t / tau); }
 
-double derivative(double t, double tau) { return -std::exp(-t / tau) * t / (tau * tau); }
+double thermal_drift_derivative(double t, double tau) {
+  return -std::exp(-t / tau) * t / (tau * tau);
+}
 
 }  // namespace
 
@@ -24,6 +26,7 @@ std::unique_ptr<Effect> make_thermal_drift(const Request& request) {
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description =
           {.name = "thermal_drift",
+           .plain_name = "thermal drift",
            .standard_name = "thermal distortion in Z after a change of the heat input "
                             "(ISO 230-3)",
            .formula = "A (1 - exp(-t/τ))",
@@ -41,12 +44,12 @@ std::unique_ptr<Effect> make_thermal_drift(const Request& request) {
                            "outward (mirrored), a temperature log"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
       .reading = since_start,
-      .value = value,
+      .value = thermal_drift_value,
       .applies_to = is_height,
       .shape = ShapeSpec{
           .parameter = {"time_constant_s", "τ", "s", 60.0, 1.0, 36000.0},
           .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
-          .derivative = derivative,
+          .derivative = thermal_drift_derivative,
           .range = [](const Stations& stations) { return transient_range(stations, time_of); }}});
 }
 

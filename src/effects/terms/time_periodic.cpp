@@ -9,6 +9,7 @@ std::unique_ptr<Effect> make_time_periodic(const Request& request) {
   return std::make_unique<PeriodicEffect>(PeriodicSpec{
       .description =
           {.name = "time_periodic",
+           .plain_name = "periodic drift",
            .standard_name = "ETVE, environmental temperature variation error, cyclic "
                             "(ISO 230-3)",
            .formula = "A cos(2πt/T + φ)",

@@ -13,9 +13,9 @@ double since_start_m(const Stations& stations, Eigen::Index i) {
   return std::max(distance_m_of(stations, i), 0.0);
 }
 
-double value(double s, double distance_m) { return -std::expm1(-s / distance_m); }
+double tool_running_in_value(double s, double distance_m) { return -std::expm1(-s / distance_m); }
 
-double derivative(double s, double distance_m) {
+double tool_running_in_derivative(double s, double distance_m) {
   return -std::exp(-s / distance_m) * s / (distance_m * distance_m);
 }
 
@@ -25,6 +25,7 @@ std::unique_ptr<Effect> make_tool_running_in(const Request& request) {
   request.accept_only({});
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description = {.name = "tool_running_in",
+                      .plain_name = "running-in of the tool",
                       .standard_name = "flank wear of the tool, initial phase (ISO 3685)",
                       .formula = "A (1 - exp(-s/s0))",
                       .source = "s = π (R² - r²)/f inward, π r²/f outward, f the feed per turn",
@@ -40,11 +41,11 @@ std::unique_ptr<Effect> make_tool_running_in(const Request& request) {
                           "changes, time does not), a second feed, an edge already run in"},
       .amplitude = {"amplitude_um", "A", "µm", 0.1, 0.0},
       .reading = since_start_m,
-      .value = value,
+      .value = tool_running_in_value,
       .applies_to = is_face_height,
       .shape = ShapeSpec{.parameter = {"distance_m", "s0", "m", 1.0, 1e-2, 1e3},
                          .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
-                         .derivative = derivative,
+                         .derivative = tool_running_in_derivative,
                          .range = [](const Stations& stations) {
                            return transient_range(stations, distance_m_of);
                          }}});

@@ -9,6 +9,7 @@ std::unique_ptr<Effect> make_tool_wear(const Request& request) {
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description =
           {.name = "tool_wear",
+           .plain_name = "tool wear",
            .standard_name = "flank wear of the tool, steady phase (ISO 3685)",
            .formula = "w s",
            .source = "s = π (R² - r²)/f inward, π r²/f outward, f the feed per turn",

@@ -21,6 +21,7 @@ std::unique_ptr<Effect> make_traverse_datum(const Request& request) {
   request.accept_only({});
   return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
       .description = {.name = "traverse_datum",
+                      .plain_name = "bow of the traverse unit",
                       .standard_name = "straightness of the traverse unit (ISO 3274), odd part",
                       .formula = "A (X/X_max)³, X_max the largest |X| of the trace",
                       .source = "guide profile of the profilometer",

@@ -4,7 +4,7 @@
 namespace slideway {
 namespace {
 
-std::pair<double, double> search(const Stations& stations) {
+std::pair<double, double> traverse_periodic_search(const Stations& stations) {
   const VariableRange range = range_of(stations, measuring_time_of);
   return {0.5 / range.extent(), 0.25 / range.step};
 }
@@ -15,6 +15,7 @@ std::unique_ptr<Effect> make_traverse_periodic(const Request& request) {
   request.accept_only({});
   return std::make_unique<PeriodicEffect>(PeriodicSpec{
       .description = {.name = "traverse_periodic",
+                      .plain_name = "wave of the traverse unit",
                       .standard_name = "periodic disturbance of the measuring instrument",
                       .formula = "A cos(2πfX/v + φ), v the speed of the stylus",
                       .source = "profilometer in its room, not the machine tool",
@@ -30,7 +31,7 @@ std::unique_ptr<Effect> make_traverse_periodic(const Request& request) {
       .rate = {"frequency_hz", "f", "Hz", 1.0, 0.0, 500.0},
       .rate_is_period = false,
       .reading = measuring_time_of,
-      .range = search,
+      .range = traverse_periodic_search,
       .applies_to = is_height});
 }
 

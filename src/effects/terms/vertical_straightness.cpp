@@ -32,8 +32,9 @@ std::vector<Parameter> parameters_of(int degree, double reach) {
   return parameters;
 }
 
-Description describe() {
+Description describe_vertical_straightness() {
   return {.name = "vertical_straightness",
+          .plain_name = "vertical straightness",
           .standard_name = "E_BZ, pitch of Z about Y, from the straightness E_XZ (ISO 230-1)",
           .formula = "-Δβ2(z) p_x with Δβ2(z) = Σ k c_k z^(k-1), k = 1..m",
           .source = "Eqs. (13), (14)",
@@ -56,7 +57,8 @@ Description describe() {
 class VerticalStraightness : public LinearEffect {
  public:
   VerticalStraightness(int body, int degree, double reach)
-      : LinearEffect(describe(), parameters_of(degree, reach), map_of(degree, reach)),
+      : LinearEffect(describe_vertical_straightness(), parameters_of(degree, reach),
+                     map_of(degree, reach)),
         body_(body),
         reach_(reach) {}
 

@@ -4,8 +4,8 @@
 >>> report = slideway.identify("problem.toml")
 >>> print(report.trace.verdict)
 
-A problem is the path of a problem file, or a dict of the same keys; its profiles come from the
-files it names, or from arrays. What is wrong with a problem raises `UsageError`, what is wrong with
+A problem is the path of a problem file, a dict of the same keys, or a `Problem`; its profiles come
+from the files it names, or from arrays. What is wrong with a problem raises `UsageError`, what is wrong with
 the numbers `DataError`; both are `ValueError`. Results are those of the program to the last digit.
 """
 
@@ -22,8 +22,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from slideway import _slideway
 from slideway._made import made
-from slideway._problem import Problem, source
+from slideway._problem import AnyProblem, source
+from slideway._run import Progress, run
 from slideway._slideway import DataError, UsageError, __version__
+from slideway._typed import Arrays, Problem, Profile, Term
 from slideway.report import Report
 
 __all__ = [
@@ -31,8 +33,11 @@ __all__ = [
     "DataError",
     "Decomposition",
     "Effect",
+    "Problem",
+    "Profile",
     "Report",
     "SimulatedProfile",
+    "Term",
     "UsageError",
     "__version__",
     "decompose",
@@ -98,8 +103,8 @@ class Effect:
     >>> Effect(lambda t, a, tau: a * (1 - np.exp(-t / tau)), {"a": "um", "tau": ("s", 1, 600)})
 
     Arguments that are no parameters are variables: arrays of shape (n,) of r, x, X, z, R (mm), theta
-    (rad), t, m (s), k (turns), s (m), feed (mm/min), rpm. It returns shape (n,), um of a height; it
-    must give the same for the same arguments.
+    (rad), t, m, t_read (s), k (turns), s (m), feed (mm/min), rpm. It returns shape (n,), um of a
+    height; it must give the same for the same arguments.
     """
 
     function: Callable[..., ArrayLike]
@@ -140,7 +145,7 @@ def _effect(name: str, effect: Effect) -> tuple[
     )
 
 
-Profiles = Mapping[str, tuple[ArrayLike, ArrayLike]]
+Profiles = Mapping[str, Arrays]
 
 
 def _data_folder(data: str | os.PathLike[str] | None) -> str | os.PathLike[str] | None:
@@ -148,58 +153,70 @@ def _data_folder(data: str | os.PathLike[str] | None) -> str | os.PathLike[str] 
 
 
 def _analysed(
-    problem: Problem,
+    problem: AnyProblem,
     profiles: Profiles | None,
     data: str | os.PathLike[str] | None,
     ranks_only: bool,
     closes_loop: bool,
     effects: Mapping[str, Effect] | None = None,
+    progress: Progress | None = None,
+    timeout: float | None = None,
 ) -> Report:
+    if profiles is None:
+        profiles = problem.arrays() if isinstance(problem, Problem) else {}
     columns = {
-        name: (np.asarray(position, float), np.asarray(value, float))
-        for name, (position, value) in (profiles or {}).items()
+        name: tuple(np.asarray(column, float) for column in arrays)
+        for name, arrays in profiles.items()
     }
-    document, text = _slideway.analyse(
-        source(problem),
-        columns,
-        _data_folder(data),
-        ranks_only,
-        closes_loop,
-        [_effect(name, effect) for name, effect in (effects or {}).items()],
+    given, folder = source(problem), _data_folder(data)
+    own = [_effect(name, effect) for name, effect in (effects or {}).items()]
+    document, text = run(
+        lambda tell, cancellation: _slideway.analyse(
+            given, columns, folder, ranks_only, closes_loop, own, tell, cancellation
+        ),
+        "rank" if ranks_only else "identify",
+        progress,
+        timeout,
     )
-    report: Report = made(Report, json.loads(document) | {"text": text})
+    report: Report = made(Report, json.loads(document) | {"text": text, "json": document})
     return report
 
 
 def identify(
-    problem: Problem,
+    problem: AnyProblem,
     profiles: Profiles | None = None,
     *,
     data: str | os.PathLike[str] | None = None,
     trace: bool = True,
     effects: Mapping[str, Effect] | None = None,
+    progress: Progress | None = None,
+    timeout: float | None = None,
 ) -> Report:
     """The main job: low band, ranking, fit, cross-check, and the closed loop.
 
-    :param problem: path of a problem file, or a dict of the same keys: ``{"machine": {"lever":
+    :param problem: path of a problem file, a `Problem`, or a dict of the same keys: ``{"machine": {"lever":
         "paper"}, "profile": [{"name": ...}], "effect": [{"name": ...}]}``. Paths are relative to
         the problem file, those of a dict to the working directory.
     :param profiles: arrays instead of files, ``{name: (position, value)}``, the name that of a
         ``[[profile]]``; two arrays of shape (n,), in the ``position_unit`` and ``value_unit`` of
         that profile. A value that is NaN is a missing point. A profile of a dict that has arrays
-        needs no ``file``.
+        needs no ``file``. With a ``time_column``: ``(position, value, time)``, in ``time_unit``.
     :param data: what ``${SLIDEWAY_DATA}`` in the problem stands for; default: the environment
         variable
     :param trace: False stops before the closed loop
     :param effects: effects of one's own that the loop looks for, by name
+    :param progress: told what the loop is at and which part of that is done, 0 to 1, in the
+        calling thread
+    :param timeout: seconds; Ctrl-C ends the call at any time as well
+    :raises TimeoutError: not done in that time
     :raises UsageError: the problem is wrong, or an argument
     :raises DataError: the numbers cannot be used
     """
-    return _analysed(problem, profiles, data, False, trace, effects)
+    return _analysed(problem, profiles, data, False, trace, effects, progress, timeout)
 
 
 def rank(
-    problem: Problem,
+    problem: AnyProblem,
     profiles: Profiles | None = None,
     *,
     data: str | os.PathLike[str] | None = None,
@@ -238,7 +255,7 @@ def rank_columns(
 
 
 def simulate(
-    problem: Problem,
+    problem: AnyProblem,
     *,
     seed: int | None = None,
     data: str | os.PathLike[str] | None = None,

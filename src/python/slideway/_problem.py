@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from slideway._slideway import UsageError
+from slideway._typed import Problem
 
-Problem = str | os.PathLike[str] | Mapping[str, Any]
+AnyProblem = str | os.PathLike[str] | Mapping[str, Any] | Problem
 
 
 def plain(value: Any, where: str = "problem") -> Any:
@@ -43,10 +44,12 @@ def plain(value: Any, where: str = "problem") -> Any:
     )
 
 
-def source(problem: Problem) -> Any:
+def source(problem: AnyProblem) -> Any:
     """A path, or a plain dict."""
+    if isinstance(problem, Problem):
+        return plain(problem.to_dict())
     if isinstance(problem, Mapping):
         return plain(problem)
     if isinstance(problem, (str, os.PathLike)):
         return os.fspath(problem)
-    raise UsageError(f"problem: {type(problem).__name__}; accepted: path of a problem file, or dict")
+    raise UsageError(f"problem: {type(problem).__name__}; accepted: path of a problem file, dict, or Problem")

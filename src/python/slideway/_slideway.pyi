@@ -10,9 +10,12 @@ __version__: str
 class UsageError(ValueError): ...
 class DataError(ValueError): ...
 
+class Cancellation:
+    def cancel(self) -> None: ...
+
 def analyse(
     problem: str | dict[str, Any],
-    profiles: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]],
+    profiles: dict[str, tuple[NDArray[np.float64], ...]],
     data: str | os.PathLike[str] | None,
     ranks_only: bool,
     closes_loop: bool,
@@ -27,7 +30,12 @@ def analyse(
             str,
         ]
     ],
+    progress: Callable[[str, float], object],
+    cancellation: Cancellation,
 ) -> tuple[str, str]: ...
+def page(json: str) -> str: ...
+def picture(json: str) -> str: ...
+def value_text(value: float, expanded_uncertainty: float) -> str: ...
 def simulate(
     problem: str | dict[str, Any], seed: int | None, data: str | os.PathLike[str] | None
 ) -> list[tuple[str, str, str, NDArray[np.float64], NDArray[np.float64]]]: ...

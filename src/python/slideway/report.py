@@ -17,6 +17,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from slideway._shown import Shown
+
 
 @dataclass(frozen=True)
 class Assumption:
@@ -567,6 +569,42 @@ class Round:
 
 
 @dataclass(frozen=True)
+class UnnamedForm:
+    """A short formula that describes what is left: no cause."""
+
+    form: str
+    formula: str
+    """in um of a height, urad of a slope"""
+    profiles: list[str]
+    """those it describes; empty: all"""
+    instead_of: str
+    """the accepted effect it takes the place of; empty: none"""
+    parameters: list[Parameter]
+    delta_bic: float
+    """against the effects as accepted"""
+    before_rms_um: float | None
+    after_rms_um: float | None
+    before_rms_urad: float | None
+    after_rms_urad: float | None
+    before_holdout_rms_um: float | None
+    after_holdout_rms_um: float | None
+    candidate: str
+    """[[trace.candidate]] of a problem file"""
+
+
+@dataclass(frozen=True, eq=False)
+class UnnamedCurve:
+    """What is left without a name, as a curve over its variable."""
+
+    variable: str
+    unit: str
+    value_unit: Literal["um", "urad"]
+    at: NDArray[np.float64]
+    residual: NDArray[np.float64]
+    expanded_uncertainty: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
 class Unnamed:
     """What is left and has no name: how much, where, on which clock."""
 
@@ -584,6 +622,11 @@ class Unnamed:
     correlation_unit: str
     dominant_period_mm: float | None
     odd_share: float | None
+    forms: list[UnnamedForm]
+    """formulas that describe it, best first"""
+    to_confirm: str
+    """what to measure before a form is taken for a cause"""
+    curve: UnnamedCurve
 
 
 @dataclass(frozen=True)
@@ -677,6 +720,10 @@ class Trace:
     """The closed loop."""
 
     verdict: Literal["nothing_missing", "explained", "ambiguous", "unnamed", "not_identifiable"]
+    unfinished: bool
+    """the time limit ended the search: no effect is named"""
+    not_looked_at: list[str]
+    """what the time limit left out"""
     gates: dict[str, float]
     """the limits that were used"""
     fragile: Fragile | None
@@ -853,8 +900,8 @@ class Curves:
     profiles: list[ProfileCurves]
 
 
-@dataclass(frozen=True)
-class Report:
+@dataclass(frozen=True, repr=False)
+class Report(Shown):
     """All that is found in one problem."""
 
     schema: str
@@ -888,6 +935,5 @@ class Report:
     curves: Curves | None
     text: str = dataclasses.field(default="", repr=False, compare=False)
     """what the program prints"""
-
-    def __str__(self) -> str:
-        return self.text
+    json: str = dataclasses.field(default="", repr=False, compare=False)
+    """what the program writes"""

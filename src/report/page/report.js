@@ -39,7 +39,7 @@
     const own = {id: figure.id, profile: figure.id.split('-')[0], data};
     const series = {};
     for (const one of data.series)
-      series[one.name] = {strokePattern: dash[one.style], strokeWidth: width[one.style]};
+      series[one.name] = {strokePattern: dash[one.style], strokeWidth: width[one.style], drawPoints: data.markers, pointSize: 2.5};
     own.chart = new Dygraph(plot, data.position.map((x, i) => [x, ...data.series.map((one) => one.values[i])]), {
       ...colours(data),
       labels: ['position', ...data.series.map((one) => one.name)],

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace slideway {
+
+/// Orthonormal bases, one for each profile, in rows of profiles that stand under one another.
+class ProfileBases {
+ public:
+  /// @param columns  white, in any form
+  void add(Eigen::MatrixXd columns);
+
+  [[nodiscard]] const Eigen::MatrixXd& operator[](std::size_t profile) const {
+    return bases_[profile];
+  }
+  [[nodiscard]] std::size_t size() const { return bases_.size(); }
+
+  /// The same in some rows of each profile.
+  /// @param rows  rising, of all profiles
+  [[nodiscard]] ProfileBases in(const std::vector<Eigen::Index>& rows) const;
+
+  void take_out(Eigen::MatrixXd& white) const;
+
+  /// White columns without what the bases span; zero where that is all.
+  [[nodiscard]] Eigen::MatrixXd beside(Eigen::MatrixXd white) const;
+
+ private:
+  std::vector<Eigen::MatrixXd> bases_;
+};
+
+}  // namespace slideway

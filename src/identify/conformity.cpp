@@ -1,0 +1,119 @@
+#include "slideway/identify/conformity.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/effects/catalogue.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr double kCoverage = 2.0;  // of the noise of a low-band value, which is well known
+
+/// Whether a trace reads the face on both sides of the axis.
+bool is_diameter(const Profile& profile) {
+  const double center = profile.setup.center_mm;
+  return profile.positions.front() < center && profile.positions.back() > center;
+}
+
+/// The rows of an observation that a fit uses.
+std::vector<Eigen::Index> fitted_rows(const Observation& observation) {
+  std::vector<Eigen::Index> rows;
+  const auto left_out = left_out_values(observation);
+  for (Eigen::Index i = 0; i < observation.values.size(); ++i)
+    if (!std::ranges::binary_search(left_out, i)) rows.push_back(i);
+  return rows;
+}
+
+/// A low-band value as a height in µm: the orthonormal transform scales it by sqrt(2)^level.
+double micrometres(const Observation& observation) {
+  return std::sqrt(static_cast<double>(observation.values.size()) /
+                   static_cast<double>(observation.low_band.samples())) /
+         kMicrometre;
+}
+
+/// Peak to valley in µm, after the least-squares line of a diameter, or the mean of a radius.
+double peak_to_valley_um(const Observation& observation) {
+  const Profile& profile = *observation.profile;
+  const std::vector<Eigen::Index> rows = fitted_rows(observation);
+  Eigen::MatrixXd reference = Eigen::MatrixXd::Ones(std::ssize(profile.positions), 1);
+  if (is_diameter(profile)) {
+    reference.conservativeResize(Eigen::NoChange, 2);
+    reference.col(1) =
+        Eigen::Map<const Eigen::VectorXd>(profile.positions.data(), std::ssize(profile.positions));
+  }
+  const Eigen::MatrixXd line =
+      Eigen::MatrixXd(observation.low_band.apply(reference))(rows, Eigen::all);
+  const Eigen::VectorXd values = observation.values(rows);
+  const Eigen::VectorXd rest = values - line * line.colPivHouseholderQr().solve(values);
+  return (rest.maxCoeff() - rest.minCoeff()) * micrometres(observation);
+}
+
+QuantityValue flatness(const FittedModel& fitted) {
+  QuantityValue out;
+  const auto& observations = fitted.fit.linear.observations;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Observation& observation = *observations[i];
+    const Profile& profile = *observation.profile;
+    if (profile.setup.kind != Kind::face || profile.setup.quantity != Quantity::height) continue;
+    if (profile.free_tilt && !is_diameter(profile)) return {};
+    const double value = peak_to_valley_um(observation);
+    if (value <= out.value.value_or(0.0)) continue;
+    const double of_value = fitted.fit.noise[i].standard_deviation() * micrometres(observation);
+    out.value = value;
+    out.standard_uncertainty = std::sqrt(2.0) * of_value;
+    out.expanded_uncertainty = kCoverage * *out.standard_uncertainty;
+    out.coverage_factor = kCoverage;
+  }
+  return out;
+}
+
+QuantityValue straightness(const ModelResult& summary) {
+  if (summary.straightness)
+    for (const StraightnessError& error : summary.straightness->errors)
+      if (error.line == ReferenceLineKind::minimum_zone) return error;
+  return {};
+}
+
+QuantityValue squareness(const ModelResult& summary) {
+  for (const FittedParameter& parameter : summary.parameters) {
+    if (motion_error_of(parameter.name) != MotionError::squareness || !parameter.value) continue;
+    QuantityValue out = parameter;
+    out.value = std::abs(*parameter.value) / kMicroradian;
+    if (parameter.expanded_uncertainty)
+      out.expanded_uncertainty = *parameter.expanded_uncertainty / kMicroradian;
+    return out;
+  }
+  return {};
+}
+
+}  // namespace
+
+ConformityVerdict conformity_verdict(const QuantityValue& value, double limit) {
+  if (!value.value || !value.expanded_uncertainty) return ConformityVerdict::undecided;
+  const double size = std::abs(*value.value), guard = *value.expanded_uncertainty;
+  if (size + guard <= limit) return ConformityVerdict::conforms;
+  return size - guard > limit ? ConformityVerdict::does_not_conform : ConformityVerdict::undecided;
+}
+
+std::vector<Conformity> conformity_of(const Problem& problem, const FittedModel& fitted,
+                                      const ModelResult& summary) {
+  const auto& [flatness_um, straightness_um, squareness_um_per_m] = problem.tolerance;
+  std::vector<Conformity> out;
+  const auto decide = [&](const char* what, const QuantityValue& value, double limit,
+                          bool is_angle) {
+    Conformity& each = out.emplace_back();
+    each.what = what;
+    (is_angle ? each.value_um_per_m : each.value_um) = value.value;
+    (is_angle ? each.U_um_per_m : each.U_um) = value.expanded_uncertainty;
+    (is_angle ? each.limit_um_per_m : each.limit_um) = limit;
+    each.verdict = conformity_verdict(value, limit);
+  };
+  if (flatness_um) decide("flatness", flatness(fitted), *flatness_um, false);
+  if (straightness_um) decide("straightness", straightness(summary), *straightness_um, false);
+  if (squareness_um_per_m) decide("squareness", squareness(summary), *squareness_um_per_m, true);
+  return out;
+}
+
+}  // namespace slideway

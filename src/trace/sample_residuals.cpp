@@ -1,0 +1,64 @@
+#include "sample_residuals.hpp"
+
+#include <algorithm>
+
+#include "slideway/identify/linear_algebra.hpp"
+
+namespace slideway {
+
+SampleResiduals::Trace::Trace(const Observation& observation) : profile(observation.profile) {
+  const auto count = std::ssize(profile->positions);
+  const Eigen::Index values = std::max<Eigen::Index>(observation.low_band.values(), 1);
+  const Eigen::Index each = (count + values - 1) / values;
+  for (const Eigen::Index value : left_out_values(observation)) {
+    const Eigen::Index first = std::min(value * each, count);
+    left_out.emplace_back(first, std::min(each, count - first));
+  }
+  level.resize(count, 2);
+  level.col(0).setOnes();
+  level.col(1) = Eigen::Map<const Eigen::VectorXd>(profile->positions.data(), count);
+  for (const auto& [first, those] : left_out) level.middleRows(first, those).setZero();
+  level = orthonormal(std::move(level));
+}
+
+Eigen::VectorXd SampleResiduals::Trace::levelled(Eigen::VectorXd signal) const {
+  for (const auto& [first, those] : left_out) signal.segment(first, those).setZero();
+  signal -= level * (level.transpose() * signal).eval();
+  return signal;
+}
+
+SampleResiduals::SampleResiduals(const Model& model, const Solution& fit) : model_(model) {
+  for (const Observation* observation : fit.linear.observations) {
+    if (observation->low_band.options().level == 0) continue;
+    Trace& trace = traces_.emplace_back(*observation);
+    const Profile& profile = *trace.profile;
+    Eigen::VectorXd rest =
+        Eigen::Map<const Eigen::VectorXd>(profile.values.data(), std::ssize(profile.values));
+    for (const ModelTerm& term : model.terms)
+      rest -= effect_signal(
+          model, term, profile,
+          fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes()),
+          shapes_of(term, fit.estimate.shapes));
+    trace.residual = trace.levelled(std::move(rest));
+  }
+}
+
+bool SampleResiduals::have(const Refined& effect) const {
+  const ModelTerm& term = effect.candidate->term;
+  double fall = 0.0;
+  for (const Trace& trace : traces_) {
+    if (!term.acts_on(*trace.profile)) continue;
+    const auto lines = term.effect->lines(trace.profile->stations(model_.machine), effect.shape);
+    const bool is_fast = std::ranges::any_of(lines, [&](const LineBand& line) {
+      return line.low > static_cast<double>(model_.amplitudes());
+    });
+    const double square = trace.residual.squaredNorm();
+    if (!is_fast || square == 0.0) continue;
+    const Eigen::VectorXd signal = trace.levelled(
+        effect_signal(model_, term, *trace.profile, effect.projection.amplitudes, effect.shape));
+    fall += (2.0 * trace.residual.dot(signal) - signal.squaredNorm()) / square;
+  }
+  return fall >= 0.0;
+}
+
+}  // namespace slideway

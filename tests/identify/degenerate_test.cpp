@@ -1,0 +1,107 @@
+// What leaves the fit nothing to know a number by: it is said to be not determined, or it has an
+// uncertainty above 0. Found by the fuzz target `identify`.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "identify/cases.hpp"
+#include "noise_bounds.hpp"
+#include "slideway/identify/identify.hpp"
+#include "slideway/identify/lack_of_fit.hpp"
+
+namespace slideway::degenerate_test {
+namespace {
+
+using cases::effect;
+using cases::face;
+using cases::problem;
+using cases::profile;
+using cases::spaced;
+
+std::vector<double> rough(std::size_t n, double size) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < n; ++i)
+    out.push_back(size * std::sin(997.0 * static_cast<double>(i * i)));
+  return out;
+}
+
+// A wave that no fitted profile can see: its columns are zero, and so is its amplitude.
+TEST(Degenerate, AWaveThatNoProfileSeesIsNotDetermined) {
+  Profile slope = profile("level", Kind::slide, spaced(0, 400, 60), rough(60, 1e-6));
+  slope.setup.quantity = Quantity::slope;
+  slope.setup.traverse_mm_per_s = 1.0;
+  const Result result =
+      identify(problem(Lever::paper, 0, {effect("traverse_periodic")}), {slope}, Scope::fit);
+  for (const char* name : {"amplitude_um", "frequency_hz", "phase_rad"})
+    EXPECT_FALSE(result.declared->find("traverse_periodic." + std::string(name))->identifiable)
+        << name;
+  for (const UndeterminedDirection& direction : result.declared->identifiability.unidentifiable)
+    EXPECT_FALSE(direction.combination.empty());
+}
+
+// A flat line has a wave of amplitude 0, which is known to be small; its phase is anything.
+TEST(Degenerate, AWaveOfNoAmplitudeHasAnUncertaintyAndNoPhase) {
+  Profile flat = profile("flat", Kind::slide, spaced(0, 400, 60), std::vector<double>(60, 0.0));
+  flat.free_offset = flat.free_tilt = false;
+  flat.standard_uncertainty = 1e-5;
+  const Result result =
+      identify(problem(Lever::paper, 0, {effect("slide_periodic")}), {flat}, Scope::fit);
+  const FittedParameter& amplitude = *result.declared->find("slide_periodic.amplitude_um");
+  ASSERT_TRUE(amplitude.identifiable);
+  EXPECT_EQ(*amplitude.value, 0.0);
+  EXPECT_GT(*amplitude.expanded_uncertainty, 0.0);
+  EXPECT_FALSE(result.declared->find("slide_periodic.phase_rad")->identifiable);
+}
+
+TEST(Degenerate, AStraightnessOfDegree1HasNoDeviation) {
+  const Profile slide = profile("slide", Kind::slide, spaced(0, 400, 60), rough(60, 1e-4));
+  const Result result =
+      identify(problem(Lever::paper, 0, {effect("straightness", 1)}), {slide}, Scope::fit);
+  ASSERT_TRUE(result.declared->straightness);
+  EXPECT_FALSE(result.declared->straightness->reason.empty());
+  EXPECT_TRUE(result.declared->straightness->errors.empty());
+}
+
+// Two readings are one low-band value, which shows no tilt.
+TEST(Degenerate, ATiltThatTheLowBandDoesNotShowIsNotDetermined) {
+  const Profile a = profile("a", Kind::slide, spaced(0, 400, 60), rough(60, 1e-4));
+  const Profile b = profile("b", Kind::slide, spaced(0, 400, 2), rough(2, 1e-4));
+  const Result result =
+      identify(problem(Lever::paper, 1, {effect("straightness", 2)}), {a, b}, Scope::fit);
+  const auto tilt = std::ranges::find(result.declared->nuisances, "b.tilt", &FittedParameter::name);
+  ASSERT_NE(tilt, result.declared->nuisances.end());
+  EXPECT_FALSE(tilt->identifiable);
+  EXPECT_FALSE(tilt->value || tilt->expanded_uncertainty);
+}
+
+TEST(Degenerate, NoiseLiesBetweenRoundingAndRangeOfItsValues) {
+  const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(20, 1.0, 3.0);
+  const auto size = [&](double deviation) {
+    return bounded(Noise::white(deviation, 20), values).standard_deviation();
+  };
+  EXPECT_EQ(size(0.1), 0.1);
+  EXPECT_NEAR(size(1e125), 2.0, 1e-12);       // the range; 1e-12: rounding of a factor of 1e-250
+  EXPECT_NEAR(size(1e-140), 2.1e-13, 1e-14);  // 1e-13 of the root mean square, 2.08
+  EXPECT_NEAR(size(std::nan("")), 2.1e-13, 1e-14);
+  EXPECT_GT(bounded(Noise::white(0.0, 3), Eigen::Vector3d::Zero()).standard_deviation(), 0.0);
+}
+
+// Three values have no slow cosine of their own, and nothing may be known of the size of their
+// noise; the others are judged without them.
+TEST(Degenerate, LackOfFitPassesOverAProfileTooShortToJudge) {
+  const Profile a = face("a", 8.0, spaced(1, 40, 80), rough(80, 1e-4));
+  Profile b = profile("b", Kind::slide, spaced(0, 400, 3), rough(3, 1e-6));
+  b.setup.quantity = Quantity::slope;
+  const FittedModel fitted = fit_declared(problem(Lever::paper, 0, {effect("squareness")}), {a, b});
+  std::vector<Noise> noise = fitted.fit.noise;
+  ASSERT_TRUE(noise[1].is_estimated());
+  noise[1].freedom = 0.0;
+  const LackOfFit left = lack_of_fit(fitted.fit.linear, noise, {});
+  EXPECT_TRUE(left.p_value >= 0.0 && left.p_value <= 1.0) << left.p_value;
+  EXPECT_TRUE(std::isfinite(left.ratio)) << left.ratio;
+}
+
+}  // namespace
+}  // namespace slideway::degenerate_test
