@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "slideway/base/date.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/batch/pool.hpp"
@@ -32,18 +33,12 @@ bool take(std::string_view& text, std::string_view any_of) {
 }
 
 /// "2026-11-21", behind it perhaps "T08:30" or "T08:30:15" (or a blank for the T) and a Z, in days.
-std::optional<double> parse_date(std::string_view text) {
-  const auto year = digits(text, 4);
-  const bool dash = take(text, "-");
-  const auto month = digits(text, 2);
-  const bool second_dash = take(text, "-");
-  const auto day = digits(text, 2);
-  if (!year || !month || !day || !dash || !second_dash) return std::nullopt;
-  const std::chrono::year_month_day date{std::chrono::year(*year),
-                                         std::chrono::month(static_cast<unsigned>(*month)),
-                                         std::chrono::day(static_cast<unsigned>(*day))};
-  if (!date.ok()) return std::nullopt;
-  double days = static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+std::optional<double> parse_time(std::string_view text) {
+  constexpr std::size_t kDate = 10;  // characters
+  const auto date = parse_date(text.substr(0, kDate));
+  if (!date) return std::nullopt;
+  text.remove_prefix(kDate);
+  const auto days = static_cast<double>(std::chrono::sys_days(*date).time_since_epoch().count());
   if (text.empty()) return days;
   const bool separated = take(text, "T ");
   const auto hours = digits(text, 2);
@@ -128,7 +123,7 @@ Times read_times(const Manifest& manifest) {
   for (const ManifestItem& item : manifest.items) {
     out.values.emplace_back();
     if (item.time.empty()) continue;
-    const std::optional<double> date = parse_date(item.time), number = parse_double(item.time);
+    const std::optional<double> date = parse_time(item.time), number = parse_double(item.time);
     out.values.back() = date ? date : number;
     (date ? out.are_dates : has_number) = true;
     if (!out.values.back() || !(*out.values.back() < 1e300 && *out.values.back() > -1e300) ||
@@ -161,7 +156,7 @@ PooledResults pool_machines(const std::filesystem::path& results) {
   std::size_t place = 0;
   std::optional<bool> are_dates;
   const auto time_of = [&](const std::string& text) {
-    const std::optional<double> date = parse_date(text), number = parse_double(text);
+    const std::optional<double> date = parse_time(text), number = parse_double(text);
     if (!are_dates && (date || number)) are_dates = date.has_value();
     return are_dates.value_or(false) ? date : number;
   };

@@ -5,6 +5,7 @@
 
 #include "environment.hpp"
 #include "output.hpp"
+#include "slideway/base/date.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 #include "slideway/base/text.hpp"
@@ -103,12 +104,7 @@ void ProblemCommand::add_strict() {
 }
 
 void ProblemCommand::check(const po::variables_map& given) {
-  const auto is_digit_of_date = [&](std::size_t i) {
-    return i == 4 || i == 7 ? date_[i] == '-' : date_[i] >= '0' && date_[i] <= '9';
-  };
-  bool is_date = date_.size() == std::string_view("2026-11-23").size();
-  for (std::size_t i = 0; is_date && i < date_.size(); ++i) is_date = is_digit_of_date(i);
-  if (given.count("date") != 0 && !is_date)
+  if (given.count("date") != 0 && !parse_date(date_))
     fail("--date: '" + printable(date_) + "' is no date; accepted: as 2026-11-23");
 }
 

@@ -5,6 +5,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "slideway/base/date.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
@@ -36,15 +37,7 @@ void say(XmlNode parent, const char* name, const std::string& text) {
   add(parent.append_child(name), "dcc:content", text).append_attribute("lang").set_value("en");
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_capital(char c) { return c >= 'A' && c <= 'Z'; }
-
-bool is_date(const std::string& text) {
-  const std::string pattern = "0000-00-00";
-  return text.size() == pattern.size() && std::ranges::equal(text, pattern, [](char c, char of) {
-           return of == '-' ? c == '-' : is_digit(c);
-         });
-}
 
 class Certificate {
  public:
@@ -88,7 +81,7 @@ class Certificate {
     if (!missing.empty())
       throw DataError("[about] lacks " + joined(missing) +
                       "; a calibration certificate must have them");
-    if (!is_date(about("date")))
+    if (!parse_date(about("date")))
       throw DataError("[about] date: '" + printable(about("date")) +
                       "' is no date; accepted: as 2026-11-23");
     const std::string country = about("country");
@@ -128,7 +121,7 @@ class Certificate {
     const std::string place = about("place");
     const bool is_named = place == "laboratory" || place == "customer";
     add(core, "dcc:performanceLocation", is_named ? place : "other");
-    if (is_date(about("evaluated"))) add(core, "dcc:issueDate", about("evaluated"));
+    if (parse_date(about("evaluated"))) add(core, "dcc:issueDate", about("evaluated"));
   }
 
   static void add_serial(XmlNode owner, const std::string& serial) {

@@ -152,8 +152,9 @@ TEST(Certificate, NamesAllKeysThatAreMissingInOneLine) {
 }
 
 TEST(Certificate, RefusesADateACountryAndAnAddressThatAreNone) {
-  for (const auto& [key, value] : {std::pair("date", "yesterday"), std::pair("country", "Germany"),
-                                   std::pair("customer", "Turned Parts Ltd")}) {
+  for (const auto& [key, value] :
+       {std::pair("date", "yesterday"), std::pair("date", "2026-02-30"),
+        std::pair("country", "Germany"), std::pair("customer", "Turned Parts Ltd")}) {
     Analysis analysis = sample_analysis();
     analysis.result.about[key] = value;
     EXPECT_THAT(refusal(analysis), HasSubstr(std::string("[about] ") + key + ": "));
