@@ -1,6 +1,7 @@
 #include "slideway/effects/catalogue.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "request.hpp"
 #include "slideway/base/error.hpp"
@@ -23,18 +24,30 @@ constexpr Factory kFactories[] = {
 #undef SLIDEWAY_EFFECT
 };
 
-std::vector<std::unique_ptr<Effect>> make_specimens() {
+struct Specimen {
+  std::unique_ptr<Effect> effect;
+  EffectOptions options;  // those it cannot do without
+};
+
+std::map<std::string, Specimen> make_specimens() {
   const Machine machine(Machine::paper_lathe(), Lever::paper);
   const TravelRange range{.beam_span_mm = 1000.0};
-  std::vector<std::unique_ptr<Effect>> out;
+  std::map<std::string, Specimen> out;
   for (const std::string& name : effect_names()) {
+    Specimen& own = out[name];
     try {
-      out.push_back(make_effect(name, {}, machine, range));
-    } catch (const UsageError&) {  // an effect with a degree
-      out.push_back(make_effect(name, {.degree = 3}, machine, range));
+      own.effect = make_effect(name, own.options, machine, range);
+    } catch (const UsageError&) {
+      own.options.degree = 3;
+      own.effect = make_effect(name, own.options, machine, range);
     }
   }
   return out;
+}
+
+const Specimen& specimen_of(const std::string& name) {
+  static const std::map<std::string, Specimen> kSpecimens = make_specimens();
+  return kSpecimens.at(name);
 }
 
 /// The specimen a term or a parameter is of, or null.
@@ -68,11 +81,9 @@ std::unique_ptr<Effect> make_effect(const std::string& name, const EffectOptions
   return kFactories[found - names.begin()]({name, options, machine, range});
 }
 
-const Effect& specimen(const std::string& name) {
-  static const std::vector<std::unique_ptr<Effect>> kSpecimens = make_specimens();
-  const std::vector<std::string>& names = effect_names();
-  return *kSpecimens[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
-}
+const Effect& specimen(const std::string& name) { return *specimen_of(name).effect; }
+
+const EffectOptions& needed_options(const std::string& name) { return specimen_of(name).options; }
 
 MotionError motion_error_of(const std::string& name) {
   const Effect* effect = effect_of(name);

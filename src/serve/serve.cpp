@@ -41,8 +41,10 @@ HttpReply download(std::string body, const char* type, const std::string& name) 
 
 std::string choices() {
   nlohmann::ordered_json effects = nlohmann::ordered_json::array();
-  for (const std::string& name : effect_names())
+  for (const std::string& name : effect_names()) {
     effects.push_back({{"name", name}, {"plain_name", plain_name(name)}});
+    if (const auto degree = needed_options(name).degree) effects.back()["degree"] = *degree;
+  }
   return nlohmann::ordered_json{{"effects", effects}, {"tables", compensation_formats()}}.dump();
 }
 

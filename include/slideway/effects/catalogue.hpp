@@ -23,6 +23,9 @@ std::unique_ptr<Effect> make_effect(const std::string& name, const EffectOptions
 /// without. REQUIRES a name of effect_names().
 const Effect& specimen(const std::string& name);
 
+/// The options an effect of the catalogue cannot do without. REQUIRES a name of effect_names().
+const EffectOptions& needed_options(const std::string& name);
+
 /// Which error of the carriages a term ("straightness[upper]") or its parameter
 /// ("squareness.dbeta_xz") is of; none for a name that is not in the catalogue.
 MotionError motion_error_of(const std::string& name);

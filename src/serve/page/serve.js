@@ -229,8 +229,8 @@ const Ui = {
     const text = $('problem').value;
     const declared = Toml.names(text, '[[effect]]');
     const box = (id, label, checked, change) => el('label', {for: id}, el('input', {type: 'checkbox', id, checked, onchange: (event) => changeProblem(change(event.target.checked))}), label);
-    $('effects').replaceChildren(el('legend', {}, 'Declared'), ...choices.effects.map(({name, plain_name: plain}) => box(`effect-${name}`, plain, declared.includes(name), (isIn) => (isIn
-      ? Toml.add($('problem').value, ['[[effect]]', `name = "${name}"`, ...(/straightness/.test(name) ? ['degree = 3'] : [])])
+    $('effects').replaceChildren(el('legend', {}, 'Declared'), ...choices.effects.map(({name, plain_name: plain, degree}) => box(`effect-${name}`, plain, declared.includes(name), (isIn) => (isIn
+      ? Toml.add($('problem').value, ['[[effect]]', `name = "${name}"`, ...(degree === undefined ? [] : [`degree = ${degree}`])])
       : Toml.remove($('problem').value, '[[effect]]', name)))));
     $('spikes').replaceChildren(...Toml.names(text, '[[profile]]').map((name, i) => box(`spikes-${i}`, `leave out the spikes of ${name}`, Toml.profile(text, name, 'leave_out') === 'spikes',
       (isOut) => Toml.setProfile($('problem').value, name, 'leave_out', isOut ? '"spikes"' : null))));
