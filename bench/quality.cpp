@@ -31,13 +31,17 @@ using namespace slideway;           // NOLINT(google-build-using-namespace): the
 using namespace slideway::turning;  // NOLINT(google-build-using-namespace)
 using Json = nlohmann::ordered_json;
 
-double squareness_of(const std::vector<FittedParameter>& parameters, double* uncertainty) {
+struct Squareness {
+  double bias = NAN;
+  double u = 0.0, expanded = 0.0;  // 0: none is stated
+};
+
+Squareness squareness_of(const std::vector<FittedParameter>& parameters) {
   for (const FittedParameter& p : parameters)
-    if (p.name == "squareness.dbeta_xz" && p.value) {
-      *uncertainty = p.standard_uncertainty.value_or(0.0);
-      return *p.value;
-    }
-  return NAN;
+    if (p.name == "squareness.dbeta_xz" && p.value)
+      return {*p.value - kFaceSquareness, p.standard_uncertainty.value_or(0.0),
+              p.expanded_uncertainty.value_or(0.0)};
+  return {};
 }
 
 // Of the process' amplitude, in the unit of the effect's first parameter: rates are per the first
@@ -95,18 +99,18 @@ Json run_case(const std::string& name, int cuts, double size, bool at_limit, dou
     for (const UnnamedForm& form : result.unnamed->forms)
       json["forms"].push_back({form.form, form.delta_bic, form.instead_of});
   }
-  double u_before = 0.0, u_after = 0.0;
-  json["bias_before"] =
-      squareness_of(analysis.result.declared->parameters, &u_before) - kFaceSquareness;
-  json["bias_after"] = squareness_of(analysis.result.final->parameters, &u_after) - kFaceSquareness;
-  json["u_before"] = u_before;
-  json["u_after"] = u_after;
+  const Squareness before = squareness_of(analysis.result.declared->parameters);
+  const Squareness after = squareness_of(analysis.result.final->parameters);
+  json["bias_before"] = before.bias;
+  json["bias_after"] = after.bias;
+  json["u_after"] = after.u;
+  json["U_after"] = after.expanded;
   json["amplitude_um"] = amplitude / kMicrometre;
   json["truth_value"] = amplitude / kMicrometre / per_amplitude(name);
   for (const TraceRound& round : result.rounds)
     if (round.accepted == name && !round.parameters.empty())
       json["found_um"] = {round.parameters[0].value.value_or(0.0),
-                          round.parameters[0].standard_uncertainty.value_or(0.0)};
+                          round.parameters[0].expanded_uncertainty.value_or(0.0)};
   json["tried"] = Json::array();
   for (const TraceRound& round : result.rounds) {
     json["tried"].push_back({round.accepted, round.delta_bic, "ACCEPTED"});

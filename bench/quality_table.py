@@ -38,6 +38,16 @@ def is_wrong_alone(case):
     return not case["rivals"] and bool(set(named(case)) - {truth, TWIN.get(truth)})
 
 
+def squareness_holds(cases):
+    """Whether Δβxz ± U holds the truth, wherever a U is given."""
+    return [abs(c["bias_after"]) <= c["U_after"] for c in cases if c["U_after"] > 0]
+
+
+def size_holds(cases):
+    return [abs(c["found_um"][0] - c["truth_value"]) <= c["found_um"][1]
+            for c in cases if c.get("found_um") and c["found_um"][1] > 0]
+
+
 def row(label, cases):
     above = [c for c in cases if c.get("limit") and c["truth_value"] >= 2 * c["limit"]]
     below = [c for c in cases if c not in above]
@@ -46,16 +56,15 @@ def row(label, cases):
     alone = [c for c in single if c["truth"] in c["accepted"] and not c["rivals"]]
     near = [c for c in cases if c.get("limit") and 0.8 <= c["truth_value"] / c["limit"] < 1.25]
     found_near = [c for c in near if found(c)]
-    bias = [abs(c["bias_after"]) <= 1.96 * c["u_after"] for c in in_set if c["u_after"] > 0]
-    z = [(c["found_um"][0] - c["truth_value"]) / c["found_um"][1] for c in above
-         if "found_um" in c and c["found_um"][1] > 0]
+    bias = squareness_holds(in_set)
+    size = size_holds(above)
     bent = [c for c in in_set if abs(c["bias_before"]) > 5 * c["u_after"]]
     fall = [1 - abs(c["bias_after"]) / abs(c["bias_before"]) for c in bent]
     return [label, str(len(cases)), share(len(in_set), len(above)),
             share(len(alone), len(single)) if single or not above else "twins",
             share(sum(map(is_wrong_alone, above)), len(above)),
             share(sum(map(is_wrong_alone, below)), len(below)), share(len(found_near), len(near)),
-            f"{sum(abs(x) <= 2 for x in z)}/{len(z)}" if z else "",
+            f"{sum(size)}/{len(size)}" if size else "",
             f"{sum(bias)}/{len(bias)}" if bias else "",
             f"{100 * statistics.median(fall):.0f} %" if fall else ""]
 
@@ -89,11 +98,9 @@ def confusion(groups, cuts):
 
 
 def coverage(cases):
-    """How many 95 % intervals hold the truth after the loop has chosen the model."""
-    dbeta = [abs(c["bias_after"]) <= 1.96 * c["u_after"] for c in cases if c["u_after"] > 0]
-    size = [abs(c["found_um"][0] - c["truth_value"]) <= 1.96 * c["found_um"][1]
-            for c in cases if c.get("found_um") and c["found_um"][1] > 0]
-    return (f"95 % intervals after selection: Δβxz in {share(sum(dbeta), len(dbeta))} of all cases, "
+    """How many expanded uncertainties (95 %) hold the truth after the loop has chosen the model."""
+    dbeta, size = squareness_holds(cases), size_holds(cases)
+    return (f"Within U after selection: Δβxz in {share(sum(dbeta), len(dbeta))} of all cases, "
             f"the size of the accepted effect in {share(sum(size), len(size))}.\n")
 
 
@@ -119,7 +126,7 @@ def main():
               f"{share(sum(bool(c.get('forms')) for c in clean), len(clean))} got a formula.\n")
         head = ["hidden effect", "cases", "in the set, >= 2 limits", "named alone, >= 2 limits",
                 "wrong name alone, >= 2 limits", "below", "found at 0.8 to 1.25 limits",
-                "size within 2 u", "Δβxz within 1.96 u", "bias removed"]
+                "size within U", "Δβxz within U", "bias removed"]
         rows = [row(f"`{n}`", groups[cuts, n]) for n in CATALOGUE if groups[cuts, n]]
         print(table(head, rows + [row("all", [c for n in CATALOGUE for c in groups[cuts, n]])]) + "\n")
         rows = []
