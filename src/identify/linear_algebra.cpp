@@ -15,6 +15,13 @@ Eigen::VectorXd to_unit(const Eigen::MatrixXd& columns) {
 
 }  // namespace
 
+Eigen::MatrixXd gram_of(const Eigen::MatrixXd& columns) {
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
+  gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  return gram;
+}
+
 Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns) {
   if (columns.size() == 0) return Eigen::MatrixXd(columns.rows(), 0);
   columns *= to_unit(columns).asDiagonal();

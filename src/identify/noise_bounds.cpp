@@ -9,11 +9,16 @@ namespace {
 constexpr double kRoundingOfValues = 1e-13;  // of the values
 constexpr double kSmallestNoise = 1e-17;     // mm or rad: of values that are all zero
 
-double mean_size(const Eigen::VectorXd& values) {
-  return values.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(values.size(), 1)));
+/// Rounding of the values, never zero.
+double least_noise(const Eigen::VectorXd& values) {
+  return std::max(kRoundingOfValues * rms(values), kSmallestNoise);
 }
 
 }  // namespace
+
+double rms(const Eigen::VectorXd& values) {
+  return values.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(values.size(), 1)));
+}
 
 bool is_rounding(const Eigen::VectorXd& residual, const Eigen::VectorXd& values) {
   return residual.norm() <= kRoundingOfValues * values.norm();
@@ -25,16 +30,14 @@ Noise rounding_noise(const Observation& observation, const Eigen::VectorXd& resi
   const double size = std::sqrt(residual.squaredNorm() / static_cast<double>(spare));
   const std::optional<double>& declared = observation.profile->standard_uncertainty;
   Noise noise =
-      Noise::white(declared.value_or(std::max(
-                       size, kSmallestNoise * std::max(mean_size(observation.values), 1.0))),
-                   observation.values.size());
+      Noise::white(declared.value_or(std::max(size, kSmallestNoise)), observation.values.size());
   noise.declared = declared.has_value();
   return noise;
 }
 
 Noise bounded(const Noise& noise, const Eigen::VectorXd& values) {
   if (values.size() == 0) return noise;
-  const double least = std::max(kRoundingOfValues * mean_size(values), kSmallestNoise);
+  const double least = least_noise(values);
   const double most = std::max(values.maxCoeff() - values.minCoeff(), least);
   const double size = noise.standard_deviation();
   if (size >= least && size <= most) return noise;

@@ -7,6 +7,8 @@
 
 namespace slideway {
 
+double rms(const Eigen::VectorXd& values);
+
 /// Whether a residual of these values is only rounding.
 bool is_rounding(const Eigen::VectorXd& residual, const Eigen::VectorXd& values);
 

@@ -23,11 +23,6 @@ constexpr double kChance = 2.0;          // standard errors of a correlation
 constexpr double kSameStep = 0.1;        // relative; values as far apart have the same memory
 constexpr double kGrid = 1024.0;         // places of a station in a step: more is jitter
 
-double rms(const Eigen::VectorXd& values) {
-  return std::sqrt(values.squaredNorm() /
-                   static_cast<double>(std::max<Eigen::Index>(values.size(), 1)));
-}
-
 /// First low-band value of the near half of a diameter; 0 where there is no far one.
 Eigen::Index near_half(const Observation& observation) {
   const Setup& setup = observation.profile->setup;

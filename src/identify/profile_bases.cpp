@@ -21,12 +21,16 @@ ProfileBases ProfileBases::in(const std::vector<Eigen::Index>& rows) const {
   return out;
 }
 
+void ProfileBases::take_out_of(std::size_t profile, Eigen::Ref<Eigen::MatrixXd> white) const {
+  const Eigen::MatrixXd& basis = bases_[profile];
+  white -= basis * (basis.transpose() * white).eval();
+}
+
 void ProfileBases::take_out(Eigen::MatrixXd& white) const {
   Eigen::Index first = 0;
-  for (const Eigen::MatrixXd& basis : bases_) {
-    auto rows = white.middleRows(first, basis.rows());
-    rows -= basis * (basis.transpose() * rows).eval();
-    first += basis.rows();
+  for (std::size_t i = 0; i < bases_.size(); ++i) {
+    take_out_of(i, white.middleRows(first, bases_[i].rows()));
+    first += bases_[i].rows();
   }
 }
 
@@ -37,6 +41,17 @@ Eigen::MatrixXd ProfileBases::beside(Eigen::MatrixXd white) const {
   for (Eigen::Index j = 0; j < white.cols(); ++j)
     if (white.col(j).norm() <= kRounding * whole[j]) white.col(j).setZero();
   return white;
+}
+
+ProfileBases white_nuisances(const std::vector<const Observation*>& observations,
+                             const std::vector<Noise>& noise) {
+  ProfileBases out;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    Eigen::MatrixXd nuisances = observations[i]->nuisances;
+    noise[i].whiten(nuisances);
+    out.add(std::move(nuisances));
+  }
+  return out;
 }
 
 }  // namespace slideway

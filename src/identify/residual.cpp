@@ -227,12 +227,8 @@ EliminatedResidual::EliminatedResidual(const Model& model, const Linearisation& 
     : model_(model), observations_(linear.observations), noise_(noise) {
   for (const ModelTerm& term : model.terms)
     if (!term.effect->shapes().empty()) moving_.push_back(&term);
-  for (std::size_t i = 0; i < observations_.size(); ++i) {
-    rows_ += observations_[i]->values.size();
-    Eigen::MatrixXd nuisances = observations_[i]->nuisances;
-    noise_[i].whiten(nuisances);
-    nuisances_.add(std::move(nuisances));
-  }
+  for (const Observation* observation : observations_) rows_ += observation->values.size();
+  nuisances_ = white_nuisances(observations_, noise_);
   fixed_.resize(rows_, 0);
   fixed_ = orthonormal(outside(model.amplitudes(), [&](std::size_t i) {
     Eigen::MatrixXd rows =

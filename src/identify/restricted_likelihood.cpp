@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slideway/identify/linear_algebra.hpp"
+
 namespace slideway {
 namespace {
 
@@ -44,9 +46,7 @@ ProfileInformation::ProfileInformation(const LinearProfile& profile,
   Eigen::MatrixXd rows(n, m + r + 1);
   rows << profile.nuisances, profile.columns, profile.residual;
   factor.whiten(rows);
-  gram.setZero(m + r + 1, m + r + 1);
-  gram.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
-  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  gram = gram_of(rows);
   freedom = static_cast<double>(n - m);
   log_determinants = factor.log_determinant();
   if (m == 0) return;

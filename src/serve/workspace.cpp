@@ -107,12 +107,12 @@ std::string safe_name(std::string_view text) {
 
 bool is_plain_file(const fs::path& path) { return fs::is_regular_file(own_status(path)); }
 
-std::string bytes_of(const fs::path& path, std::uintmax_t most) {
+std::string bytes_of(const fs::path& path) {
   if (!is_plain_file(path)) throw HttpFailure(404, path.filename().string() + " is not there");
   const FileBytes bytes = FileBytes::of_regular_file(path);
-  if (bytes.text().size() > most)
-    throw HttpFailure(
-        413, path.filename().string() + " is larger than " + std::to_string(most >> 20) + " MiB");
+  if (bytes.text().size() > kMostBytesOfFile)
+    throw HttpFailure(413, path.filename().string() + " is larger than " +
+                               std::to_string(kMostBytesOfFile >> 20) + " MiB");
   return std::string(bytes.text());
 }
 

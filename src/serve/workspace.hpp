@@ -26,8 +26,9 @@ bool is_plain_file(const std::filesystem::path& path);
 /// What no file of a run is larger than.
 inline constexpr std::uintmax_t kMostBytesOfFile = std::uintmax_t{256} << 20;
 
-/// The bytes of a plain file. @throws HttpFailure  404; 413: larger than `most`
-std::string bytes_of(const std::filesystem::path& path, std::uintmax_t most = kMostBytesOfFile);
+/// The bytes of a plain file. @throws HttpFailure  404; 413: larger than
+/// kMostBytesOfFile
+std::string bytes_of(const std::filesystem::path& path);
 
 /// The folder that is served: one folder a run, and results of batches. Its temporary folders are
 /// in one that is removed at the end and at the next start.

@@ -87,20 +87,17 @@ const ModelResult& ModelExtender::summary_of_search(const std::vector<AcceptedEf
 }
 
 const SearchRound& ModelExtender::search(const std::vector<AcceptedEffect>& effects) {
-  const Key key = key_of(effects);
-  if (const auto found = rounds_.find(key); found != rounds_.end()) return found->second;
-  limit_.check();
-  const std::string stage = "searching round " + std::to_string(effects.size() + 1);
-  if (progress_) progress_(stage, 0.0);
-  const FittedModel& fitted = extended(effects);
-  const auto tell = [&](double done) {
+  return kept_or_made(rounds_, key_of(effects), [&] {
     limit_.check();
-    if (progress_) progress_(done < 1.0 ? "bootstrap" : stage, done < 1.0 ? done : 0.0);
-  };
-  return rounds_
-      .emplace(key, search_round(fitted.model, fitted.fit, candidates_beside(effects), calibration_,
-                                 tell))
-      .first->second;
+    const std::string stage = "searching round " + std::to_string(effects.size() + 1);
+    if (progress_) progress_(stage, 0.0);
+    const FittedModel& fitted = extended(effects);
+    const auto tell = [&](double done) {
+      limit_.check();
+      if (progress_) progress_(done < 1.0 ? "bootstrap" : stage, done < 1.0 ? done : 0.0);
+    };
+    return search_round(fitted.model, fitted.fit, candidates_beside(effects), calibration_, tell);
+  });
 }
 
 const SearchRound* ModelExtender::searched(const std::vector<AcceptedEffect>& effects) const {

@@ -115,16 +115,14 @@ ProcessData data_of(const Whitened& data, const ProcessVariable& variable) {
   const Eigen::Index count = variable.cosines.front().cols();
   const Eigen::Index copies = variable.of_each ? std::ssize(variable.cosines) : 1;
   ProcessData out;
+  out.blocks.assign(static_cast<std::size_t>(copies), Eigen::MatrixXd::Zero(count, count));
   out.products = Eigen::VectorXd::Zero(copies * count);
   for (std::size_t k = 0; k < variable.cosines.size(); ++k) {
     const Whitened::Shown shown = data.shown_in(variable.profiles[k], variable.cosines[k]);
-    const bool is_new = k == 0 || variable.of_each;
     if (k == 0) out.shared = Eigen::MatrixXd::Zero(shown.shared.rows(), copies * count);
-    const Eigen::Index first = (copies == 1 ? 0 : static_cast<Eigen::Index>(k)) * count;
-    if (is_new)
-      out.blocks.push_back(shown.gram);
-    else
-      out.blocks.back() += shown.gram;
+    const std::size_t block = variable.of_each ? k : 0;
+    const Eigen::Index first = static_cast<Eigen::Index>(block) * count;
+    out.blocks[block] += shown.gram;
     out.shared.middleCols(first, count) += shown.shared;
     out.products.segment(first, count) += shown.products;
   }

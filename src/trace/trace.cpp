@@ -105,15 +105,26 @@ class Loop {
     const SearchRound* const first = extender_.searched({});
     const Whitened data = first ? first->data : Whitened(base.fit.linear, base.fit.noise);
     out.lack_of_fit_p = lack_of_fit(base.fit.linear, data.noise(), gates).p_value;
-    if (first) out.refused = tried(*first, gates, nullptr, extender_.summary({}).rms_um);
+    if (first)
+      report_refused(*first, "the time limit came before it was held against its rivals", out);
+    report_unnamed(base, data, out.lack_of_fit_p,
+                   first ? first->tested : std::vector<TestedCandidate>(), closed);
+  }
+
+  /// @param otherwise  the reason of a candidate that passes every gate of its own
+  void report_refused(const SearchRound& round, const std::string& otherwise, TraceResult& out) {
+    out.refused = tried(round, problem_.trace.gates, nullptr, extender_.summary({}).rms_um);
     for (TriedEffect& effect : out.refused)
-      if (!effect.refused)
-        effect.refused = "the time limit came before it was held against its rivals";
-    const Structure structure = find_structure(base.model, data, base.fit.linear);
-    out.unnamed = describe(base.model, structure, data, base.fit.linear);
-    out.unnamed->p_value = out.lack_of_fit_p;
-    closed.widening = widening(base.model, base.fit, structure,
-                               first ? first->tested : std::vector<TestedCandidate>());
+      if (!effect.refused) effect.refused = otherwise;
+  }
+
+  static void report_unnamed(const FittedModel& fitted, const Whitened& data, double p_value,
+                             const std::vector<TestedCandidate>& tested, ClosedLoop& closed) {
+    const Structure structure = find_structure(fitted.model, data, fitted.fit.linear);
+    std::optional<Unnamed>& unnamed = closed.trace.unnamed;
+    unnamed = describe(fitted.model, structure, data, fitted.fit.linear);
+    unnamed->p_value = p_value;
+    closed.widening = widening(fitted.model, fitted.fit, structure, tested);
   }
 
   /// Whether an effect of all profiles leaves less of the residual than the blunder that leaves
@@ -201,12 +212,11 @@ class Loop {
     const Gates& gates = problem_.trace.gates;
     const FittedModel& fitted = extender_.extended(selection.effects);
     const SearchRound& last = extender_.search(selection.effects);
-    out.refused = tried(last, gates, nullptr, extender_.summary({}).rms_um);
-    for (TriedEffect& effect : out.refused)
-      if (!effect.refused)
-        effect.refused = distinct_effects(selection.effects) >= problem_.trace.max_effects
-                             ? "max_effects effects are in the model"
-                             : "beside the others it does not help";
+    report_refused(last,
+                   distinct_effects(selection.effects) >= problem_.trace.max_effects
+                       ? "max_effects effects are in the model"
+                       : "beside the others it does not help",
+                   out);
     out.lack_of_fit_p = selection.lack_of_fit.p_value;
     double repeated_p = 1.0;  // of what repeats have in common
     for (const PureErrorCheck& each : check_repeats(fitted.fit.linear, gates))
@@ -216,15 +226,13 @@ class Loop {
       if (!selection.unsure.empty()) closed.widening = widening_instead(selection, fitted, last);
       return;
     }
-    const Structure structure = find_structure(fitted.model, last.data, fitted.fit.linear);
-    out.unnamed = describe(fitted.model, structure, last.data, fitted.fit.linear);
-    out.unnamed->p_value = std::min(selection.lack_of_fit.p_value, repeated_p);
+    report_unnamed(fitted, last.data, std::min(selection.lack_of_fit.p_value, repeated_p),
+                   last.tested, closed);
     if (!limit_.allows([&] {
           out.unnamed->forms = describe_in_forms(extender_, selection.effects, *out.unnamed);
         }))
       out.not_looked_at.emplace_back("short formulas of what is left");
     if (!out.unnamed->forms.empty()) out.unnamed->to_confirm = what_separates(*out.unnamed);
-    closed.widening = widening(fitted.model, fitted.fit, structure, last.tested);
   }
 
   /// What a process without a name would do in the place of the effects that are not sure.

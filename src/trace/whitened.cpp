@@ -5,20 +5,18 @@
 namespace slideway {
 
 Eigen::MatrixXd model_span(const Linearisation& linear) {
-  Eigen::Index nuisances = 0;
-  for (const Observation* observation : linear.observations)
-    nuisances += observation->nuisances.cols();
-  const Eigen::Index shared = linear.prior_rows.cols();
-  Eigen::Index next = 0;
-  Eigen::MatrixXd out = stack(linear, nuisances + shared, [&](std::size_t i) {
-    const Observation& observation = *linear.observations[i];
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(observation.values.size(), nuisances + shared);
-    rows.middleCols(next, observation.nuisances.cols()) = observation.nuisances;
-    rows.rightCols(shared) = linear.columns[i];
-    next += observation.nuisances.cols();
-    return rows;
-  });
-  out.bottomRightCorner(linear.prior_rows.rows(), shared) = linear.prior_rows;
+  Eigen::Index count = 0;
+  for (const Observation* observation : linear.observations) count += observation->nuisances.cols();
+  const Eigen::MatrixXd model = stacked_model(linear);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(model.rows(), count + model.cols());
+  out.rightCols(model.cols()) = model;
+  Eigen::Index row = 0, column = 0;
+  for (const Observation* observation : linear.observations) {
+    const Eigen::MatrixXd& own = observation->nuisances;
+    out.block(row, column, own.rows(), own.cols()) = own;
+    row += own.rows();
+    column += own.cols();
+  }
   return out;
 }
 
@@ -51,11 +49,7 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
   first_.push_back(values_);
   rows_ = values_ + linear.prior_rows.rows();
   if (undescribed_.cols() == 0) undescribed_.resize(rows_, 0);
-  for (std::size_t i = 0; i < noise_.size(); ++i) {
-    Eigen::MatrixXd own = linear.observations[i]->nuisances;
-    noise_[i].whiten(own);
-    own_.add(std::move(own));
-  }
+  own_ = white_nuisances(linear.observations, noise_);
   Eigen::MatrixXd shared(rows_, linear.prior_rows.cols() + undescribed_.cols());
   shared << stacked_model(linear), undescribed_;
   whiten(shared);
@@ -94,14 +88,11 @@ Eigen::MatrixXd Whitened::inside(const Eigen::MatrixXd& white, Eigen::Index firs
 }
 
 Whitened::Shown Whitened::shown_in(std::size_t profile, Eigen::MatrixXd columns) const {
-  const Eigen::MatrixXd& own = own_[profile];
   noise_[profile].whiten(columns);
-  columns -= own * (own.transpose() * columns).eval();
+  own_.take_out_of(profile, columns);
   const Eigen::Index first = first_[profile], rows = count(profile);
   Shown out;
-  out.gram = Eigen::MatrixXd::Zero(columns.cols(), columns.cols());
-  out.gram.selfadjointView<Eigen::Lower>().rankUpdate(columns.transpose());
-  out.gram.triangularView<Eigen::StrictlyUpper>() = out.gram.transpose();
+  out.gram = gram_of(columns);
   out.shared = shared_.middleRows(first, rows).transpose() * columns;
   out.products = columns.transpose() * residual_.segment(first, rows);
   return out;

@@ -13,6 +13,9 @@ struct LeastSquares {
 };
 LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& targets);
 
+/// C'C of the columns C.
+Eigen::MatrixXd gram_of(const Eigen::MatrixXd& columns);
+
 /// Upper triangular, at most as many rows as columns, with the same inner products of its columns.
 Eigen::MatrixXd upper_triangle(const Eigen::MatrixXd& columns);
 

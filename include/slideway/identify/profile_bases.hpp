@@ -3,6 +3,9 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "slideway/identify/model.hpp"
+#include "slideway/identify/noise.hpp"
+
 namespace slideway {
 
 /// Orthonormal bases, one for each profile, in rows of profiles that stand under one another.
@@ -22,11 +25,18 @@ class ProfileBases {
 
   void take_out(Eigen::MatrixXd& white) const;
 
+  /// @param white  rows of that profile
+  void take_out_of(std::size_t profile, Eigen::Ref<Eigen::MatrixXd> white) const;
+
   /// White columns without what the bases span; zero where that is all.
   [[nodiscard]] Eigen::MatrixXd beside(Eigen::MatrixXd white) const;
 
  private:
   std::vector<Eigen::MatrixXd> bases_;
 };
+
+/// The levelling of each profile, whitened by its noise.
+ProfileBases white_nuisances(const std::vector<const Observation*>& observations,
+                             const std::vector<Noise>& noise);
 
 }  // namespace slideway
