@@ -2,9 +2,9 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "slideway/base/date.hpp"
 #include "slideway/base/error.hpp"
@@ -87,22 +87,21 @@ std::optional<Evidence> evidence_of(std::string_view line) {
   return std::nullopt;
 }
 
-using OwnerOf = std::function<std::optional<Owner>(const ResultHead&)>;
+using Owners = std::map<std::string, Owner>;  // by the id of the item
 
 /// Pools what has an owner, in the order of the first item of each machine.
-std::vector<PooledMachine> pool_owned(const std::filesystem::path& results,
-                                      const OwnerOf& owner_of) {
+std::vector<PooledMachine> pool_owned(const std::filesystem::path& results, const Owners& owners) {
   std::map<std::size_t, std::pair<std::string, PoolItem>> items;
   read_results(results, [&](const ResultHead& head, std::string_view line) {
     if (head.status != status::kOk) return;
-    const std::optional<Owner> owner = owner_of(head);
-    if (!owner) return;
+    const auto owner = owners.find(head.id);
+    if (owner == owners.end()) return;
     std::optional<Evidence> evidence = evidence_of(line);
     if (!evidence)
       throw DataError(results.string() + ": id '" + printable(head.id, 60) +
                       "': its evidence is damaged");
-    items.try_emplace(owner->place, owner->machine,
-                      PoolItem{head.id, owner->time, std::move(*evidence)});
+    const auto& [place, machine, time] = owner->second;
+    items.try_emplace(place, machine, PoolItem{head.id, time, std::move(*evidence)});
   });
   std::map<std::string, std::vector<PoolItem>> machines;
   std::vector<std::string> order;
@@ -139,33 +138,34 @@ Times read_times(const Manifest& manifest) {
 std::vector<PooledMachine> pool_machines(const Manifest& manifest,
                                          const std::filesystem::path& results) {
   const Times times = read_times(manifest);
-  std::map<std::string, std::size_t> by_id;
-  for (std::size_t i = 0; i < manifest.items.size(); ++i)
-    if (!manifest.items[i].machine.empty()) by_id.emplace(manifest.items[i].id, i);
-  if (by_id.empty())
+  Owners owners;
+  for (std::size_t i = 0; i < manifest.items.size(); ++i) {
+    const ManifestItem& item = manifest.items[i];
+    if (!item.machine.empty()) owners.emplace(item.id, Owner{i, item.machine, times.values[i]});
+  }
+  if (owners.empty())
     throw DataError(manifest.path.string() + ": names no machine; accepted: a column 'machine'");
-
-  return pool_owned(results, [&](const ResultHead& head) -> std::optional<Owner> {
-    const auto at = by_id.find(head.id);
-    if (at == by_id.end()) return std::nullopt;
-    return Owner{at->second, manifest.items[at->second].machine, times.values[at->second]};
-  });
+  return pool_owned(results, owners);
 }
 
 PooledResults pool_machines(const std::filesystem::path& results) {
-  std::size_t place = 0;
-  std::optional<bool> are_dates;
-  const auto time_of = [&](const std::string& text) {
-    const std::optional<double> date = parse_time(text), number = parse_double(text);
-    if (!are_dates && (date || number)) are_dates = date.has_value();
-    return are_dates.value_or(false) ? date : number;
-  };
-  PooledResults out;
-  out.machines = pool_owned(results, [&](const ResultHead& head) -> std::optional<Owner> {
-    if (head.machine.empty()) return std::nullopt;
-    return Owner{place++, head.machine, time_of(head.time)};
+  std::vector<ResultHead> heads;
+  read_results(results, [&](const ResultHead& head, std::string_view) {
+    if (!head.machine.empty()) heads.push_back(head);
   });
-  out.are_dates = are_dates.value_or(false);
+  PooledResults out;
+  out.are_dates = std::ranges::any_of(
+      heads, [](const ResultHead& head) { return parse_time(head.time).has_value(); });
+  const auto time_of = [&](const ResultHead& head) {
+    return out.are_dates ? parse_time(head.time) : parse_double(head.time);
+  };
+  std::ranges::sort(heads, {}, [&](const ResultHead& head) {
+    return std::tuple(head.machine, time_of(head), head.id);
+  });
+  Owners owners;
+  for (const ResultHead& head : heads)
+    owners.emplace(head.id, Owner{owners.size(), head.machine, time_of(head)});
+  out.machines = pool_owned(results, owners);
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "results_view.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "http_server.hpp"
@@ -118,7 +119,7 @@ std::string ResultsView::table(const std::string& run, const std::string& format
 }
 
 std::string ResultsView::batch_rows(const std::string& name) const {
-  ViewJson rows = ViewJson::array();
+  std::vector<ViewJson> rows;
   std::size_t lines = 0;
   const fs::path path = workspace_.batch(name);
   const std::size_t torn = read_results(path, [&](const ResultHead& head, std::string_view line) {
@@ -131,6 +132,7 @@ std::string ResultsView::batch_rows(const std::string& name) const {
     row["time"] = head.time;
     rows.push_back(row);
   });
+  std::ranges::stable_sort(rows, {}, [](const ViewJson& row) { return row.value("machine", ""); });
   return json_text(
       {{"rows", rows}, {"machines", machines_of(path)}, {"lines", lines}, {"torn", torn}});
 }

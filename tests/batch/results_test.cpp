@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "base/temporary_folder.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
@@ -79,6 +81,33 @@ TEST_F(Results, DamagedEvidenceIsRefusedWithItsId) {
               path.string() + ": id 'a': its evidence is damaged")
         << evidence;
   }
+}
+
+// Workers write their lines in the order in which they are ready.
+TEST_F(Results, MachinesAreTheSameInAnyOrderOfTheLines) {
+  const auto of = [](const std::string& id, const std::string& machine, const std::string& time) {
+    std::string out = line(id);
+    const std::string none = R"("evidence":null)";
+    out.replace(out.find(none), none.size(),
+                R"("machine":")" + machine + R"(","time":")" + time +
+                    R"(","evidence":{"parameters":["p"],"units":["m"],"rows":[[1]],"values":[2]})");
+    return out;
+  };
+  std::vector<std::string> lines{of("a", "N", "2026-01-09"), of("b", "M", "2026-01-11"),
+                                 of("c", "M", "7"), of("d", "N", "2026-01-01")};
+  std::ranges::sort(lines);
+  do {
+    std::string told;
+    const PooledResults pooled =
+        pool_machines(folder_.file("r", lines[0] + lines[1] + lines[2] + lines[3]));
+    for (const PooledMachine& machine : pooled.machines) {
+      told += machine.machine + ":";
+      for (const PooledItem& item : machine.items) told += " " + item.id;
+      told += "; ";
+    }
+    EXPECT_EQ(told, "M: c b; N: d a; ");  // no time, then by time
+    EXPECT_TRUE(pooled.are_dates);
+  } while (std::ranges::next_permutation(lines).found);
 }
 
 TEST_F(Results, WhatLooksLikeAnEndInATextIsNone) {

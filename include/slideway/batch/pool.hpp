@@ -27,10 +27,11 @@ std::vector<PooledMachine> pool_machines(const Manifest& manifest,
 
 struct PooledResults {
   std::vector<PooledMachine> machines;
-  bool are_dates = false;  // of the times; of two kinds, those of the first item's are taken
+  bool are_dates = false;  // of the times; numbers beside dates are no times
 };
 
-/// The same without the manifest, by the `machine` and `time` of each line.
+/// The same without the manifest, by the `machine` and `time` of each line: machines by name, items
+/// by time, in whatever order the lines were written.
 /// @throws DataError  the results cannot be read
 PooledResults pool_machines(const std::filesystem::path& results);
 
