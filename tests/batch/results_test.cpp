@@ -90,7 +90,8 @@ TEST_F(Results, MachinesAreTheSameInAnyOrderOfTheLines) {
     const std::string none = R"("evidence":null)";
     out.replace(out.find(none), none.size(),
                 R"("machine":")" + machine + R"(","time":")" + time +
-                    R"(","evidence":{"parameters":["p"],"units":["m"],"rows":[[1]],"values":[2]})");
+                    R"(","evidence":{"parameters":["squareness.dbeta_xz"],"units":["rad"],)"
+                    R"("rows":[[1]],"values":[2]})");
     return out;
   };
   std::vector<std::string> lines{of("a", "N", "2026-01-09"), of("b", "M", "2026-01-11"),
