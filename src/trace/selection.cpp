@@ -110,6 +110,31 @@ class Selector {
       }
       out_.effects = std::move(more);
       drop_superfluous();
+      confine_last(round, *choice);
+    }
+  }
+
+  /// Whether another effect of the set is the same in some profiles: together they say what it is
+  /// in those and in the rest.
+  [[nodiscard]] bool has_part_in(const Effects& effects, const TestedCandidate& candidate) const {
+    return candidate.refined.candidate->term.profiles.empty() &&
+           std::ranges::any_of(effects, [&](const AcceptedEffect& effect) {
+             return effect.round.accepted == candidate.refined.candidate->effect_name();
+           });
+  }
+
+  /// An effect of all profiles beside the same effect in some of them is confined to the rest,
+  /// where that explains as much.
+  void confine_last(const SearchRound& round, const TestedCandidate& last) {
+    const Effects others = all_but(out_.effects, out_.effects.size() - 1);
+    if (!has_part_in(others, last)) return;
+    for (const TestedCandidate& each : round.tested) {
+      if (each.refined.candidate->effect_name() != last.refined.candidate->effect_name() ||
+          each.refined.candidate->term.profiles.empty() || !each.refused(gates_).empty() ||
+          each.refined.projection.gain < last.refined.projection.gain - gates_.exchange_bic)
+        continue;
+      out_.effects.back() = accepted(round, each);
+      return;
     }
   }
 
@@ -193,7 +218,9 @@ class Selector {
       const TestedCandidate* own = find_tested(round, out_.effects[i], gates_);
       if (own && own->refined.delta_bic <= best->refined.delta_bic + gates_.exchange_bic)
         best = own;
-      if (best->refined.candidate == out_.effects[i].candidate) continue;
+      if (best->refined.candidate == out_.effects[i].candidate ||
+          (own && has_part_in(all_but(out_.effects, i), *best)))
+        continue;
       Effects changed = out_.effects;
       changed[i] = accepted(round, *best);
       if (!reason_against(changed, i).empty()) continue;
