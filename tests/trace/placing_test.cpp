@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
 #include "trace/faces.hpp"
 
@@ -47,6 +48,37 @@ TEST(Placing, LobesBetweenAzimuthsAreNamed) {
                    kSize / kMicrometre * std::cos(2.0 * kTurned));
   expect_within_4u(round->parameters, "chucking_lobes.sin2_um",
                    kSize / kMicrometre * std::sin(2.0 * kTurned));
+}
+
+// Three jaws, two discs clamped at different angles: 0.5 µm (r/R)³ cos 3(θ - φ) with φ = 20° and
+// 75°.
+TEST(Placing, LobesOfEachClampingAreNamed) {
+  constexpr double kSize = 0.5e-3;
+  std::vector<Profile> profiles;
+  for (const auto& [disc, turned_deg] : {std::pair("first", 20.0), std::pair("second", 75.0)}) {
+    const auto lobes = [&](double x, double azimuth) {
+      return kSize * std::pow(x / kPlacedRadius, 3) *
+             std::cos(3.0 * (azimuth - turned_deg * kPi / 180.0));
+    };
+    for (Profile& profile : at_azimuths(lobes, profiles.size() + 5)) {
+      profile.surface = disc;
+      profile.name = std::string(disc) + profile.name;
+      profiles.push_back(std::move(profile));
+    }
+  }
+  const Closed result = closed(problem_of(), profiles);
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ElementsAre("chucking_lobes", "chucking_lobes"));
+  ASSERT_EQ(result.rounds.size(), 2U);
+  for (const TraceRound& round : result.rounds) {
+    ASSERT_EQ(round.profiles.size(), 3U);
+    const std::string term = "chucking_lobes[" + joined(round.profiles, ",") + "]";
+    const double turned = round.profiles[0].starts_with("first") ? 20.0 : 75.0;
+    expect_within_4u(round.parameters, term + ".cos3_um",
+                     kSize / kMicrometre * std::cos(3.0 * turned * kPi / 180.0));
+    expect_within_4u(round.parameters, term + ".sin3_um",
+                     kSize / kMicrometre * std::sin(3.0 * turned * kPi / 180.0));
+  }
 }
 
 TEST(Placing, LobesNeedSeveralAzimuths) {
