@@ -1,8 +1,19 @@
 #include "groove.hpp"
 
-#include <cmath>
+#include <cstdint>
 
 namespace slideway {
+
+namespace {
+
+// std::round, which baseline x86-64 has to call for.
+double nearest_whole(double x) {
+  const auto toward_zero = static_cast<double>(static_cast<std::int64_t>(x));
+  const double rest = x - toward_zero;
+  return toward_zero + (rest >= 0.5 ? 1.0 : 0.0) - (rest <= -0.5 ? 1.0 : 0.0);
+}
+
+}  // namespace
 
 bool has_grooves(const Setup& setup) {
   return setup.kind == Kind::face && setup.feed_mm_per_min && setup.spindle_rpm &&
@@ -12,9 +23,10 @@ bool has_grooves(const Setup& setup) {
 Groove groove_at(const Stations& stations, Eigen::Index i) {
   const Setup& setup = stations.setup();
   const double far_half = stations.trace(i) < 0.0 ? 0.5 : 0.0;
-  const double turns =
-      stations.revolution(i) - setup.start_s * *setup.spindle_rpm / kMinute - far_half;
-  const double whole = std::round(turns);
+  const double r = stations.radius(i);
+  const double path = setup.cut_direction == CutDirection::inward ? *setup.cut_radius_mm - r : r;
+  const double turns = path * *setup.spindle_rpm / *setup.feed_mm_per_min - far_half;
+  const double whole = nearest_whole(turns);
   return {whole + far_half, turns - whole};
 }
 
