@@ -1,5 +1,6 @@
 #include "groove.hpp"
 
+#include <cmath>
 #include <cstdint>
 
 namespace slideway {
@@ -8,6 +9,7 @@ namespace {
 
 // std::round, which baseline x86-64 has to call for.
 double nearest_whole(double x) {
+  if (!(std::abs(x) < 0x1p52)) return x;  // has no fraction
   const auto toward_zero = static_cast<double>(static_cast<std::int64_t>(x));
   const double rest = x - toward_zero;
   return toward_zero + (rest >= 0.5 ? 1.0 : 0.0) - (rest <= -0.5 ? 1.0 : 0.0);
