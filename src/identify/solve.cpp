@@ -27,6 +27,8 @@ ceres::Solver::Options solver_options() {
   options.initial_trust_region_radius = 1e16;  // one undamped step solves a linear problem
   options.max_trust_region_radius = 1e16;      // beyond it rounding moves along null directions
   options.max_num_consecutive_invalid_steps = 100;  // at the optimum a step is rounding
+  // Between bounds Ceres tries each step along a line first: by values, not by gradients.
+  options.line_search_interpolation_type = ceres::QUADRATIC;
   return options;
 }
 

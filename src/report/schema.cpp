@@ -61,7 +61,7 @@ class SchemaMaker {
     else if (schema.contains("$ref"))
       return {{"anyOf", {std::move(schema), {{"type", "null"}}}}};
     else if (!schema["type"].is_array())
-      schema["type"] = {schema["type"], "null"};
+      schema["type"] = Json::array({schema["type"], "null"});
     return schema;
   }
 
@@ -90,7 +90,7 @@ template <Recorded T>
 std::string schema_of(const char* id, std::string_view name) {
   SchemaMaker maker;
   Json document = maker.object<T>();
-  document["properties"]["schema"] = {{"const", name}};
+  document["properties"]["schema"] = Json::object({{"const", name}});
   Json schema = {
       {"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"$id", id}, {"title", name}};
   schema.update(document);

@@ -194,6 +194,25 @@ TEST(SpindleRunout, DriftOfTheSpeedTurnsThePhase) {
   }
 }
 
+// The phase of a drifting wave, 6500 turns long, against the formula. As an angle that is 4e4 rad,
+// known to 7e-12.
+TEST(SpindleRunout, ADriftingWaveIsThatOfItsFormula) {
+  Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 650), spaced(0, 650, 25001)};
+  profile.setup.feed_mm_per_min = 60.0;
+  const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(10);
+  values[0] = 1.0;
+  values[8] = 600.0;
+  values[9] = 3.0;
+  const Eigen::VectorXd z = signal(*effect, profile, values) * 1e3;
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    const double t = profile.positions[static_cast<std::size_t>(i)];  // s at 60 mm/min
+    const double tau = t / 325.0 - 1.0;
+    const double turns = t * 10.0 + 3.0 * (3.0 * tau * tau - 1.0) / 2.0;
+    ASSERT_NEAR(z[i], std::cos(2.0 * kPi * turns), 1e-10) << t;
+  }
+}
+
 // P_3 is odd: what a reading has at its start it has with the other sign at its end.
 TEST(SpindleRunout, AnOddDriftFollowsTheTimeAndNotThePosition) {
   Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), {0.0, 100.0}};
