@@ -199,6 +199,7 @@ TEST(SpindleRunout, DriftOfTheSpeedTurnsThePhase) {
 TEST(SpindleRunout, ADriftingWaveIsThatOfItsFormula) {
   Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 650), spaced(0, 650, 25001)};
   profile.setup.feed_mm_per_min = 60.0;
+  profile.setup.cut_direction = CutDirection::outward;
   const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(10);
   values[0] = 1.0;
