@@ -43,14 +43,25 @@ Eigen::MatrixXd ProfileBases::beside(Eigen::MatrixXd white) const {
   return white;
 }
 
-ProfileBases white_nuisances(const std::vector<const Observation*>& observations,
-                             const std::vector<Noise>& noise) {
+ProfileBases own_bases(const std::vector<const Observation*>& observations,
+                       const std::vector<Noise>& noise, const FreeValues& free) {
   ProfileBases out;
   for (std::size_t i = 0; i < observations.size(); ++i) {
-    Eigen::MatrixXd nuisances = observations[i]->nuisances;
-    noise[i].whiten(nuisances);
-    out.add(std::move(nuisances));
+    const Eigen::MatrixXd& nuisances = observations[i]->nuisances;
+    const Eigen::MatrixXd units =
+        unit_columns(free.empty() ? ValueIndices{} : free[i], nuisances.rows());
+    Eigen::MatrixXd own(nuisances.rows(), nuisances.cols() + units.cols());
+    own << nuisances, units;
+    noise[i].whiten(own);
+    out.add(std::move(own));
   }
+  return out;
+}
+
+Eigen::MatrixXd unit_columns(const ValueIndices& values, Eigen::Index rows) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, std::ssize(values));
+  for (std::size_t j = 0; j < values.size(); ++j)
+    out(values[j], static_cast<Eigen::Index>(j)) = 1.0;
   return out;
 }
 

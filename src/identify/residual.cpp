@@ -228,7 +228,7 @@ EliminatedResidual::EliminatedResidual(const Model& model, const Linearisation& 
   for (const ModelTerm& term : model.terms)
     if (!term.effect->shapes().empty()) moving_.push_back(&term);
   for (const Observation* observation : observations_) rows_ += observation->values.size();
-  nuisances_ = white_nuisances(observations_, noise_);
+  nuisances_ = own_bases(observations_, noise_);
   fixed_.resize(rows_, 0);
   fixed_ = orthonormal(outside(model.amplitudes(), [&](std::size_t i) {
     Eigen::MatrixXd rows =

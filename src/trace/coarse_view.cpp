@@ -42,12 +42,9 @@ Linearisation CoarseView::scaled() const {
 
 Whitened CoarseView::whitened(const Whitened& under) const {
   std::vector<Noise> noise;
-  Eigen::MatrixXd undescribed = under.undescribed();
-  for (std::size_t i = 0; i < scales_.size(); ++i) {
+  for (std::size_t i = 0; i < scales_.size(); ++i)
     noise.push_back(under.noise()[i].scaled(1.0 / (scales_[i] * scales_[i])));
-    undescribed.middleRows(under.first_row(i), under.count(i)) /= scales_[i];
-  }
-  return {linear_, std::move(noise), std::move(undescribed)};
+  return {linear_, std::move(noise), under.undescribed()};
 }
 
 }  // namespace slideway

@@ -10,7 +10,7 @@ namespace slideway {
 /// rows are those of the model itself.
 class CoarseView {
  public:
-  /// @param under  noise and undescribed columns of the rows; the fit must outlive the view
+  /// @param under  noise and undescribed values of the rows; the fit must outlive the view
   CoarseView(const FittedModel& fitted, const Whitened& under);
   CoarseView(const CoarseView&) = delete;
   CoarseView& operator=(const CoarseView&) = delete;

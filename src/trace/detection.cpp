@@ -131,12 +131,12 @@ std::optional<double> limit_at(const Design& design, const Case& one) {
         1.0 / design.fit_data.outside(one.columns * one.amplitudes(1.0)).norm();
     return std::max(*limit, (design.gates().size + design.deviate) * uncertainty);
   }
-  Eigen::Index lost = 0;
+  std::size_t lost = 0;
   for (int round = 0; limit && round < kMostRounds; ++round) {
-    const Eigen::MatrixXd undescribed =
-        undescribed_columns(model, fit, design.data.noise(), one.columns * one.amplitudes(*limit));
-    if (undescribed.cols() <= lost) break;
-    lost = undescribed.cols();
+    const FreeValues undescribed =
+        undescribed_beside(model, fit, design.data.noise(), one.columns * one.amplitudes(*limit));
+    if (count_of(undescribed) <= lost) break;
+    lost = count_of(undescribed);
     limit = limit_in(design, {fit.linear, design.data.noise(), undescribed}, one);
   }
   return limit;

@@ -14,12 +14,10 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
   const Observation& observation = *linear.observations[i];
   const Eigen::Index k = linear.prior_rows.cols(), a = effect.cols();
   const Eigen::Index free = observation.nuisances.cols();
-  const auto own = [&](const Eigen::MatrixXd& stacked) {
-    return stacked.middleRows(data.first_row(i), data.count(i));
-  };
-  Eigen::MatrixXd rows(observation.values.size(), free + data.undescribed().cols() + k + a + 1);
-  rows << observation.nuisances, own(data.undescribed()), linear.columns[i], own(effect),
-      linear.residuals[i];
+  const Eigen::MatrixXd units = unit_columns(data.undescribed()[i], data.count(i));
+  Eigen::MatrixXd rows(observation.values.size(), free + units.cols() + k + a + 1);
+  rows << observation.nuisances, units, linear.columns[i],
+      effect.middleRows(data.first_row(i), data.count(i)), linear.residuals[i];
   data.noise()[i].whiten(rows);
   const Eigen::MatrixXd basis = orthonormal(rows.leftCols(rows.cols() - k - a - 1));
   Eigen::MatrixXd rest = rows.rightCols(k + a + 1);

@@ -26,20 +26,18 @@ const Finding& best_of(const std::vector<Finding>& findings) {
 /// What a hypothesis adds to the model, profile by profile: values left undescribed, and the
 /// columns of a finding and of its neighbours on the grid (its shape lies between them).
 std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
-                                                const Eigen::MatrixXd& undescribed,
+                                                const FreeValues& undescribed,
                                                 const Finding* finding) {
   Eigen::MatrixXd columns(0, 0);
-  if (finding) {
-    columns = finding->candidate->columns_around(finding->atom);
-  }
+  if (finding) columns = finding->candidate->columns_around(finding->atom);
   std::vector<Eigen::MatrixXd> out;
   Eigen::Index first = 0;
-  for (const Observation* observation : linear.observations) {
-    const Eigen::Index count = observation->values.size();
-    Eigen::MatrixXd& own = out.emplace_back(count, columns.cols() + undescribed.cols());
+  for (std::size_t i = 0; i < undescribed.size(); ++i) {
+    const Eigen::Index count = linear.observations[i]->values.size();
+    const Eigen::MatrixXd units = unit_columns(undescribed[i], count);
+    Eigen::MatrixXd& own = out.emplace_back(count, columns.cols() + units.cols());
     if (columns.cols() > 0) own.leftCols(columns.cols()) = columns.middleRows(first, count);
-    if (undescribed.cols() > 0)
-      own.rightCols(undescribed.cols()) = undescribed.middleRows(first, count);
+    own.rightCols(units.cols()) = units;
     first += count;
   }
   return out;
@@ -118,7 +116,7 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
 /// The data made white for a model that lacks what the candidates can bring, and their findings:
 /// the noise is that of the hypothesis which adds the best of them.
 std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, const Solution& fit,
-                                                        const Eigen::MatrixXd& undescribed,
+                                                        const FreeValues& undescribed,
                                                         const Candidates& candidates) {
   const auto noise_of = [&](const Finding* suspect) {
     return noise_beside(fit.linear, model.gates,
@@ -226,36 +224,35 @@ std::vector<const TestedCandidate*> SearchRound::outranked(const TestedCandidate
   return out;
 }
 
-Eigen::MatrixXd undescribed_columns(const Model& model, const Solution& fit,
-                                    const std::vector<Noise>& noise,
-                                    const Eigen::VectorXd& suspect) {
-  std::vector<Eigen::Index> rows;
+std::size_t count_of(const FreeValues& values) {
+  std::size_t out = 0;
+  for (const ValueIndices& each : values) out += each.size();
+  return out;
+}
+
+FreeValues undescribed_beside(const Model& model, const Solution& fit,
+                              const std::vector<Noise>& noise, const Eigen::VectorXd& suspect) {
+  FreeValues out;
   Eigen::Index first = 0;
   for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
     const Observation& observation = *fit.linear.observations[i];
     Eigen::VectorXd curve = steep_curve(model, fit.estimate, observation);
     if (suspect.size() > 0) curve += suspect.segment(first, curve.size());
     const ValueIndices known = left_out_values(observation);
-    const auto add = [&](const ValueIndices& values) {
-      for (const Eigen::Index value : values)
-        if (!std::ranges::binary_search(known, value)) rows.push_back(first + value);
-    };
-    add(undescribed_values(model, observation, curve, noise[i].standard_deviation()));
-    add(values_beside_steps(model, fit.estimate, observation));
+    ValueIndices either, &own = out.emplace_back();
+    std::ranges::set_union(
+        undescribed_values(model, observation, curve, noise[i].standard_deviation()),
+        values_beside_steps(model, fit.estimate, observation), std::back_inserter(either));
+    std::ranges::set_difference(either, known, std::back_inserter(own));
     first += observation.values.size();
   }
-  std::ranges::sort(rows);
-  rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
-  Eigen::MatrixXd out =
-      Eigen::MatrixXd::Zero(first + fit.linear.prior_rows.rows(), std::ssize(rows));
-  for (std::size_t j = 0; j < rows.size(); ++j) out(rows[j], static_cast<Eigen::Index>(j)) = 1.0;
   return out;
 }
 
 SearchRound search_round(const Model& model, const Solution& fit, const Candidates& candidates,
                          std::optional<Calibration>& calibration,
                          const std::function<void(double)>& progress) {
-  const Eigen::MatrixXd beside = undescribed_columns(model, fit, fit.noise);
+  const FreeValues beside = undescribed_beside(model, fit, fit.noise);
   auto [data, findings] = whiten_beside(model, fit, beside, candidates);
   SearchRound out{std::move(data), {}};
   if (candidates.empty()) return out;
@@ -265,9 +262,9 @@ SearchRound search_round(const Model& model, const Solution& fit, const Candidat
       !out.tested.front().refined.candidate->term.effect->description().steep_at_centre)
     return out;
   const Refined& best = out.tested.front().refined;
-  const Eigen::MatrixXd undescribed =
-      undescribed_columns(model, fit, out.data.noise(), best.columns * best.projection.amplitudes);
-  if (undescribed.cols() == beside.cols()) return out;
+  const FreeValues undescribed =
+      undescribed_beside(model, fit, out.data.noise(), best.columns * best.projection.amplitudes);
+  if (count_of(undescribed) == count_of(beside)) return out;
   std::tie(out.data, findings) = whiten_beside(model, fit, undescribed, candidates);
   out.tested = test_best(model, fit, out.data, findings, *calibration);
   return out;

@@ -39,8 +39,7 @@ Eigen::MatrixXd stacked_model(const Linearisation& linear) {
   return out;
 }
 
-Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
-                   Eigen::MatrixXd undescribed)
+Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, FreeValues undescribed)
     : noise_(std::move(noise)), undescribed_(std::move(undescribed)) {
   for (const Observation* observation : linear.observations) {
     first_.push_back(values_);
@@ -48,10 +47,9 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise,
   }
   first_.push_back(values_);
   rows_ = values_ + linear.prior_rows.rows();
-  if (undescribed_.cols() == 0) undescribed_.resize(rows_, 0);
-  own_ = white_nuisances(linear.observations, noise_);
-  Eigen::MatrixXd shared(rows_, linear.prior_rows.cols() + undescribed_.cols());
-  shared << stacked_model(linear), undescribed_;
+  undescribed_.resize(noise_.size());
+  own_ = own_bases(linear.observations, noise_, undescribed_);
+  Eigen::MatrixXd shared = stacked_model(linear);
   whiten(shared);
   shared_ = orthonormal(own_.beside(std::move(shared)));
   residual_ = stack(linear, 1, [&](std::size_t i) { return linear.residuals[i]; });

@@ -18,10 +18,8 @@ class Whitened {
  public:
   /// @param linear  the model at its fit
   /// @param noise   per fitted observation
-  /// @param undescribed  stacked columns that are left free beside the model's
-  ///                     (undescribed_columns()); 0 by 0: none
-  Whitened(const Linearisation& linear, std::vector<Noise> noise,
-           Eigen::MatrixXd undescribed = Eigen::MatrixXd(0, 0));
+  /// @param undescribed  values that are left free beside the model (undescribed_beside())
+  Whitened(const Linearisation& linear, std::vector<Noise> noise, FreeValues undescribed = {});
 
   [[nodiscard]] Eigen::Index rows() const { return rows_; }
   /// Values without the priors.
@@ -59,19 +57,19 @@ class Whitened {
   };
   [[nodiscard]] Shown shown_in(std::size_t profile, Eigen::MatrixXd columns) const;
 
-  /// Stacked columns that are left free beside the model.
-  [[nodiscard]] const Eigen::MatrixXd& undescribed() const { return undescribed_; }
+  /// Values that are left free beside the model, by profile.
+  [[nodiscard]] const FreeValues& undescribed() const { return undescribed_; }
 
   /// White residual outside that span.
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
 
  private:
   std::vector<Noise> noise_;
-  Eigen::MatrixXd undescribed_;
+  FreeValues undescribed_;
   std::vector<Eigen::Index> first_;
   Eigen::Index values_ = 0;
   Eigen::Index rows_ = 0;
-  ProfileBases own_;        // of the nuisances
+  ProfileBases own_;        // of the nuisances and of what is undescribed
   Eigen::MatrixXd shared_;  // of what else is free, orthogonal to those
   Eigen::VectorXd residual_;
 };

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "slideway/identify/left_out.hpp"
 #include "slideway/identify/model.hpp"
 #include "slideway/identify/noise.hpp"
 
@@ -35,8 +36,14 @@ class ProfileBases {
   std::vector<Eigen::MatrixXd> bases_;
 };
 
-/// The levelling of each profile, whitened by its noise.
-ProfileBases white_nuisances(const std::vector<const Observation*>& observations,
-                             const std::vector<Noise>& noise);
+/// Values that are left free, by profile; empty: none in any.
+using FreeValues = std::vector<ValueIndices>;
+
+/// What is free in one profile alone, under its noise: its levelling, and single values.
+ProfileBases own_bases(const std::vector<const Observation*>& observations,
+                       const std::vector<Noise>& noise, const FreeValues& free = {});
+
+/// A unit column for each of these values. @param rows  of the column
+Eigen::MatrixXd unit_columns(const ValueIndices& values, Eigen::Index rows);
 
 }  // namespace slideway
