@@ -142,7 +142,7 @@ double predicted_separation(const Planned& planned, const Whitened& data, const 
     row += residual.size();
   }
   linear.prior_residuals.setZero();
-  const Whitened white(linear, noise, Eigen::MatrixXd(signal.size(), 0));
+  const Whitened white(linear, noise);
   const Candidate near = near_fitted(rival, planned.model.gates.rival_reach);
   Finding best{&near};
   for (Eigen::Index atom = 0; atom < near.atoms(); ++atom) {
