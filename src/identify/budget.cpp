@@ -61,7 +61,7 @@ std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit,
         budget.lines.push_back({source.name, source.type, std::sqrt(std::max(variance, 0.0))});
       }
       if (more)
-        budget.lines.push_back({"structure without a name", EvaluationType::type_a,
+        budget.lines.push_back({"other explanations", EvaluationType::type_a,
                                 std::sqrt(more(fit.parameters.jacobian.row(index)))});
       out.push_back(std::move(budget));
     }

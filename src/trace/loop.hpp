@@ -8,7 +8,7 @@ namespace slideway {
 
 struct ClosedLoop {
   TraceResult trace;
-  std::optional<Widening> widening;     // of the final fit; none: nothing is left without a name
+  std::optional<Widening> widening;     // of the final fit; none: by nothing
   std::optional<FittedModel> extended;  // with the effects that were added; none: none was
 };
 

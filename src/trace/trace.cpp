@@ -66,6 +66,7 @@ class Loop {
     if (progress_) progress_("describing what is left", 0.0);
     report_effects(selection, out);
     report_rest(selection, closed);
+    widen_by_rivals(selection, closed);
     if (!limit_.allows([&] { report_limits(selection, out); }))
       out.not_looked_at.emplace_back("detection limits");
     out.instrument = shared_residuals(extender_.base());
@@ -233,6 +234,19 @@ class Loop {
         }))
       out.not_looked_at.emplace_back("short formulas of what is left");
     if (!out.unnamed->forms.empty()) out.unnamed->to_confirm = what_separates(*out.unnamed);
+  }
+
+  void widen_by_rivals(const Selection& selection, ClosedLoop& closed) {
+    const Gates& gates = problem_.trace.gates;
+    const FittedModel& fitted = extender_.extended(selection.effects);
+    for (std::size_t i = 0; i < selection.effects.size(); ++i) {
+      const std::vector<AcceptedEffect> others = all_but(selection.effects, i);
+      const SearchRound& round = extender_.search(others);
+      const auto rivals = round.rivals(*find_tested(round, selection.effects[i], gates), gates);
+      if (rivals.empty()) continue;
+      if (!closed.widening) closed.widening.emplace(fitted.fit.linear.prior_rows.cols());
+      closed.widening->add_rivals(fitted, extender_.extended(others), rivals);
+    }
   }
 
   /// What a process without a name would do in the place of the effects that are not sure.

@@ -11,48 +11,73 @@ namespace {
 /// Change of (amplitudes, shapes) by signals in the low bands, a column each.
 Eigen::MatrixXd response(const Solution& fit, const Eigen::MatrixXd& signals) {
   const Linearisation& linear = fit.linear;
-  const Eigen::Index k = linear.prior_rows.cols();
-  Eigen::Index nuisances = 0, next = 0;
-  for (const Observation* observation : linear.observations)
-    nuisances += observation->nuisances.cols();
-  Eigen::MatrixXd design = stack(linear, k + nuisances, [&](std::size_t i) {
-    const Observation& observation = *linear.observations[i];
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(observation.values.size(), k + nuisances);
-    rows.leftCols(k) = linear.columns[i];
-    rows.middleCols(k + next, observation.nuisances.cols()) = observation.nuisances;
-    next += observation.nuisances.cols();
-    return rows;
-  });
-  design.bottomLeftCorner(linear.prior_rows.rows(), k) = linear.prior_rows;
-  Eigen::MatrixXd targets = signals;
+  Eigen::MatrixXd design = stacked_model(linear), targets = signals;
   Eigen::Index row = 0;
-  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+  for (std::size_t i = 0; i < fit.noise.size(); ++i) {
     const Eigen::Index count = linear.observations[i]->values.size();
     fit.noise[i].whiten(design.middleRows(row, count));
     fit.noise[i].whiten(targets.middleRows(row, count));
     row += count;
   }
-  return least_squares(design, targets).values.topRows(k);
+  const ProfileBases levelling = own_bases(linear.observations, fit.noise);
+  levelling.take_out(targets);
+  return least_squares(levelling.beside(std::move(design)), targets).values;
+}
+
+Eigen::VectorXd amplitudes_of(const ModelTerm& term, const Estimate& estimate) {
+  return estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
+}
+
+Eigen::VectorXd own_shapes(const ModelTerm& term, const Estimate& estimate) {
+  return estimate.shapes.segment(term.first_shape, std::ssize(term.effect->shapes()));
 }
 
 }  // namespace
 
+void Widening::add_rivals(const FittedModel& fitted, const FittedModel& without,
+                          const std::vector<const TestedCandidate*>& rivals) {
+  if (rivals.empty()) return;
+  Eigen::MatrixXd signals(rivals.front()->refined.columns.rows(), std::ssize(rivals));
+  for (std::size_t j = 0; j < rivals.size(); ++j)
+    signals.col(static_cast<Eigen::Index>(j)) =
+        rivals[j]->refined.columns * rivals[j]->refined.projection.amplitudes;
+  const Eigen::MatrixXd moved = response(without.fit, signals);
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(changes.rows(), moved.cols());
+  const auto change = [&](Eigen::Index to, Eigen::Index from, const Eigen::VectorXd& now,
+                          const Eigen::VectorXd& then) {
+    const Eigen::Index common = std::min(now.size(), then.size());
+    own.middleRows(to, now.size()).colwise() -= now;
+    own.middleRows(to, common).colwise() += then.head(common);
+    own.middleRows(to, common) -= moved.middleRows(from, common);
+  };
+  for (const ModelTerm& term : fitted.model.terms) {
+    const auto other = std::ranges::find(without.model.terms, term.name, &ModelTerm::name);
+    if (other == without.model.terms.end()) continue;
+    change(term.first_amplitude, other->first_amplitude, amplitudes_of(term, fitted.fit.estimate),
+           amplitudes_of(*other, without.fit.estimate));
+    change(fitted.model.amplitudes() + term.first_shape,
+           without.model.amplitudes() + other->first_shape, own_shapes(term, fitted.fit.estimate),
+           own_shapes(*other, without.fit.estimate));
+  }
+  changes.conservativeResize(Eigen::NoChange, changes.cols() + own.cols());
+  changes.rightCols(own.cols()) = own;
+}
+
 double Widening::variance(const Eigen::RowVectorXd& row) const {
-  const double change = refused.cols() > 0 ? (row * refused).cwiseAbs().maxCoeff() : 0.0;
+  const double change = changes.cols() > 0 ? (row * changes).cwiseAbs().maxCoeff() : 0.0;
   return (row * process).squaredNorm() + change * change / 3.0;
 }
 
 Widening widening(const Model& model, const Solution& fit, const Structure& structure,
                   const std::vector<TestedCandidate>& refused) {
-  Widening out;
+  Widening out(fit.linear.prior_rows.cols());
   out.process = response(fit, stack(fit.linear, structure.columns[0].cols(),
                                     [&](std::size_t i) { return structure.columns[i]; })) *
                 structure.process.sizes.asDiagonal();
-  out.refused.resize(out.process.rows(), 0);
   for (const TestedCandidate& each : refused) {
     if (each.refined.delta_bic > -model.gates.delta_bic || !each.is_possible()) continue;
-    out.refused.conservativeResize(Eigen::NoChange, out.refused.cols() + 1);
-    out.refused.rightCols(1) =
+    out.changes.conservativeResize(Eigen::NoChange, out.changes.cols() + 1);
+    out.changes.rightCols(1) =
         response(fit, each.refined.columns * each.refined.projection.amplitudes);
   }
   return out;

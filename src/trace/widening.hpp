@@ -5,12 +5,21 @@
 
 namespace slideway {
 
-/// What is left and has no name widens uncertainties: by what the process that describes it could
-/// put into a fit unseen, and by the largest change that one of the effects refused in spite of
-/// their gain would bring (a rectangular distribution of that half width).
+/// What else could be in the data widens uncertainties: by what the process that describes what is
+/// left could put into a fit unseen, and by the largest change that one of the effects refused in
+/// spite of their gain, or one of the rivals in the place of an accepted effect, would bring (a
+/// rectangular distribution of that half width).
 struct Widening {
   Eigen::MatrixXd process;  // of (amplitudes, shapes), a column each standard deviation
-  Eigen::MatrixXd refused;  // the same, a column each effect
+  Eigen::MatrixXd changes;  // the same, a column each effect
+
+  /// By nothing. @param numbers  amplitudes and shapes
+  explicit Widening(Eigen::Index numbers) : process(numbers, 0), changes(numbers, 0) {}
+
+  /// @param fitted   the model that is widened
+  /// @param without  it without the effect whose rivals these are
+  void add_rivals(const FittedModel& fitted, const FittedModel& without,
+                  const std::vector<const TestedCandidate*>& rivals);
 
   /// Of row * (amplitudes, shapes).
   [[nodiscard]] double variance(const Eigen::RowVectorXd& row) const;
