@@ -91,7 +91,7 @@ struct Searched {
         profiles{make_face(form, size_um, position, width)},
         model(build_model(problem, profiles)),
         fitted(fit(model)),
-        data(fitted.linear, {noise()}, Eigen::MatrixXd(fitted.linear.residuals[0].size(), 0)) {
+        data(fitted.linear, {noise()}) {
     candidate.term.name = "two_shapes";
     candidate.term.effect = std::make_shared<TwoShapes>(form);
     lay_out(model, 0, candidate);
