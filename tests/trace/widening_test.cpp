@@ -39,8 +39,7 @@ FittedModel fitted(const std::vector<Profile>& profiles, const std::vector<const
   return {std::move(model), std::move(solution)};
 }
 
-/// Δβxz beside a column and the offset, tilt and squareness of one radius: r is tilt and squareness
-/// at once, so a prior of 0 on the tilt is what tells them apart in neither fit; it cancels.
+/// Slope of the face beside a column and the offset: but for its sign, Δβxz.
 double slope_beside(const Eigen::VectorXd& column, const Observation& observation) {
   Eigen::MatrixXd design(kReadings, 3);
   for (Eigen::Index i = 0; i < kReadings; ++i)
