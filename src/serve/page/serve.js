@@ -35,7 +35,7 @@ const Ui = {
     kind: [['face', 'a turned face'], ['slide', 'a reading along the slide']],
     trace: [['diameter', 'yes: a diameter'], ['radius', 'no: a radius']],
     direction: [['inward', 'inward'], ['outward', 'outward'], ['unknown', 'unknown']],
-    free: [['offset,tilt', 'yes: height and tilt mean nothing'], ['offset', 'no: its height alone means nothing'], ['none', 'neither: both mean something']],
+    free: [['offset,tilt', 'yes: both'], ['offset', 'its height only'], ['none', 'no: neither']],
     lever: [['split', 'split: the tool hangs on the carriage'], ['paper', 'paper: the arm reaches from the spindle axis']]};
   const draft = {id: '', opened: false, answers: new Map(), state: null, traces: [], edited: false, made: ''};
   let choices = {effects: [], tables: []}, runs = [], last = '', job = '';
