@@ -55,14 +55,15 @@ TEST(Placing, LobesBetweenAzimuthsAreNamed) {
 TEST(Placing, LobesOfEachClampingAreNamed) {
   constexpr double kSize = 0.5e-3;
   std::vector<Profile> profiles;
-  for (const auto& [disc, turned_deg] : {std::pair("first", 20.0), std::pair("second", 75.0)}) {
-    const auto lobes = [&](double x, double azimuth) {
-      return kSize * std::pow(x / kPlacedRadius, 3) *
-             std::cos(3.0 * (azimuth - turned_deg * kPi / 180.0));
+  for (const std::pair<std::string, double>& clamping :
+       {std::pair("first", 20.0), {"second", 75.0}}) {
+    const double turned = clamping.second * kPi / 180.0;
+    const auto lobes = [=](double x, double azimuth) {
+      return kSize * std::pow(x / kPlacedRadius, 3) * std::cos(3.0 * (azimuth - turned));
     };
     for (Profile& profile : at_azimuths(lobes, profiles.size() + 5)) {
-      profile.surface = disc;
-      profile.name = std::string(disc) + profile.name;
+      profile.surface = clamping.first;
+      profile.name = clamping.first + profile.name;
       profiles.push_back(std::move(profile));
     }
   }
