@@ -55,8 +55,8 @@ TEST(Placing, LobesBetweenAzimuthsAreNamed) {
 TEST(Placing, LobesOfEachClampingAreNamed) {
   constexpr double kSize = 0.5e-3;
   std::vector<Profile> profiles;
-  for (const std::pair<std::string, double>& clamping :
-       {std::pair("first", 20.0), {"second", 75.0}}) {
+  const std::vector<std::pair<std::string, double>> clampings{{"first", 20.0}, {"second", 75.0}};
+  for (const auto& clamping : clampings) {
     const double turned = clamping.second * kPi / 180.0;
     const auto lobes = [=](double x, double azimuth) {
       return kSize * std::pow(x / kPlacedRadius, 3) * std::cos(3.0 * (azimuth - turned));
