@@ -195,17 +195,29 @@ class Loop {
                           " mm does not follow what is so steep at the centre");
   }
 
-  /// Which measurement tells an effect from its rivals.
-  void advise(const Selection& selection, std::size_t i, TraceResult& out) {
+  /// The model without one accepted effect, and what could take its place.
+  struct WithoutEffect {
+    const FittedModel& fitted;
+    const SearchRound& round;
+    const TestedCandidate& own;
+    std::vector<const TestedCandidate*> rivals;
+  };
+
+  WithoutEffect without_effect(const Selection& selection, std::size_t i) {
     const Gates& gates = problem_.trace.gates;
     const std::vector<AcceptedEffect> others = all_but(selection.effects, i);
     const SearchRound& round = extender_.search(others);
-    const FittedModel& without = extender_.extended(others);
     const TestedCandidate& own = *find_tested(round, selection.effects[i], gates);
-    for (const TestedCandidate* rival : round.rivals(own, gates))
-      out.advice.push_back(separating_measurement(problem_, extender_.profiles(), without.model,
-                                                  without.fit, round.data, own.refined,
-                                                  rival->refined));
+    return {extender_.extended(others), round, own, round.rivals(own, gates)};
+  }
+
+  /// Which measurement tells an effect from its rivals.
+  void advise(const Selection& selection, std::size_t i, TraceResult& out) {
+    const WithoutEffect place = without_effect(selection, i);
+    for (const TestedCandidate* rival : place.rivals)
+      out.advice.push_back(separating_measurement(
+          problem_, extender_.profiles(), place.fitted.model, place.fitted.fit, place.round.data,
+          place.own.refined, rival->refined));
   }
 
   void report_rest(const Selection& selection, ClosedLoop& closed) {
@@ -237,15 +249,12 @@ class Loop {
   }
 
   void widen_by_rivals(const Selection& selection, ClosedLoop& closed) {
-    const Gates& gates = problem_.trace.gates;
     const FittedModel& fitted = extender_.extended(selection.effects);
     for (std::size_t i = 0; i < selection.effects.size(); ++i) {
-      const std::vector<AcceptedEffect> others = all_but(selection.effects, i);
-      const SearchRound& round = extender_.search(others);
-      const auto rivals = round.rivals(*find_tested(round, selection.effects[i], gates), gates);
-      if (rivals.empty()) continue;
+      const WithoutEffect place = without_effect(selection, i);
+      if (place.rivals.empty()) continue;
       if (!closed.widening) closed.widening.emplace(fitted.fit.linear.prior_rows.cols());
-      closed.widening->add_rivals(fitted, extender_.extended(others), rivals);
+      closed.widening->add_rivals(fitted, place.fitted, place.rivals);
     }
   }
 
