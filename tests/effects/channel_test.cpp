@@ -175,8 +175,11 @@ TEST(ChannelEffect, RefusesWhatIsNoLog) {
   EXPECT_THROW(made({0.0, 2.0, 1.0}, {1.0, 2.0, 3.0}), UsageError);
   EXPECT_THROW(made({0.0, 1.0, 1e300}, {1.0, 2.0, 3.0}), UsageError);
   EXPECT_THROW(made({0.0, 1.0, 2.0}, {1.0, -1e300, 3.0}), UsageError);
-  EXPECT_THROW((void)channel_effect(log_of([](double t) { return t; }),
-                                    {.name = "T", .free_lag = true, .free_tau = true}),
+  EXPECT_THROW(made({0.0, 1e-300, 1.0}, {1.0, 2.0, 3.0}), UsageError);
+  const Channel ramp = log_of([](double t) { return t; });
+  EXPECT_THROW((void)channel_effect(ramp, {.name = "T", .lag_s = 1e300}), UsageError);
+  EXPECT_THROW((void)channel_effect(ramp, {.name = "T", .tau_s = 1e300}), UsageError);
+  EXPECT_THROW((void)channel_effect(ramp, {.name = "T", .free_lag = true, .free_tau = true}),
                UsageError);
 }
 

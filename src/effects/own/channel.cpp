@@ -59,12 +59,13 @@ class Response {
     return (channel_.values[i + 1] - channel_.values[i]) / (channel_.at[i + 1] - channel_.at[i]);
   }
 
-  /// y from y_i on, where τ y' = q - y and q = q_i + c u: y = q - τ c + (y_i - q_i + τ c)
-  /// exp(-u/τ).
+  /// y from y_i on, where τ y' = q - y and q = q_i + c u: y = y_i + c (u + τ d) + (y_i - q_i) d,
+  /// d = exp(-u/τ) - 1.
   [[nodiscard]] double lagged_at(std::size_t i, double t) const {
-    const double u = t - channel_.at[i], c = slope(i), q = channel_.values[i] + c * u;
-    if (tau_ <= 0.0) return q;
-    return q - tau_ * c + (lagged_[i] - channel_.values[i] + tau_ * c) * std::exp(-u / tau_);
+    const double u = t - channel_.at[i], c = slope(i), q = channel_.values[i];
+    if (tau_ <= 0.0) return q + c * u;
+    const double decay = std::expm1(-u / tau_);
+    return lagged_[i] + c * (u + tau_ * decay) + (lagged_[i] - q) * decay;
   }
 
   /// ∫ y = ∫ q - τ (y - y_0), as τ y' = q - y.
@@ -261,11 +262,16 @@ EffectFactory channel_effect(Channel channel, const ChannelResponse& response) {
     throw UsageError("channel '" + channel.name + "' has fewer than three values");
   if (std::ranges::adjacent_find(channel.at, std::ranges::greater_equal()) != channel.at.end())
     throw UsageError("channel '" + channel.name + "' does not increase on its clock");
-  constexpr double kMost = 1e100;  // whose integral is finite
+  constexpr double kMost = 1e30;  // whose slopes and integrals are finite
   const auto is_possible = [](double number) { return std::abs(number) < kMost; };
+  const auto is_close = [](double a, double b) { return b - a < 1.0 / kMost; };
   if (!std::ranges::all_of(channel.at, is_possible) ||
       !std::ranges::all_of(channel.values, is_possible))
-    throw UsageError("channel '" + channel.name + "' has numbers beyond 1e100");
+    throw UsageError("channel '" + channel.name + "' has numbers beyond 1e30");
+  if (std::ranges::adjacent_find(channel.at, is_close) != channel.at.end())
+    throw UsageError("channel '" + channel.name + "' has places closer than 1e-30 to each other");
+  if (!is_possible(response.lag_s) || !is_possible(response.tau_s.value_or(0.0)))
+    throw UsageError("a lag_s or tau_s beyond 1e30");
   if (response.free_lag && response.free_tau)
     throw UsageError("a free lag_s and a free tau_s; accepted: one of the two free");
   auto shared = std::make_shared<const Channel>(std::move(channel));
