@@ -1,43 +1,48 @@
 #pragma once
 
-#include <map>
-#include <optional>
-#include <string>
-#include <tuple>
-#include <type_traits>
-#include <utility>
+#include <cstdint>
+#include <string_view>
 #include <vector>
-
-#include "slideway/base/record.hpp"
 
 namespace slideway {
 
-template <typename T>
-inline constexpr bool kIsOptional = false;
-template <typename T>
-inline constexpr bool kIsOptional<std::optional<T>> = true;
+/// The type of a member of a result, as the schema and the Python classes tell it.
+struct ContractType {
+  enum class Kind : std::uint8_t {
+    any,  ///< a text that is JSON already
+    boolean,
+    number,
+    count,  ///< an integer that is not negative
+    integer,
+    text,
+    one_of,  ///< of `texts`
+    list,    ///< of `of[0]`
+    map,     ///< from a text to `of[0]`
+    tuple,   ///< of `of`, each in its place
+    record,  ///< named `record`
+  };
 
-template <typename T>
-inline constexpr bool kIsList = false;
-template <typename T>
-inline constexpr bool kIsList<std::vector<T>> = true;
-template <typename T>
-inline constexpr bool kIsList<std::vector<std::pair<std::string, T>>> = false;
+  Kind kind = Kind::any;
+  bool or_null = false;
+  std::vector<ContractType> of;
+  std::vector<std::string_view> texts;
+  std::string_view record;
+};
 
-/// A struct without members of its own names: an object with any keys.
-template <typename T>
-inline constexpr bool kIsMap = false;
-template <typename T>
-inline constexpr bool kIsMap<std::map<std::string, T>> = true;
-template <typename T>
-inline constexpr bool kIsMap<std::vector<std::pair<std::string, T>>> = true;
+struct ContractMember {
+  std::string_view key;
+  std::string_view doc;
+  ContractType type;
+};
 
-/// The type of what a key of an object of that type holds; both kinds of kIsMap have pairs.
-template <typename T>
-using MappedType = typename T::value_type::second_type;
+struct ContractRecord {
+  std::string_view name;
+  std::string_view doc;
+  std::vector<ContractMember> members;
+};
 
-/// The type of a member, given its field.
-template <typename T, typename Access>
-using MemberType = std::remove_cvref_t<std::invoke_result_t<const Access&, T&>>;
+/// The records that a result is made of, the result itself first, each where it is first needed.
+const std::vector<ContractRecord>& report_records();
+const std::vector<ContractRecord>& plan_records();
 
 }  // namespace slideway

@@ -1,11 +1,13 @@
+#include <algorithm>
 #include <set>
 
 #include "contract_types.hpp"
 #include "slideway/report/contract.hpp"
-#include "slideway/trace/analysis_fields.hpp"
 
 namespace slideway {
 namespace {
+
+using Kind = ContractType::Kind;
 
 constexpr std::string_view kHead =
     R"py("""The report as dataclasses, key for key as the program's ``--json`` has it.
@@ -39,78 +41,99 @@ constexpr std::string_view kEndOfReport =
 
 constexpr std::size_t kSourceWidth = 99;
 
+/// Over several lines where it is too long for one, behind so many columns.
+std::string folded(const std::string& type, std::size_t columns) {
+  if (columns + type.size() <= kSourceWidth) return type;
+  const std::size_t open = type.find('['), close = type.rfind(']');
+  return type.substr(0, open + 1) + "\n        " + type.substr(open + 1, close - open - 1) +
+         "\n    " + type.substr(close);
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text.append(text.empty() ? "" : ", ").append(part);
+  return text;
+}
+
 /// Classes, each behind those it is made of.
 class ClassMaker {
  public:
-  template <Recorded T>
-  void add() {
-    if (!made_.insert(kRecord<T>.name).second) return;
-    std::string members;
-    bool has_array = false;
-    for_each_field<T>([&]<typename Access>(const Field<Access>& field) {
-      const std::string type = field.digits == kJsonText ? "Any" : type_of<MemberType<T, Access>>();
-      has_array = has_array || type.find("NDArray") != std::string::npos;
-      members += "    " + std::string(field.key) + ": " + folded(type, field.key.size() + 6) + "\n";
-      if (!field.doc.empty()) members.append("    \"\"\"").append(field.doc).append("\"\"\"\n");
-    });
-    constexpr bool kIsReport = std::is_same_v<T, Analysis>;
-    text_.append("\n\n@dataclass(frozen=True").append(has_array ? ", eq=False" : "");
-    text_.append(kIsReport ? ", repr=False" : "").append(")\nclass ").append(kRecord<T>.name);
-    text_.append(kIsReport ? "(Shown)" : "").append(":\n    \"\"\"");
-    text_.append(kRecord<T>.doc).append("\"\"\"\n\n").append(members);
+  explicit ClassMaker(const std::vector<ContractRecord>& records) : records_(records) {
+    add(records.front());
   }
 
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  template <typename T>
-  std::string type_of() {
-    if constexpr (kIsOptional<T>) {
-      return type_of<typename T::value_type>() + " | None";
-    } else if constexpr (std::is_same_v<T, bool>) {
-      return "bool";
-    } else if constexpr (std::is_floating_point_v<T>) {
-      return "float";
-    } else if constexpr (std::is_integral_v<T>) {
-      return "int";
-    } else if constexpr (Named<T>) {
-      std::string texts;
-      for (const std::string_view text : kTexts<T>)
-        texts.append(texts.empty() ? "\"" : ", \"").append(text).append("\"");
-      return "Literal[" + texts + "]";
-    } else if constexpr (std::is_same_v<T, std::string>) {
-      return "str";
-    } else if constexpr (std::is_same_v<T, std::vector<double>>) {
-      return "NDArray[np.float64]";
-    } else if constexpr (std::is_same_v<T, std::vector<std::size_t>>) {
-      return "NDArray[np.int64]";
-    } else if constexpr (kIsMap<T>) {
-      return "dict[str, " + type_of<MappedType<T>>() + "]";
-    } else if constexpr (kIsList<T>) {
-      return "list[" + type_of<typename T::value_type>() + "]";
-    } else if constexpr (Recorded<T>) {
-      add<T>();
-      return std::string(kRecord<T>.name);
-    } else {
-      return tuple(static_cast<T*>(nullptr));
+  void add(const ContractRecord& record) {
+    if (!made_.insert(record.name).second) return;
+    std::string members;
+    bool has_array = false;
+    for (const ContractMember& member : record.members) {
+      const std::string type = type_of(member.type);
+      has_array = has_array || type.find("NDArray") != std::string::npos;
+      members +=
+          "    " + std::string(member.key) + ": " + folded(type, member.key.size() + 6) + "\n";
+      if (!member.doc.empty()) members.append("    \"\"\"").append(member.doc).append("\"\"\"\n");
     }
+    const bool is_report = &record == &records_.front();
+    text_.append("\n\n@dataclass(frozen=True").append(has_array ? ", eq=False" : "");
+    text_.append(is_report ? ", repr=False" : "").append(")\nclass ").append(record.name);
+    text_.append(is_report ? "(Shown)" : "").append(":\n    \"\"\"");
+    text_.append(record.doc).append("\"\"\"\n\n").append(members);
   }
 
-  template <typename... T>
-  std::string tuple(const std::tuple<T...>* /*type*/) {
-    std::string types;
-    ((types += (types.empty() ? "" : ", ") + type_of<T>()), ...);
-    return "tuple[" + types + "]";
+  std::string type_of(const ContractType& type) {
+    return type_unless_none(type) + (type.or_null ? " | None" : "");
   }
 
-  /// Behind so many columns, over several lines where it is too long for one.
-  static std::string folded(const std::string& type, std::size_t columns) {
-    if (columns + type.size() <= kSourceWidth) return type;
-    const std::size_t open = type.find('['), close = type.rfind(']');
-    return type.substr(0, open + 1) + "\n        " + type.substr(open + 1, close - open - 1) +
-           "\n    " + type.substr(close);
+  std::string type_unless_none(const ContractType& type) {
+    switch (type.kind) {
+      case Kind::any:
+        return "Any";
+      case Kind::boolean:
+        return "bool";
+      case Kind::number:
+        return "float";
+      case Kind::count:
+      case Kind::integer:
+        return "int";
+      case Kind::text:
+        return "str";
+      case Kind::one_of:
+        return "Literal[" + quoted(type.texts) + "]";
+      case Kind::list:
+        return list_of(type.of[0]);
+      case Kind::map:
+        return "dict[str, " + type_of(type.of[0]) + "]";
+      case Kind::tuple:
+        return "tuple[" + types_of(type.of) + "]";
+      case Kind::record:
+        break;
+    }
+    add(*std::ranges::find(records_, type.record, &ContractRecord::name));
+    return std::string(type.record);
   }
 
+  std::string list_of(const ContractType& type) {
+    if (type.kind == Kind::number && !type.or_null) return "NDArray[np.float64]";
+    if (type.kind == Kind::count && !type.or_null) return "NDArray[np.int64]";
+    return "list[" + type_of(type) + "]";
+  }
+
+  std::string types_of(const std::vector<ContractType>& types) {
+    std::vector<std::string> parts;
+    for (const ContractType& type : types) parts.push_back(type_of(type));
+    return joined(parts);
+  }
+
+  static std::string quoted(const std::vector<std::string_view>& texts) {
+    std::vector<std::string> parts;
+    for (const std::string_view text : texts) parts.push_back("\"" + std::string(text) + "\"");
+    return joined(parts);
+  }
+
+  const std::vector<ContractRecord>& records_;
   std::set<std::string_view> made_;
   std::string text_;
 };
@@ -118,9 +141,7 @@ class ClassMaker {
 }  // namespace
 
 std::string report_classes() {
-  ClassMaker maker;
-  maker.add<Analysis>();
-  return std::string(kHead) + maker.text() + std::string(kEndOfReport);
+  return std::string(kHead) + ClassMaker(report_records()).text() + std::string(kEndOfReport);
 }
 
 }  // namespace slideway

@@ -1,107 +1,98 @@
 #include "contract_types.hpp"
 #include "json_parts.hpp"
 #include "slideway/report/contract.hpp"
-#include "slideway/trace/analysis_fields.hpp"
-#include "slideway/trace/plan_fields.hpp"
+#include "slideway/trace/analysis.hpp"
+#include "slideway/trace/plan.hpp"
 
 namespace slideway {
 namespace {
 
-/// Schemas of types; those of records under $defs.
-class SchemaMaker {
- public:
-  template <typename T>
-  Json of() {
-    if constexpr (kIsOptional<T>)
-      return or_null_too(of<typename T::value_type>());
-    else if constexpr (std::is_same_v<T, bool>)
-      return {{"type", "boolean"}};
-    else if constexpr (std::is_floating_point_v<T>)
-      return {{"type", {"number", "null"}}};  // null: not finite
-    else if constexpr (std::is_unsigned_v<T>)
-      return {{"type", "integer"}, {"minimum", 0}};
-    else if constexpr (std::is_integral_v<T>)
-      return {{"type", "integer"}};
-    else if constexpr (Named<T>)
-      return {{"enum", kTexts<T>}};
-    else if constexpr (kIsMap<T>)
-      return {{"type", "object"}, {"additionalProperties", of<MappedType<T>>()}};
-    else if constexpr (kIsList<T>)
-      return {{"type", "array"}, {"items", of<typename T::value_type>()}};
-    else if constexpr (Recorded<T>)
-      return reference_to<T>();
-    else if constexpr (std::is_same_v<T, std::string>)
-      return {{"type", "string"}};
-    else
-      return tuple(static_cast<T*>(nullptr));
+using Kind = ContractType::Kind;
+
+Json schema_of(const ContractType& type);
+
+Json all_of(const std::vector<ContractType>& types) {
+  return array_of(types, [](const ContractType& type) { return schema_of(type); });
+}
+
+Json schema_unless_null(const ContractType& type) {
+  switch (type.kind) {
+    case Kind::boolean:
+      return Json::object({{"type", "boolean"}});
+    case Kind::number:  // null: not finite
+      return Json::object({{"type", {"number", "null"}}});
+    case Kind::count:
+      return Json::object({{"type", "integer"}, {"minimum", 0}});
+    case Kind::integer:
+      return Json::object({{"type", "integer"}});
+    case Kind::text:
+      return Json::object({{"type", "string"}});
+    case Kind::one_of:
+      return Json::object({{"enum", type.texts}});
+    case Kind::list:
+      return Json::object({{"type", "array"}, {"items", schema_of(type.of[0])}});
+    case Kind::map:
+      return Json::object({{"type", "object"}, {"additionalProperties", schema_of(type.of[0])}});
+    case Kind::tuple:
+      return Json::object({{"type", "array"},
+                           {"prefixItems", all_of(type.of)},
+                           {"minItems", type.of.size()},
+                           {"maxItems", type.of.size()}});
+    case Kind::record:
+      return Json::object({{"$ref", "#/$defs/" + std::string(type.record)}});
+    case Kind::any:
+      break;
   }
+  return Json::object();
+}
 
-  /// An object with the members of a record.
-  template <Recorded T>
-  Json object() {
-    Json properties = Json::object(), required = Json::array();
-    for_each_field<T>([&]<typename Access>(const Field<Access>& field) {
-      Json own = field.digits == kJsonText ? Json::object() : of<MemberType<T, Access>>();
-      if (!field.doc.empty()) own["description"] = field.doc;
-      properties[std::string(field.key)] = std::move(own);
-      required.push_back(field.key);
-    });
-    return {{"type", "object"},
-            {"description", kRecord<T>.doc},
-            {"properties", std::move(properties)},
-            {"required", std::move(required)}};
+Json schema_of(const ContractType& type) {
+  Json schema = schema_unless_null(type);
+  if (!type.or_null) return schema;
+  if (type.kind == Kind::one_of)
+    schema["enum"].push_back(nullptr);
+  else if (type.kind == Kind::record)
+    return Json::object({{"anyOf", Json::array({schema, Json::object({{"type", "null"}})})}});
+  else if (!schema["type"].is_array())
+    schema["type"] = Json::array({schema["type"], "null"});
+  return schema;
+}
+
+/// An object with the members of a record.
+Json schema_of(const ContractRecord& record) {
+  Json properties = Json::object(), required = Json::array();
+  for (const ContractMember& member : record.members) {
+    Json own = schema_of(member.type);
+    if (!member.doc.empty()) own["description"] = member.doc;
+    properties[std::string(member.key)] = std::move(own);
+    required.push_back(member.key);
   }
+  Json schema = Json::object({{"type", "object"}, {"description", record.doc}});
+  schema["properties"] = std::move(properties);
+  schema["required"] = std::move(required);
+  return schema;
+}
 
-  [[nodiscard]] const Json& definitions() const { return definitions_; }
-
- private:
-  static Json or_null_too(Json schema) {
-    if (schema.contains("enum"))
-      schema["enum"].push_back(nullptr);
-    else if (schema.contains("$ref"))
-      return {{"anyOf", {std::move(schema), {{"type", "null"}}}}};
-    else if (!schema["type"].is_array())
-      schema["type"] = Json::array({schema["type"], "null"});
-    return schema;
-  }
-
-  template <Recorded T>
-  Json reference_to() {
-    const std::string name(kRecord<T>.name);
-    if (!definitions_.contains(name)) {
-      definitions_[name] = nullptr;  // its place, before what it is made of
-      definitions_[name] = object<T>();
-    }
-    return {{"$ref", "#/$defs/" + name}};
-  }
-
-  template <typename... T>
-  Json tuple(const std::tuple<T...>* /*type*/) {
-    return {{"type", "array"},
-            {"prefixItems", {of<T>()...}},
-            {"minItems", sizeof...(T)},
-            {"maxItems", sizeof...(T)}};
-  }
-
-  Json definitions_ = Json::object();
-};
-
-template <Recorded T>
-std::string schema_of(const char* id, std::string_view name) {
-  SchemaMaker maker;
-  Json document = maker.object<T>();
-  document["properties"]["schema"] = Json::object({{"const", name}});
-  Json schema = {
-      {"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"$id", id}, {"title", name}};
-  schema.update(document);
-  schema["$defs"] = maker.definitions();
+std::string document_of(const std::vector<ContractRecord>& records, const char* id,
+                        std::string_view name) {
+  Json schema = Json::object(
+      {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"$id", id}, {"title", name}});
+  schema.update(schema_of(records.front()));
+  schema["properties"]["schema"] = Json::object({{"const", name}});
+  Json& definitions = schema["$defs"] = Json::object();
+  for (std::size_t i = 1; i < records.size(); ++i)
+    definitions[std::string(records[i].name)] = schema_of(records[i]);
   return laid_out(schema) + "\n";
 }
 
 }  // namespace
 
-std::string report_schema() { return schema_of<Analysis>("urn:slideway:report:2", kReportSchema); }
+std::string report_schema() {
+  return document_of(report_records(), "urn:slideway:report:2", kReportSchema);
+}
 
-std::string plan_schema() { return schema_of<Plan>("urn:slideway:plan:1", kPlanSchema); }
+std::string plan_schema() {
+  return document_of(plan_records(), "urn:slideway:plan:1", kPlanSchema);
+}
 
 }  // namespace slideway

@@ -6,7 +6,8 @@ build=$1 seconds=$2 target=$3
 run=$build/run/$target
 mkdir -p "$run/corpus" "$run/crashes"
 export GLOG_minloglevel=3 # Ceres
-if "$build/bin/fuzz_$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=1024 \
+export ASAN_OPTIONS=quarantine_size_mb=64
+if "$build/bin/fuzz_$target" -max_total_time="$seconds" -timeout=20 -seed="${SLIDEWAY_SEED:-0}" -rss_limit_mb=1024 \
   -malloc_limit_mb=64 -print_final_stats=1 -artifact_prefix="$run/crashes/" "$run/corpus" \
   "$(dirname "$0")"/*/"$target" >"$run/log" 2>&1; then
   echo "$target: $(sed -n 's/^stat::number_of_executed_units: *//p' "$run/log") inputs"
