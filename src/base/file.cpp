@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -47,8 +48,13 @@ class Descriptor {
   int number_ = -1;
 };
 
-std::string read_all(int file, const fs::path& path) {
+// Files up to this size are read, so that nothing that happens to them later matters; larger ones
+// are mapped, so that they need not fit in memory.
+constexpr std::size_t kMostRead = 1 << 26;
+
+std::string read_all(int file, std::size_t expected, const fs::path& path) {
   std::string bytes;
+  bytes.reserve(expected);
   std::array<char, 65536> chunk;
   for (;;) {
     const ssize_t count = ::read(file, chunk.data(), chunk.size());
@@ -59,6 +65,13 @@ std::string read_all(int file, const fs::path& path) {
     else if (errno != EINTR)
       throw DataError(path.string() + ": cannot be read: " + cause(errno));
   }
+}
+
+bool is_unchanged(const struct stat& before, int file) {
+  struct stat now {};
+  return ::fstat(file, &now) == 0 && now.st_size == before.st_size &&
+         now.st_mtim.tv_sec == before.st_mtim.tv_sec &&
+         now.st_mtim.tv_nsec == before.st_mtim.tv_nsec;
 }
 
 // Blocks all signals during its lifetime.
@@ -87,6 +100,21 @@ int make_beside(const fs::path& target, const Make& make, fs::path& temporary) {
     error = make(temporary);
   }
   return error;
+}
+
+fs::path folder_of(const fs::path& target) {
+  return target.has_parent_path() ? target.parent_path() : ".";
+}
+
+// 0 or errno; 0 where the file system has nothing to synchronise.
+int synchronise(int file) {
+  return ::fsync(file) == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
+}
+
+int synchronise_names(const fs::path& folder) {
+  Descriptor names;
+  if (const int error = names.open(folder, O_RDONLY | O_DIRECTORY); error != 0) return error;
+  return synchronise(names.number());
 }
 
 int rename_over(const fs::path& temporary, const fs::path& target) {
@@ -136,8 +164,9 @@ FileBytes::FileBytes(const fs::path& path) {
   if (file.open(path, O_RDONLY) != 0 || ::fstat(file.number(), &status) != 0)
     throw DataError(path.string() + ": cannot be read: " + cause(errno));
   if (S_ISDIR(status.st_mode)) throw DataError(path.string() + ": is a directory, expected a file");
-  if (S_ISREG(status.st_mode) && status.st_size > 0) {
-    size_ = static_cast<std::size_t>(status.st_size);
+  const bool has_size = S_ISREG(status.st_mode) && status.st_size > 0;  // not a file of /proc
+  size_ = has_size ? static_cast<std::size_t>(status.st_size) : 0;
+  if (size_ > kMostRead) {
     void* const memory = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.number(), 0);
     if (memory != MAP_FAILED) {
       ::madvise(memory, size_, MADV_SEQUENTIAL);
@@ -146,7 +175,9 @@ FileBytes::FileBytes(const fs::path& path) {
       return;
     }
   }
-  owned_ = read_all(file.number(), path);
+  owned_ = read_all(file.number(), std::min(size_, kMostRead), path);
+  if (has_size && (owned_.size() != size_ || !is_unchanged(status, file.number())))
+    throw DataError(path.string() + ": was changed while it was read");
   data_ = owned_.data();
   size_ = owned_.size();
 }
@@ -235,9 +266,9 @@ int WholeFile::Target::open(const fs::path& path) {
   if (exists && is_stream(path, status)) return file_.open(path, O_WRONLY | O_APPEND);
 
   target_ = exists ? fs::canonical(path) : path;  // a link stays a link
-  const fs::path folder = target_.has_parent_path() ? target_.parent_path() : ".";
-  int error =
-      ::access("/proc/self/fd", F_OK) == 0 ? file_.open(folder, O_WRONLY | O_TMPFILE) : EOPNOTSUPP;
+  int error = ::access("/proc/self/fd", F_OK) == 0
+                  ? file_.open(folder_of(target_), O_WRONLY | O_TMPFILE)
+                  : EOPNOTSUPP;
   if (error == EOPNOTSUPP || error == EISDIR) {
     held_.emplace();
     error = make_beside(
@@ -264,13 +295,17 @@ int WholeFile::Target::give_name() {
   return error == 0 ? rename_over(temporary, target_) : error;
 }
 
+// The bytes are on the disk before the name is, the name before the file counts as written.
 int WholeFile::Target::finish() {
-  const bool is_nameless = !target_.empty() && temporary_.empty();
-  if (is_nameless)
+  if (target_.empty()) return file_.close();
+  if (const int error = synchronise(file_.number()); error != 0) return error;
+  if (temporary_.empty())
     if (const int error = give_name(); error != 0) return error;
-  const int error = file_.close();
-  if (error != 0 || temporary_.empty()) return error;
-  return rename_over(std::exchange(temporary_, {}), target_);
+  if (const int error = file_.close(); error != 0) return error;
+  if (!temporary_.empty())
+    if (const int error = rename_over(std::exchange(temporary_, {}), target_); error != 0)
+      return error;
+  return synchronise_names(folder_of(target_));
 }
 
 WholeFile::WholeFile(fs::path path) : path_(std::move(path)), target_(std::make_unique<Target>()) {

@@ -123,7 +123,7 @@ void ResultsFile::keep(const std::function<bool(const ResultHead&)>& wanted) {
 MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& in) {
   struct Place {
     std::size_t file = 0;
-    std::string_view line;  // in the mapped file
+    std::string_view line;  // in the file
     bool is_ok = false;
   };
   std::vector<FileBytes> bytes;

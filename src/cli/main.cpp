@@ -1,6 +1,7 @@
 #include <glog/logging.h>
 #include <malloc.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -9,6 +10,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command.hpp"
@@ -55,6 +57,13 @@ void prepare_memory() {
   std::free(room);
 }
 
+// A mapped file that is cut short while it is read.
+void end_at_missing_bytes(int /*signal*/) {
+  constexpr std::string_view kMessage = "slideway: a file was cut short while it was read\n";
+  static_cast<void>(!::write(STDERR_FILENO, kMessage.data(), kMessage.size()));
+  ::_exit(kBadData);
+}
+
 int failed(int code, std::string_view message) {
   say(message);
   return code;
@@ -70,6 +79,7 @@ int main(int argc, char** argv) {
   // Writing to a closed pipe, or beyond the file size limit, is then a failed write.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGBUS, end_at_missing_bytes);
   try {
     return run({argv + 1, argv + argc});
   } catch (const UsageError& error) {

@@ -66,7 +66,6 @@ class Loop {
     if (progress_) progress_("describing what is left", 0.0);
     report_effects(selection, out);
     report_rest(selection, closed);
-    widen_by_rivals(selection, closed);
     if (!limit_.allows([&] { report_limits(selection, out); }))
       out.not_looked_at.emplace_back("detection limits");
     out.instrument = shared_residuals(extender_.base());
@@ -79,6 +78,7 @@ class Loop {
     if (!other_cause.empty()) out.advice.insert(out.advice.begin(), other_cause);
     if (!out.blunders.empty()) out.advice.insert(out.advice.begin(), blunder_advice(out.blunders));
     out.verdict = verdict(out, !other_cause.empty());
+    widen(selection, closed);
     if (other_cause.empty() && out.blunders.empty() &&
         out.rounds.size() == selection.effects.size() && !limit_.allows([&] {
           out.fragile = smallest_change(problem_, statistics_, selection, gates);
@@ -235,10 +235,8 @@ class Loop {
     for (const PureErrorCheck& each : check_repeats(fitted.fit.linear, gates))
       if (each.verdict == RepeatFit::lack_of_fit) repeated_p = std::min(repeated_p, each.p_value);
     if (out.blunders.empty() && !selection.lack_of_fit.significant(gates) && !selection.withheld &&
-        repeated_p == 1.0) {
-      if (!selection.unsure.empty()) closed.widening = widening_instead(selection, fitted, last);
+        repeated_p == 1.0)
       return;
-    }
     report_unnamed(fitted, last.data, std::min(selection.lack_of_fit.p_value, repeated_p),
                    last.tested, closed);
     if (!limit_.allows([&] {
@@ -248,8 +246,16 @@ class Loop {
     if (!out.unnamed->forms.empty()) out.unnamed->to_confirm = what_separates(*out.unnamed);
   }
 
-  void widen_by_rivals(const Selection& selection, ClosedLoop& closed) {
+  /// By what a process without a name would do in the place of effects that are not sure, and
+  /// their rivals.
+  void widen(const Selection& selection, ClosedLoop& closed) {
+    std::vector<std::size_t> unsure = selection.unsure;
+    if (closed.trace.verdict == TraceVerdict::not_identifiable)
+      for (std::size_t i = 0; i < selection.effects.size(); ++i)
+        if (selection.effects[i].candidate->term.effect->is_carriage()) unsure.push_back(i);
     const FittedModel& fitted = extender_.extended(selection.effects);
+    if (!closed.trace.unnamed && !unsure.empty())
+      closed.widening = widening_instead(selection, std::move(unsure), fitted);
     for (std::size_t i = 0; i < selection.effects.size(); ++i) {
       const WithoutEffect place = without_effect(selection, i);
       if (place.rivals.empty()) continue;
@@ -258,10 +264,12 @@ class Loop {
     }
   }
 
-  /// What a process without a name would do in the place of the effects that are not sure.
-  Widening widening_instead(const Selection& selection, const FittedModel& fitted,
-                            const SearchRound& last) {
-    const FittedModel& without = extender_.extended(all_but(selection.effects, selection.unsure));
+  Widening widening_instead(const Selection& selection, std::vector<std::size_t> unsure,
+                            const FittedModel& fitted) {
+    std::ranges::sort(unsure);
+    unsure.erase(std::ranges::unique(unsure).begin(), unsure.end());
+    const SearchRound& last = extender_.search(selection.effects);
+    const FittedModel& without = extender_.extended(all_but(selection.effects, unsure));
     const Whitened data(without.fit.linear, last.data.noise(), last.data.undescribed());
     return widening(fitted.model, fitted.fit,
                     find_structure(without.model, data, without.fit.linear), last.tested);

@@ -7,6 +7,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdarg>
@@ -76,12 +77,39 @@ TEST(FileBytes, GivesEveryByteOfAFile) {
 
 TEST(FileBytes, ReadsAgainWhatItForgot) {
   const TemporaryFolder folder;
-  std::string bytes(20'000'000, 'x');  // several parts
+  std::string bytes(70'000'000, 'x');  // several parts, and mapped
   for (std::size_t i = 0; i < bytes.size(); i += 1000) bytes[i] = static_cast<char>(i / 1000);
   const FileBytes file(folder.file("a", bytes));
   EXPECT_EQ(sha256(file), sha256(bytes));
   file.forget(0, bytes.size());
   EXPECT_EQ(file.text(), bytes);
+}
+
+// Whatever happens to the file meanwhile: its bytes or an error, never a signal.
+TEST(FileBytes, AreThoseOfAFileThatNobodyChangedMeanwhile) {
+  const TemporaryFolder folder;
+  const std::string whole(3'000'000, 'x');
+  const fs::path path = folder.file("a", whole);
+  std::atomic<bool> done{false};
+  std::thread other([&] {
+    while (!done) {
+      fs::resize_file(path, 1);
+      fs::resize_file(path, whole.size());
+    }
+  });
+  int refused = 0;
+  for (int i = 0; i < 200; ++i) {
+    try {
+      const FileBytes bytes(path);
+      EXPECT_THAT(bytes.text().size(), ::testing::AnyOf(1U, whole.size()));
+    } catch (const DataError& error) {
+      EXPECT_EQ(error.what(), path.string() + ": was changed while it was read");
+      ++refused;
+    }
+  }
+  done = true;
+  other.join();
+  EXPECT_GT(refused, 0);
 }
 
 TEST(FileBytes, ReadsAPipe) {
@@ -108,9 +136,10 @@ TEST(FileBytes, OfARegularFileRefusesWhatMayNeverEnd) {
 
 TEST(FileBytes, KeepsItsBytesWhenMoved) {
   const TemporaryFolder folder;
-  FileBytes mapped(folder.file("a", "mapped"));
+  const std::string large(70'000'000, 'x');
+  FileBytes mapped(folder.file("a", large));
   FileBytes moved(std::move(mapped));
-  EXPECT_EQ(moved.text(), "mapped");
+  EXPECT_EQ(moved.text(), large);
   // Files of /proc have no size and are read; this one is short enough for a string's own buffer.
   FileBytes owned("/proc/sys/kernel/ostype");
   EXPECT_EQ(FileBytes(std::move(owned)).text(), "Linux\n");

@@ -8,8 +8,9 @@
 
 namespace slideway {
 
-/// The bytes of a file. A regular file is mapped read-only; an empty file or a pipe is read.
-/// @throws DataError  "path: what is wrong" if it is missing, is a directory or cannot be read
+/// The bytes of a file. A regular file of more than 64 MiB is mapped, all else is read.
+/// @throws DataError  "path: what is wrong" if it is missing, is a directory, cannot be read, or was
+///                    changed while it was read
 class FileBytes {
  public:
   explicit FileBytes(const std::filesystem::path& path);
@@ -44,10 +45,10 @@ std::string sha256(const FileBytes& file);
 /// @throws std::runtime_error naming the path and the cause
 void make_directory(const std::filesystem::path& path);
 
-/// A file that is written completely or not at all, also if a signal ends the process. The bytes go
-/// to an unnamed file (O_TMPFILE), which is linked when it is complete. To replace an existing
-/// file, or on a file system without unnamed files, a temporary name is used and renamed while
-/// signals are blocked. Devices and pipes are written directly.
+/// A file that is written completely or not at all, also if a signal ends the process or the power
+/// fails. The bytes go to an unnamed file (O_TMPFILE), which is linked when it is complete and on
+/// the disk. To replace an existing file, or on a file system without unnamed files, a temporary
+/// name is used and renamed while signals are blocked. Devices and pipes are written directly.
 /// @throws std::runtime_error  "path: cannot be written: cause"; an older file is then unchanged
 class WholeFile {
  public:
