@@ -151,8 +151,7 @@ class Selector {
     if (round.data.observations() < 2) return false;
     return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
       return each.refined.projection.rank > 0 && each.modulates.empty() && each.folded.empty() &&
-             each.refined.candidate->term.profiles.empty() && each.p_value <= gates_.significance &&
-             each.refined.delta_bic <= -gates_.delta_bic &&
+             each.p_value <= gates_.significance && each.refined.delta_bic <= -gates_.delta_bic &&
              !(each.held_out && !each.held_out->helps) &&
              std::ranges::count(ruled_out_, each.name()) == 0;
     });

@@ -247,15 +247,21 @@ class Loop {
   }
 
   /// By what a process without a name would do in the place of effects that are not sure, and
-  /// their rivals.
+  /// their rivals. Where the carriages cannot have made what they were raised to, they may as well
+  /// be as declared.
   void widen(const Selection& selection, ClosedLoop& closed) {
-    std::vector<std::size_t> unsure = selection.unsure;
-    if (closed.trace.verdict == TraceVerdict::not_identifiable)
-      for (std::size_t i = 0; i < selection.effects.size(); ++i)
-        if (selection.effects[i].candidate->term.effect->is_carriage()) unsure.push_back(i);
     const FittedModel& fitted = extender_.extended(selection.effects);
-    if (!closed.trace.unnamed && !unsure.empty())
-      closed.widening = widening_instead(selection, std::move(unsure), fitted);
+    std::vector<std::size_t> unsure = selection.unsure;
+    const bool of_another_cause = closed.trace.verdict == TraceVerdict::not_identifiable;
+    for (std::size_t i = 0; i < selection.effects.size(); ++i)
+      if (of_another_cause && std::ranges::count(unsure, i) == 0 &&
+          selection.effects[i].candidate->term.effect->is_carriage())
+        unsure.push_back(i);
+    if (!closed.trace.unnamed && !unsure.empty()) {
+      const FittedModel& without = extender_.extended(all_but(selection.effects, unsure));
+      closed.widening = widening_instead(selection, fitted, without);
+      if (of_another_cause) closed.widening->add_absence(fitted, without);
+    }
     for (std::size_t i = 0; i < selection.effects.size(); ++i) {
       const WithoutEffect place = without_effect(selection, i);
       if (place.rivals.empty()) continue;
@@ -264,12 +270,9 @@ class Loop {
     }
   }
 
-  Widening widening_instead(const Selection& selection, std::vector<std::size_t> unsure,
-                            const FittedModel& fitted) {
-    std::ranges::sort(unsure);
-    unsure.erase(std::ranges::unique(unsure).begin(), unsure.end());
+  Widening widening_instead(const Selection& selection, const FittedModel& fitted,
+                            const FittedModel& without) {
     const SearchRound& last = extender_.search(selection.effects);
-    const FittedModel& without = extender_.extended(all_but(selection.effects, unsure));
     const Whitened data(without.fit.linear, last.data.noise(), last.data.undescribed());
     return widening(fitted.model, fitted.fit,
                     find_structure(without.model, data, without.fit.linear), last.tested);

@@ -32,23 +32,17 @@ Eigen::VectorXd own_shapes(const ModelTerm& term, const Estimate& estimate) {
   return estimate.shapes.segment(term.first_shape, std::ssize(term.effect->shapes()));
 }
 
-}  // namespace
-
-void Widening::add_rivals(const FittedModel& fitted, const FittedModel& without,
-                          const std::vector<const TestedCandidate*>& rivals) {
-  if (rivals.empty()) return;
-  Eigen::MatrixXd signals(rivals.front()->refined.columns.rows(), std::ssize(rivals));
-  for (std::size_t j = 0; j < rivals.size(); ++j)
-    signals.col(static_cast<Eigen::Index>(j)) =
-        rivals[j]->refined.columns * rivals[j]->refined.projection.amplitudes;
-  const Eigen::MatrixXd moved = response(without.fit, signals);
-  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(changes.rows(), moved.cols());
+/// Change of the numbers of a model if it were another one, which lacks one of its effects, and
+/// what is moved there by what takes its place, a column each.
+Eigen::MatrixXd differences(const FittedModel& fitted, const FittedModel& without,
+                            const Eigen::MatrixXd& moved) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(fitted.fit.linear.prior_rows.cols(), moved.cols());
   const auto change = [&](Eigen::Index to, Eigen::Index from, const Eigen::VectorXd& now,
                           const Eigen::VectorXd& then) {
     const Eigen::Index common = std::min(now.size(), then.size());
-    own.middleRows(to, now.size()).colwise() -= now;
-    own.middleRows(to, common).colwise() += then.head(common);
-    own.middleRows(to, common) -= moved.middleRows(from, common);
+    out.middleRows(to, now.size()).colwise() -= now;
+    out.middleRows(to, common).colwise() += then.head(common);
+    out.middleRows(to, common) -= moved.middleRows(from, common);
   };
   for (const ModelTerm& term : fitted.model.terms) {
     const auto other = std::ranges::find(without.model.terms, term.name, &ModelTerm::name);
@@ -59,8 +53,28 @@ void Widening::add_rivals(const FittedModel& fitted, const FittedModel& without,
            without.model.amplitudes() + other->first_shape, own_shapes(term, fitted.fit.estimate),
            own_shapes(*other, without.fit.estimate));
   }
-  changes.conservativeResize(Eigen::NoChange, changes.cols() + own.cols());
-  changes.rightCols(own.cols()) = own;
+  return out;
+}
+
+}  // namespace
+
+void Widening::add(const Eigen::MatrixXd& more) {
+  changes.conservativeResize(Eigen::NoChange, changes.cols() + more.cols());
+  changes.rightCols(more.cols()) = more;
+}
+
+void Widening::add_absence(const FittedModel& fitted, const FittedModel& without) {
+  add(differences(fitted, without, Eigen::VectorXd::Zero(without.fit.linear.prior_rows.cols())));
+}
+
+void Widening::add_rivals(const FittedModel& fitted, const FittedModel& without,
+                          const std::vector<const TestedCandidate*>& rivals) {
+  if (rivals.empty()) return;
+  Eigen::MatrixXd signals(rivals.front()->refined.columns.rows(), std::ssize(rivals));
+  for (std::size_t j = 0; j < rivals.size(); ++j)
+    signals.col(static_cast<Eigen::Index>(j)) =
+        rivals[j]->refined.columns * rivals[j]->refined.projection.amplitudes;
+  add(differences(fitted, without, response(without.fit, signals)));
 }
 
 double Widening::variance(const Eigen::RowVectorXd& row) const {
@@ -76,9 +90,7 @@ Widening widening(const Model& model, const Solution& fit, const Structure& stru
                 structure.process.sizes.asDiagonal();
   for (const TestedCandidate& each : refused) {
     if (each.refined.delta_bic > -model.gates.delta_bic || !each.is_possible()) continue;
-    out.changes.conservativeResize(Eigen::NoChange, out.changes.cols() + 1);
-    out.changes.rightCols(1) =
-        response(fit, each.refined.columns * each.refined.projection.amplitudes);
+    out.add(response(fit, each.refined.columns * each.refined.projection.amplitudes));
   }
   return out;
 }

@@ -45,7 +45,7 @@ std::unique_ptr<Effect> make_centre_height(const Request& request) {
                          .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
                          .derivative = centre_height_derivative,
                          .range = [](const Stations&) {
-                           return std::pair{0.005, 1.0};
+                           return std::pair{0.005, 10.0};
                          }}});
 }
 

@@ -42,7 +42,7 @@ std::unique_ptr<Effect> make_chord(const Request& request) {
                          .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
                          .derivative = chord_derivative,
                          .range = [](const Stations&) {
-                           return std::pair{0.005, 2.0};
+                           return std::pair{0.005, 10.0};
                          }}});
 }
 
