@@ -22,6 +22,9 @@ std::span<const Gate> gate_table() {
       Gate{"exchange_bic", &Gates::exchange_bic, "", 0.0, 10.0,
            "A better effect takes the place of an accepted one from this difference of BIC on.",
            "Kass and Raftery (1995): below 2 the evidence is not worth a mention"},
+      Gate{"left_over_bic", &Gates::left_over_bic, "", 10.0, 300.0,
+           "Something is left if a candidate, named or not, would lower the BIC by this much.",
+           "three times delta_bic: the search looks into each profile alone and at every shape"},
       Gate{"alike", &Gates::alike, "", 0.1, 0.9,
            "Two effects explain the same part of the residual if the cosine between their parts "
            "is larger.",

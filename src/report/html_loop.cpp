@@ -2,6 +2,7 @@
 
 #include "html_parts.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/base/units.hpp"
 
 namespace slideway {
 namespace {
@@ -90,11 +91,14 @@ Html html_limits(const TraceResult& trace) {
                    {"found from", HtmlColumn::number},
                    {"unit", HtmlColumn::text},
                    {"at", HtmlColumn::text},
-                   {"at other shapes", HtmlColumn::text}});
+                   {"at other shapes", HtmlColumn::text},
+                   {"moves Δβxz unseen, µm/m", HtmlColumn::number}});
   for (const DetectionLimit& limit : trace.detection_limits)
-    table.add({effect_title(limit.effect), limit.parameter,
-               limit.value ? html_number(limit.value, 2) : "at no size", html_unit(limit.unit),
-               limit.at, html_extremes(limit)});
+    table.add(
+        {effect_title(limit.effect), limit.parameter,
+         limit.value ? html_number(limit.value, 2) : "at no size", html_unit(limit.unit), limit.at,
+         html_extremes(limit),
+         limit.squareness_rad ? html_number(*limit.squareness_rad / kMicroradian, 2) : Html()});
   return table.html();
 }
 

@@ -36,6 +36,12 @@ Html squareness_card(const FittedParameter& p) {
          small("± U, " + coverage_factor_of(p) + "; positive: the face falls from centre to rim");
 }
 
+Html unseen_line(const Summary& summary) {
+  if (summary.unseen.empty()) return {};
+  return element("br") +
+         small("an effect too small to be found may move it " + Html(summary.unseen));
+}
+
 Html straightness_card(const Straightness& form) {
   if (form.errors.empty()) return form.reason;
   std::vector<Html> lines;
@@ -71,7 +77,8 @@ Html all_cards(const Analysis& analysis, const Summary& summary) {
   if (result.final) {
     for (const FittedParameter& p : result.final->parameters)
       if (is_squareness(p))
-        facts.emplace_back("Squareness " + html_symbol(p.symbol), squareness_card(p));
+        facts.emplace_back("Squareness " + html_symbol(p.symbol),
+                           squareness_card(p) + unseen_line(summary));
     if (result.final->straightness)
       facts.emplace_back("Straightness error " + html_symbol("E_ZX"),
                          straightness_card(*result.final->straightness));

@@ -316,6 +316,18 @@ std::string next_step(const Analysis& analysis) {
   return kNothingToDo;
 }
 
+/// The most that an effect at its detection limit moves the squareness.
+std::string unseen(const Analysis& analysis) {
+  if (!analysis.trace) return "";
+  const DetectionLimit* worst = nullptr;
+  for (const DetectionLimit& each : analysis.trace->detection_limits)
+    if (each.squareness_rad && (!worst || *each.squareness_rad > *worst->squareness_rad))
+      worst = &each;
+  if (!worst) return "";
+  return "by up to " + number(*worst->squareness_rad / kMicroradian, 2) +
+         " µm/m: " + effect_title(worst->effect);
+}
+
 }  // namespace
 
 Summary summary_of(const Analysis& analysis) {
@@ -330,6 +342,7 @@ Summary summary_of(const Analysis& analysis) {
   say_verdict(analysis, out);
   out.straightness = straightness_of(analysis.result);
   out.squareness = squareness_of(analysis.result);
+  out.unseen = unseen(analysis);
   say_crosscheck(analysis.result, out);
   say_missing(analysis, out);
   out.next = next_step(analysis);

@@ -236,9 +236,15 @@ std::string notes(const Analysis& analysis, std::size_t room) {
   return "\n" + out;
 }
 
-std::string short_text(const Analysis& analysis, std::string text) {
+std::string unseen_line(const Summary& summary) {
+  if (summary.unseen.empty()) return "";
+  return item("An effect too small to be found may move the squareness " + summary.unseen + ".");
+}
+
+std::string short_text(const Analysis& analysis, const Summary& summary, std::string text) {
   const Result& result = analysis.result;
-  const std::string more = stations(result) + assumed(result) + tolerances(result);
+  const std::string more =
+      unseen_line(summary) + stations(result) + assumed(result) + tolerances(result);
   if (result.final) {
     text += model_heading(*result.final);
     const std::size_t used = lines_of(text + more).size() + 4;  // headings, a note
@@ -275,15 +281,16 @@ std::string parameter_table(const Result& result, std::size_t most) {
 
 std::string text_report(const Analysis& analysis, const TextOptions& options) {
   const Result& result = analysis.result;
-  std::string text = box(summary_of(analysis), options.page);
+  const Summary summary = summary_of(analysis);
+  std::string text = box(summary, options.page);
   text += in_lines(first_lines(lines_of(heading("slideway " + result.version +
                                                 (result.title.empty() ? "" : ": " + result.title))),
                                2));
-  if (!options.full) return short_text(analysis, std::move(text));
+  if (!options.full) return short_text(analysis, summary, std::move(text));
   if (result.final)
     text +=
         model_heading(*result.final) + parameter_table(result, result.final->parameters.size() + 1);
-  text += stations(result) + tolerances(result) + full_text(analysis);
+  text += unseen_line(summary) + stations(result) + tolerances(result) + full_text(analysis);
   std::string notes;
   for (const std::string& each : all_notes(analysis)) notes += note(each);
   return text + (notes.empty() ? "" : heading("Notes") + notes);

@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include "slideway/base/text.hpp"
+#include "slideway/base/units.hpp"
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "slideway/trace/analysis_fields.hpp"
@@ -111,12 +112,14 @@ std::string extremes(const DetectionLimit& limit) {
 
 std::string limits(const TraceResult& trace) {
   if (trace.detection_limits.empty()) return "";
-  TextTable table({"effect", "found from", "other shapes", "at"},
-                  {TextColumn::effect, TextColumn::number, TextColumn::number, TextColumn::name});
+  TextTable table({"effect", "found from", "other shapes", "at", "moves Δβxz, µm/m"},
+                  {TextColumn::effect, TextColumn::number, TextColumn::number, TextColumn::name,
+                   TextColumn::number});
   for (const DetectionLimit& limit : trace.detection_limits)
     table.add({effect_title(limit.effect),
                limit.value ? number(*limit.value, 2) + " " + unit_text(limit.unit) : "at no size",
-               extremes(limit), limit.at});
+               extremes(limit), limit.at,
+               limit.squareness_rad ? number(*limit.squareness_rad / kMicroradian, 2) : ""});
   return item("Sizes found with 80 % probability:") + table.text();
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "response.hpp"
 #include "search_round.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
@@ -83,7 +84,9 @@ struct Design {
   const Whitened& data;
   const Whitened fit_data;  // under the noise that the report's uncertainties rest on
   double least_gain;
-  double deviate;  // normal deviate of the detection power
+  double deviate;                                     // normal deviate of the detection power
+  std::optional<Eigen::Index> squareness;             // its parameter, if the data determine it
+  std::optional<ParameterResponse> squareness_moved;  // no further values left out
 
   [[nodiscard]] const Gates& gates() const { return fitted.model.gates; }
 };
@@ -120,26 +123,40 @@ std::optional<double> limit_in(const Design& design, const Whitened& data, const
   return std::max(by_gain, (gates.size + design.deviate) * uncertainty);
 }
 
+struct Limit {
+  double size = 0.0;
+  FreeValues undescribed;  // that an effect of this size takes out of the search
+};
+
 /// The same; an effect that is steep at the centre takes the values there out of the search, the
 /// more of them the larger it is.
-std::optional<double> limit_at(const Design& design, const Case& one) {
+std::optional<Limit> limit_at(const Design& design, const Case& one) {
   const auto& [model, fit] = design.fitted;
-  std::optional<double> limit = limit_in(design, design.data, one);
-  if (!limit) return limit;
+  std::optional<double> size = limit_in(design, design.data, one);
+  if (!size) return std::nullopt;
   if (!one.candidate.term.effect->description().steep_at_centre) {
     const double uncertainty =
         1.0 / design.fit_data.outside(one.columns * one.amplitudes(1.0)).norm();
-    return std::max(*limit, (design.gates().size + design.deviate) * uncertainty);
+    return Limit{std::max(*size, (design.gates().size + design.deviate) * uncertainty), {}};
   }
-  std::size_t lost = 0;
-  for (int round = 0; limit && round < kMostRounds; ++round) {
-    const FreeValues undescribed =
-        undescribed_beside(model, fit, design.data.noise(), one.columns * one.amplitudes(*limit));
-    if (count_of(undescribed) <= lost) break;
-    lost = count_of(undescribed);
-    limit = limit_in(design, {fit.linear, design.data.noise(), undescribed}, one);
+  FreeValues lost;
+  for (int round = 0; size && round < kMostRounds; ++round) {
+    FreeValues undescribed =
+        undescribed_beside(model, fit, design.data.noise(), one.columns * one.amplitudes(*size));
+    if (count_of(undescribed) <= count_of(lost)) break;
+    lost = std::move(undescribed);
+    size = limit_in(design, {fit.linear, design.data.noise(), lost}, one);
   }
-  return limit;
+  if (!size) return std::nullopt;
+  return Limit{*size, std::move(lost)};
+}
+
+/// What an effect at its limit does to the squareness.
+double squareness_moved(const Design& design, const Case& one, const Limit& limit) {
+  Eigen::VectorXd signal = one.columns * one.amplitudes(limit.size);
+  if (count_of(limit.undescribed) == 0) return design.squareness_moved->to(std::move(signal));
+  return ParameterResponse(design.fitted.fit, *design.squareness, limit.undescribed)
+      .to(std::move(signal));
 }
 
 /// Whether no profile would hold more of this signal than so many times its own range.
@@ -154,11 +171,19 @@ bool is_flatness(const Linearisation& linear, const Eigen::VectorXd& signal, dou
   return true;
 }
 
+/// Row of the squareness among the parameters of the model, if the data determine it.
+std::optional<Eigen::Index> squareness_of(const FittedModel& fitted) {
+  const ModelTerm* term = fitted.model.find_term(MotionError::squareness);
+  if (!term || !fitted.fit.null.identifiable[static_cast<std::size_t>(term->first_parameter)])
+    return std::nullopt;
+  return term->first_parameter;
+}
+
 /// Over all shapes, stated for the one nearest to the middle that has a limit.
 std::optional<DetectionLimit> detection_limit(const Design& design, const Candidate& candidate) {
   if (!candidate.term.effect->has_one_size()) return std::nullopt;
   const Parameter& first = candidate.term.effect->parameters()[0];
-  DetectionLimit out{candidate.name(), first.name, first.unit, std::nullopt, "", {}};
+  DetectionLimit out{candidate.name(), first.name, first.unit, std::nullopt, "", {}, std::nullopt};
   const std::vector<std::vector<double>> shapes = spread_shapes(candidate);
   const auto middle = std::ssize(shapes) / 2;
   std::ptrdiff_t nearest = std::ssize(shapes);  // places from the middle
@@ -168,15 +193,18 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
     const Case one{
         model, candidate, shape,
         stacked_columns(model, candidate.term, shape, design.data.rows() - design.data.values())};
-    const std::optional<double> limit = limit_at(design, one);
-    if (!limit || !(*limit > 0.0) || !std::isfinite(*limit) ||
-        !is_flatness(design.fitted.fit.linear, one.columns * one.amplitudes(*limit),
+    const std::optional<Limit> limit = limit_at(design, one);
+    if (!limit || !(limit->size > 0.0) || !std::isfinite(limit->size) ||
+        !is_flatness(design.fitted.fit.linear, one.columns * one.amplitudes(limit->size),
                      design.gates().most_of_range))
       continue;
-    if (!shape.empty()) out.by_shape.push_back({shape[0], *limit});
+    if (!shape.empty()) out.by_shape.push_back({shape[0], limit->size});
+    if (design.squareness)
+      out.squareness_rad = std::max(out.squareness_rad.value_or(0.0),
+                                    std::abs(squareness_moved(design, one, *limit)));
     if (std::abs(s - middle) >= nearest) continue;
     nearest = std::abs(s - middle);
-    out.value = *limit;
+    out.value = limit->size;
     out.at = shape_text(candidate, shape);
   }
   if (!out.value) return std::nullopt;
@@ -200,9 +228,14 @@ std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Wh
                                              const Candidates& candidates,
                                              const Calibration& calibration) {
   const Gates& gates = fitted.model.gates;
-  const Design design{fitted, data, Whitened(fitted.fit.linear, fit_noise),
-                      std::max(gates.delta_bic, calibration.threshold(gates.significance)),
-                      student_limit(kNormal, 1.0 - gates.detection_power)};
+  Design design{fitted,
+                data,
+                Whitened(fitted.fit.linear, fit_noise),
+                std::max(gates.delta_bic, calibration.threshold(gates.significance)),
+                student_limit(kNormal, 1.0 - gates.detection_power),
+                squareness_of(fitted),
+                {}};
+  if (design.squareness) design.squareness_moved.emplace(fitted.fit, *design.squareness);
   std::vector<std::optional<DetectionLimit>> limits(candidates.size());
   parallel_for(candidates.size(),
                [&](std::size_t c) { limits[c] = detection_limit(design, *candidates[c]); });

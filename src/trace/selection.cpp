@@ -145,15 +145,17 @@ class Selector {
            " % of the resamples choose it, the others most often nothing";
   }
 
-  /// Whether the last search finds more than noise gives in several profiles, in whatever shape.
+  /// Whether the last search finds more than noise gives, in whatever shape: in several profiles,
+  /// or so much that it does not matter where and why no name was given.
   [[nodiscard]] bool something_is_left() {
     const SearchRound& round = extender_.search(out_.effects);
-    if (round.data.observations() < 2) return false;
+    const bool has_several = round.data.observations() > 1;
     return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
+      const bool in_all = has_several && each.refined.candidate->term.profiles.empty() &&
+                          std::ranges::count(ruled_out_, each.name()) == 0;
       return each.refined.projection.rank > 0 && each.modulates.empty() && each.folded.empty() &&
-             each.p_value <= gates_.significance && each.refined.delta_bic <= -gates_.delta_bic &&
-             !(each.held_out && !each.held_out->helps) &&
-             std::ranges::count(ruled_out_, each.name()) == 0;
+             each.p_value <= gates_.significance && !(each.held_out && !each.held_out->helps) &&
+             each.refined.delta_bic <= -(in_all ? gates_.delta_bic : gates_.left_over_bic);
     });
   }
 

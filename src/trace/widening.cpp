@@ -3,26 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "slideway/identify/linear_algebra.hpp"
+#include "response.hpp"
 
 namespace slideway {
 namespace {
-
-/// Change of (amplitudes, shapes) by signals in the low bands, a column each.
-Eigen::MatrixXd response(const Solution& fit, const Eigen::MatrixXd& signals) {
-  const Linearisation& linear = fit.linear;
-  Eigen::MatrixXd design = stacked_model(linear), targets = signals;
-  Eigen::Index row = 0;
-  for (std::size_t i = 0; i < fit.noise.size(); ++i) {
-    const Eigen::Index count = linear.observations[i]->values.size();
-    fit.noise[i].whiten(design.middleRows(row, count));
-    fit.noise[i].whiten(targets.middleRows(row, count));
-    row += count;
-  }
-  const ProfileBases levelling = own_bases(linear.observations, fit.noise);
-  levelling.take_out(targets);
-  return least_squares(levelling.beside(std::move(design)), targets).values;
-}
 
 Eigen::VectorXd amplitudes_of(const ModelTerm& term, const Estimate& estimate) {
   return estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());

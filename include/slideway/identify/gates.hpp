@@ -15,6 +15,7 @@ struct Gates {
   double size = 5.0;
   double tie_bic = 10.0;
   double exchange_bic = 2.0;
+  double left_over_bic = 30.0;
   double alike = 0.3;
   double holdout_share = 0.1;
   double modulation_widths = 5.0;

@@ -114,7 +114,9 @@ inline constexpr auto kRecord<DetectionLimit> =
            field("effect", &DetectionLimit::effect), field("parameter", &DetectionLimit::parameter),
            field("unit", &DetectionLimit::unit),
            field("value", &DetectionLimit::value, "none: found at no size a workpiece has"),
-           field("at", &DetectionLimit::at), field("by_shape", &DetectionLimit::by_shape));
+           field("at", &DetectionLimit::at), field("by_shape", &DetectionLimit::by_shape),
+           field("squareness_rad", &DetectionLimit::squareness_rad,
+                 "the most that an effect of this size, at any shape, moves Δβxz unseen"));
 
 template <>
 inline constexpr auto kRecord<Fragile> =
