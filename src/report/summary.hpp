@@ -18,7 +18,7 @@ struct Summary {
   std::string verdict;       // in a sentence, what harms most first
   std::string straightness;  // "E_ZX 24.4 ± 6.8 µm", or why there is none
   std::string squareness;    // "2.797 ± 0.029 µm/m", or why there is none
-  std::string unseen;        // what may have moved it unseen: "by 4.1 µm/m: tool wear"; "": nothing
+  std::string unseen;        // what may have moved it unseen: "by up to 4.1 µm/m: tool wear"
   std::string conformity;    // "flatness conforms", "" without a tolerance
   std::string crosscheck;
   std::string missing;  // what was missing and what that had done

@@ -91,8 +91,8 @@ struct Design {
   [[nodiscard]] const Gates& gates() const { return fitted.model.gates; }
 };
 
-/// Size found with the detection power in these data.
-std::optional<double> limit_in(const Design& design, const Whitened& data, const Case& one) {
+/// Size whose gain is seen with the detection power in these data.
+std::optional<double> seen_in(const Design& design, const Whitened& data, const Case& one) {
   const Gates& gates = design.gates();
   const Projection own = project(data, one.columns);
   if (own.rank == 0) return std::nullopt;
@@ -105,9 +105,15 @@ std::optional<double> limit_in(const Design& design, const Whitened& data, const
   const double gain = own.gram.diagonal().head(std::min<Eigen::Index>(a, 2)).mean() *
                       one.amplitudes(1.0).squaredNorm();
   if (!(gain > 0.0) || !std::isfinite(noncentrality)) return std::nullopt;
-  const double by_gain = std::sqrt(noncentrality / gain);
-  if (one.shape.empty()) return by_gain;
-  const Eigen::VectorXd inner = one.amplitudes(by_gain);
+  return std::sqrt(noncentrality / gain);
+}
+
+/// Size found in them: seen, and known to the size in uncertainties that is asked for.
+std::optional<double> found_in(const Design& design, const Whitened& data, const Case& one) {
+  const std::optional<double> seen = seen_in(design, data, one);
+  if (!seen || one.shape.empty()) return seen;
+  const Eigen::Index a = one.candidate.amplitudes();
+  const Eigen::VectorXd inner = one.amplitudes(*seen);
   Eigen::MatrixXd joint(data.rows(), a + std::ssize(one.shape));
   joint.leftCols(a) = one.columns;
   for (Eigen::Index which = 0; which < std::ssize(one.shape); ++which)
@@ -120,7 +126,7 @@ std::optional<double> limit_in(const Design& design, const Whitened& data, const
   const double uncertainty =
       std::sqrt(at.jacobian.row(0) * covariance * at.jacobian.row(0).transpose());
   if (!std::isfinite(uncertainty)) return std::nullopt;
-  return std::max(by_gain, (gates.size + design.deviate) * uncertainty);
+  return std::max(*seen, (design.gates().size + design.deviate) * uncertainty);
 }
 
 struct Limit {
@@ -128,35 +134,43 @@ struct Limit {
   FreeValues undescribed;  // that an effect of this size takes out of the search
 };
 
-/// The same; an effect that is steep at the centre takes the values there out of the search, the
-/// more of them the larger it is.
-std::optional<Limit> limit_at(const Design& design, const Case& one) {
+/// Of one of the two sizes; an effect that is steep at the centre takes the values there out of the
+/// search, the more of them the larger it is.
+template <typename SizeIn>
+std::optional<Limit> limit_of(const Design& design, const Case& one, const SizeIn& size_in) {
   const auto& [model, fit] = design.fitted;
-  std::optional<double> size = limit_in(design, design.data, one);
-  if (!size) return std::nullopt;
-  if (!one.candidate.term.effect->description().steep_at_centre) {
-    const double uncertainty =
-        1.0 / design.fit_data.outside(one.columns * one.amplitudes(1.0)).norm();
-    return Limit{std::max(*size, (design.gates().size + design.deviate) * uncertainty), {}};
-  }
+  std::optional<double> size = size_in(design, design.data, one);
   FreeValues lost;
-  for (int round = 0; size && round < kMostRounds; ++round) {
+  const int rounds = one.candidate.term.effect->description().steep_at_centre ? kMostRounds : 0;
+  for (int round = 0; size && round < rounds; ++round) {
     FreeValues undescribed =
         undescribed_beside(model, fit, design.data.noise(), one.columns * one.amplitudes(*size));
     if (count_of(undescribed) <= count_of(lost)) break;
     lost = std::move(undescribed);
-    size = limit_in(design, {fit.linear, design.data.noise(), lost}, one);
+    size = size_in(design, {fit.linear, design.data.noise(), lost}, one);
   }
   if (!size) return std::nullopt;
   return Limit{*size, std::move(lost)};
 }
 
-/// What an effect at its limit does to the squareness.
-double squareness_moved(const Design& design, const Case& one, const Limit& limit) {
-  Eigen::VectorXd signal = one.columns * one.amplitudes(limit.size);
-  if (count_of(limit.undescribed) == 0) return design.squareness_moved->to(std::move(signal));
-  return ParameterResponse(design.fitted.fit, *design.squareness, limit.undescribed)
-      .to(std::move(signal));
+std::optional<double> found_from(const Design& design, const Case& one) {
+  std::optional<Limit> limit = limit_of(design, one, found_in);
+  if (!limit) return std::nullopt;
+  if (one.candidate.term.effect->description().steep_at_centre) return limit->size;
+  const double uncertainty =
+      1.0 / design.fit_data.outside(one.columns * one.amplitudes(1.0)).norm();
+  return std::max(limit->size, (design.gates().size + design.deviate) * uncertainty);
+}
+
+/// What an effect that is just not seen does to the squareness.
+double squareness_moved(const Design& design, const Case& one) {
+  const std::optional<Limit> limit = limit_of(design, one, seen_in);
+  if (!limit) return 0.0;  // the model makes its columns: not separable
+  Eigen::VectorXd signal = one.columns * one.amplitudes(limit->size);
+  if (count_of(limit->undescribed) == 0)
+    return std::abs(design.squareness_moved->to(std::move(signal)));
+  return std::abs(ParameterResponse(design.fitted.fit, *design.squareness, limit->undescribed)
+                      .to(std::move(signal)));
 }
 
 /// Whether no profile would hold more of this signal than so many times its own range.
@@ -193,18 +207,18 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
     const Case one{
         model, candidate, shape,
         stacked_columns(model, candidate.term, shape, design.data.rows() - design.data.values())};
-    const std::optional<Limit> limit = limit_at(design, one);
-    if (!limit || !(limit->size > 0.0) || !std::isfinite(limit->size) ||
-        !is_flatness(design.fitted.fit.linear, one.columns * one.amplitudes(limit->size),
+    if (design.squareness)
+      out.squareness_rad =
+          std::max(out.squareness_rad.value_or(0.0), squareness_moved(design, one));
+    const std::optional<double> limit = found_from(design, one);
+    if (!limit || !(*limit > 0.0) || !std::isfinite(*limit) ||
+        !is_flatness(design.fitted.fit.linear, one.columns * one.amplitudes(*limit),
                      design.gates().most_of_range))
       continue;
-    if (!shape.empty()) out.by_shape.push_back({shape[0], limit->size});
-    if (design.squareness)
-      out.squareness_rad = std::max(out.squareness_rad.value_or(0.0),
-                                    std::abs(squareness_moved(design, one, *limit)));
+    if (!shape.empty()) out.by_shape.push_back({shape[0], *limit});
     if (std::abs(s - middle) >= nearest) continue;
     nearest = std::abs(s - middle);
-    out.value = limit->size;
+    out.value = *limit;
     out.at = shape_text(candidate, shape);
   }
   if (!out.value) return std::nullopt;

@@ -116,7 +116,7 @@ inline constexpr auto kRecord<DetectionLimit> =
            field("value", &DetectionLimit::value, "none: found at no size a workpiece has"),
            field("at", &DetectionLimit::at), field("by_shape", &DetectionLimit::by_shape),
            field("squareness_rad", &DetectionLimit::squareness_rad,
-                 "the most that an effect of this size, at any shape, moves Δβxz unseen"));
+                 "the most that it moves Δβxz at any shape while its gain is just not seen"));
 
 template <>
 inline constexpr auto kRecord<Fragile> =

@@ -167,7 +167,7 @@ struct DetectionLimit {
   std::optional<double> value;  // none: it would not be found at any size a workpiece has
   std::string at;               // shape it holds for: "time_constant_s = 120"; "": it has none
   std::vector<LimitAtShape> by_shape;    // from end to end of the search
-  std::optional<double> squareness_rad;  // most that it moves Δβxz, of its limits at all shapes
+  std::optional<double> squareness_rad;  // most that it moves Δβxz while it is just not seen
 };
 
 enum class TraceVerdict {
