@@ -195,6 +195,7 @@ std::vector<const TestedCandidate*> SearchRound::as_good_as(const TestedCandidat
   const auto unknowns = [](const TestedCandidate& each) {
     return each.refined.candidate->unknowns(each.refined.projection.rank);
   };
+  const double tie = std::max(gates.tie_bic, -gates.tie_share * chosen.refined.delta_bic);
   for (const TestedCandidate& each : tested) {
     const bool counts =
         each.refused(gates).empty() ||
@@ -203,8 +204,7 @@ std::vector<const TestedCandidate*> SearchRound::as_good_as(const TestedCandidat
     const bool known =
         std::ranges::any_of(out, [&](const auto* other) { return is_same_effect(*other, each); });
     if (counts && !known && !is_same_effect(each, chosen) &&
-        each.refined.delta_bic <= chosen.refined.delta_bic + gates.tie_bic &&
-        alike(each, chosen, gates))
+        each.refined.delta_bic <= chosen.refined.delta_bic + tie && alike(each, chosen, gates))
       out.push_back(&each);
   }
   return out;

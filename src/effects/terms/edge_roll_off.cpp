@@ -44,11 +44,13 @@ std::unique_ptr<Effect> make_edge_roll_off(const Request& request) {
       .value = edge_roll_off_value,
       .applies_to = is_face_height,
       .needs_cut_radius = true,
-      .shape = ShapeSpec{.parameter = {"width_mm", "w", "mm", 0.1, 1e-3, 10.0},
+      .shape = ShapeSpec{.parameter = {"width_mm", "w", "mm", 0.1, 1e-3, 100.0},
                          .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
                          .derivative = edge_roll_off_derivative,
-                         .range = [](const Stations&) {
-                           return std::pair{0.02, 1.0};
+                         .range = [](const Stations& stations) {
+                           constexpr double kWidest = 0.1;  // of the radius
+                           const double rim = *stations.setup().cut_radius_mm;
+                           return std::pair{0.02, std::clamp(kWidest * rim, 1.0, 100.0)};
                          }}});
 }
 

@@ -43,7 +43,7 @@ std::unique_ptr<Effect> make_tool_running_in(const Request& request) {
       .reading = since_start_m,
       .value = tool_running_in_value,
       .applies_to = is_face_height,
-      .shape = ShapeSpec{.parameter = {"distance_m", "s0", "m", 1.0, 1e-2, 1e3},
+      .shape = ShapeSpec{.parameter = {"distance_m", "s0", "m", 1.0, 1e-2, 1e6},
                          .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
                          .derivative = tool_running_in_derivative,
                          .range = [](const Stations& stations) {
