@@ -28,8 +28,8 @@ namespace {
 
 using Size = std::uint64_t;
 
-[[noreturn]] void fail(const char* what) {
-  throw std::runtime_error(std::string(what) + ": " + std::generic_category().message(errno));
+[[noreturn]] void fail(const char* what, int error = errno) {
+  throw std::runtime_error(std::string(what) + ": " + std::generic_category().message(error));
 }
 
 /// Sends the size and the text. False if the other end is closed.
@@ -97,10 +97,17 @@ std::string described(int status) {
 ProcessPool::ProcessPool(std::size_t count, Work work, const WorkerLimits& limits)
     : work_(std::move(work)), limits_(limits), workers_(count) {
   require_descriptors(count);
-  for (Worker& worker : workers_) start(worker);
+  try {
+    for (Worker& worker : workers_) start(worker);
+  } catch (...) {
+    end_all();
+    throw;
+  }
 }
 
-ProcessPool::~ProcessPool() {
+ProcessPool::~ProcessPool() { end_all(); }
+
+void ProcessPool::end_all() noexcept {
   for (Worker& worker : workers_) end(worker);
 }
 
@@ -109,7 +116,11 @@ void ProcessPool::start(Worker& worker) {
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail("socketpair");
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
-  if (child < 0) fail("fork");
+  if (child < 0) {
+    const int error = errno;
+    for (const int socket : ends) ::close(socket);
+    fail("fork", error);
+  }
   if (child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(1);  // the parent ended before prctl()
@@ -131,13 +142,15 @@ void ProcessPool::serve(int socket) const {
   ::_exit(0);
 }
 
-std::string ProcessPool::end(Worker& worker) {
+int ProcessPool::end(Worker& worker) noexcept {
+  if (worker.process < 0) return 0;
   ::close(std::exchange(worker.socket, -1));
   ::kill(worker.process, SIGKILL);  // no effect on one that has ended
   int status = 0;
   while (::waitpid(worker.process, &status, 0) < 0 && errno == EINTR) {
   }
-  return described(status);
+  worker.process = -1;
+  return status;
 }
 
 bool ProcessPool::has_idle() const {
@@ -195,7 +208,7 @@ std::vector<TaskResult> ProcessPool::collect(std::chrono::milliseconds timeout) 
       results.push_back({std::move(worker.task), worker.received.substr(sizeof size), "", ""});
       worker = {.process = worker.process, .socket = worker.socket};
     } else if (!is_running) {
-      const std::string how = end(worker);
+      const std::string how = described(end(worker));
       results.push_back({std::move(worker.task), std::nullopt, status::kCrashed, how});
       start(worker);
     } else if (Clock::now() >= worker.deadline) {

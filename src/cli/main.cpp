@@ -57,11 +57,25 @@ void prepare_memory() {
   std::free(room);
 }
 
+[[noreturn]] void end_with(std::string_view line, int code) {
+  static_cast<void>(!::write(STDERR_FILENO, line.data(), line.size()));
+  ::_exit(code);
+}
+
 // A mapped file that is cut short while it is read.
 void end_at_missing_bytes(int /*signal*/) {
-  constexpr std::string_view kMessage = "slideway: a file was cut short while it was read\n";
-  static_cast<void>(!::write(STDERR_FILENO, kMessage.data(), kMessage.size()));
-  ::_exit(kBadData);
+  end_with("slideway: a file was cut short while it was read\n", kBadData);
+}
+
+// Memory that ends where nothing may be thrown: a destructor of a library that allocates.
+[[noreturn]] void end_without_memory() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    end_with("slideway: out of memory\n", kFailed);
+  } catch (...) {
+  }
+  std::abort();
 }
 
 int failed(int code, std::string_view message) {
@@ -80,6 +94,7 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGBUS, end_at_missing_bytes);
+  std::set_terminate(end_without_memory);
   try {
     return run({argv + 1, argv + argc});
   } catch (const UsageError& error) {

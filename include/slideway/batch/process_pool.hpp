@@ -45,8 +45,9 @@ class ProcessPool final : public TaskPool {
   };
 
   void start(Worker& worker);
-  /// Kills the worker if it still runs. @return how it ended, in words
-  static std::string end(Worker& worker);
+  /// Kills the worker if it still runs. @return how it ended, as waitpid() has it
+  static int end(Worker& worker) noexcept;
+  void end_all() noexcept;
   [[noreturn]] void serve(int socket) const;
   [[nodiscard]] int poll_timeout(std::chrono::milliseconds timeout) const;
   /// Reads what has arrived. False if the worker has ended.
