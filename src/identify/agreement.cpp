@@ -263,4 +263,20 @@ std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit
   return ProfileComparison(model, fit, of_each).checks();
 }
 
+Eigen::MatrixXd scatter_of_profiles(const Solution& fit, const Gates& gates) {
+  const Compressed compressed = compress(fit.linear, fit.noise);
+  const std::size_t count = fit.linear.observations.size();
+  Eigen::MatrixXd out(fit.linear.prior_rows.cols(), static_cast<Eigen::Index>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    Profiles others;
+    for (std::size_t j = 0; j < count; ++j)
+      if (j != i) others.push_back(j);
+    out.col(static_cast<Eigen::Index>(i)) =
+        SubsetEstimate(fit.linear, compressed, others, gates.rank_tolerance).change;
+  }
+  out.colwise() -= out.rowwise().mean().eval();
+  const auto n = static_cast<double>(count);
+  return std::sqrt((n - 1.0) / n) * out;
+}
+
 }  // namespace slideway

@@ -100,6 +100,10 @@ Result summarise_inputs(const Problem& problem, const std::vector<Profile>& prof
   return result;
 }
 
+bool is_disagreement(const ProfileCheck& check) {
+  return check.verdict == Consistency::inconsistent;
+}
+
 }  // namespace
 
 Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles) {
@@ -113,8 +117,8 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles, Sc
   return identify(problem, profiles, fit_declared(problem, profiles), scope);
 }
 
-Result identify(const Problem& problem, const std::vector<Profile>& profiles,
-                const FittedModel& declared, Scope scope, bool with_budget) {
+Result identify_declared(const Problem& problem, const std::vector<Profile>& profiles,
+                         const FittedModel& declared, Scope scope, bool with_budget) {
   Result result = summarise_inputs(problem, profiles);
   const auto& [model, fit] = declared;
   for (const Observation& observation : model.observations)
@@ -126,25 +130,49 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
     result.dominant = dominant_effects(result.ranking, lead_by_fit(model, fit),
                                        summary.identifiability, model.gates);
   }
-  if (scope == Scope::rank) return result;
-  result.declared = summary;
-  set_final(problem, declared, std::move(summary), scope, result);
+  if (scope != Scope::rank) result.declared = std::move(summary);
   return result;
 }
 
-void set_final(const Problem& problem, const FittedModel& fitted, ModelResult summary, Scope scope,
-               Result& result) {
+Result identify(const Problem& problem, const std::vector<Profile>& profiles,
+                const FittedModel& declared, Scope scope, bool with_budget) {
+  Result result = identify_declared(problem, profiles, declared, scope, with_budget);
+  if (scope == Scope::rank) return result;
+  set_final(problem, declared, {}, scope, with_budget, result);
+  result.declared = result.final;
+  return result;
+}
+
+void set_final(const Problem& problem, const FittedModel& fitted, const MoreVariance& more,
+               Scope scope, bool with_budget, Result& result) {
+  const auto& [model, fit] = fitted;
+  Crosscheck checks;
+  MoreVariance variance = more;
+  bool profiles_disagree = false;
   if (scope == Scope::identify) {
-    const auto& [model, fit] = fitted;
     std::vector<Noise> of_each;
     if (model.observations.size() > 1) of_each = noise_of_each(fit.linear, fit.noise, model.gates);
-    result.crosscheck = {check_squareness(model, problem.runout, summary),
-                         check_profiles(model, fit, of_each), check_held_out(model, fit, of_each),
-                         check_repeats(fit.linear, model.gates)};
-  } else {
-    result.crosscheck.squareness.emplace();
-    result.crosscheck.squareness->reason = "this command makes no cross-check";
+    checks.profiles = check_profiles(model, fit, of_each);
+    checks.held_out = check_held_out(model, fit, of_each);
+    checks.repeats = check_repeats(fit.linear, model.gates);
+    profiles_disagree = std::ranges::any_of(checks.profiles, is_disagreement);
+    if (profiles_disagree)
+      variance = [more,
+                  scatter = scatter_of_profiles(fit, model.gates)](const Eigen::RowVectorXd& row) {
+        return (row * scatter).squaredNorm() + (more ? more(row) : 0.0);
+      };
   }
+  ModelResult summary = summarise(model, fit, variance, with_budget);
+  if (profiles_disagree)
+    summary.notes.emplace_back(
+        "profiles disagree: uncertainties include what the estimates without one profile each "
+        "differ by");
+  checks.squareness.emplace();
+  if (scope == Scope::identify)
+    checks.squareness = check_squareness(model, problem.runout, summary);
+  else
+    checks.squareness->reason = "this command makes no cross-check";
+  result.crosscheck = std::move(checks);
   result.conformity = conformity_of(problem, fitted, summary);
   result.final = std::move(summary);
 }
@@ -153,10 +181,7 @@ namespace {
 
 bool is_inconsistent(const Crosscheck& checks) {
   return (checks.squareness && checks.squareness->verdict == Consistency::inconsistent) ||
-         std::ranges::any_of(checks.profiles,
-                             [](const ProfileCheck& check) {
-                               return check.verdict == Consistency::inconsistent;
-                             }) ||
+         std::ranges::any_of(checks.profiles, is_disagreement) ||
          std::ranges::any_of(checks.held_out, [](const HeldOutCheck& check) {
            return check.verdict == HeldOutVerdict::does_not_fit;
          });

@@ -19,7 +19,7 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
                   const AnalysisOptions& options, const Progress& progress) {
   const FittedModel declared = fit_declared(problem, profiles);
   Analysis out;
-  out.result = identify(problem, profiles, declared, options.scope, options.with_details);
+  out.result = identify_declared(problem, profiles, declared, options.scope, options.with_details);
   if (options.with_evidence) out.evidence = evidence(declared.model, declared.fit);
   const FittedModel* last = &declared;
   ClosedLoop loop;
@@ -29,11 +29,14 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
       allow_for_other_form(problem, *loop.extended);
       last = &*loop.extended;
     }
-    MoreVariance unnamed;
-    if (loop.widening)
-      unnamed = [&](const Eigen::RowVectorXd& row) { return loop.widening->variance(row); };
-    set_final(problem, *last, summarise(last->model, last->fit, unnamed, options.with_details),
-              options.scope, out.result);
+  }
+  MoreVariance unnamed;
+  if (loop.widening)
+    unnamed = [&](const Eigen::RowVectorXd& row) { return loop.widening->variance(row); };
+  if (options.scope != Scope::rank)
+    set_final(problem, *last, unnamed, options.scope, options.with_details, out.result);
+  if (!options.closes_loop) out.result.declared = out.result.final;
+  if (options.closes_loop) {
     out.trace = std::move(loop.trace);
     for (TraceRound& round : out.trace->rounds)
       round.parameters =

@@ -181,12 +181,8 @@ class Selector {
     const auto term =
         std::ranges::find(fitted.model.terms, effects[which].name(), &ModelTerm::name);
     if (!term->effect->has_one_size() || effects[which].candidate->raises_degree) return "";
-    const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term->first_parameter);
-    const double more = unnamed ? unnamed->variance(row) : 0.0;
-    const double size = std::min(
-        std::abs(fitted.fit.parameters.values[term->first_parameter]) /
-            std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more)),
-        size_in_report(extender_.summary(effects), *term));
+    const double size = std::min(size_in_uncertainties(fitted, *term, unnamed),
+                                 size_in_report(extender_.summary(effects), *term));
     if (!(size < gates_.size)) return "";
     return "its size is only " + significant(size, 2) + " of its standard uncertainties";
   }

@@ -20,6 +20,10 @@ namespace slideway {
 std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit,
                                          const std::vector<Noise>& of_each);
 
+/// Square root of the covariance of (amplitudes, shapes) that the estimates without one profile
+/// each show (delete-one jackknife): a column each.
+Eigen::MatrixXd scatter_of_profiles(const Solution& fit, const Gates& gates);
+
 /// What the repeats of each group have in common and the model lacks.
 ///
 /// The mean residual of a group has the noise of its own fine band, texture that repeats included,

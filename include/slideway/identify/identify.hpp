@@ -20,9 +20,16 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
                 Scope scope = Scope::identify);
 
-/// Puts what the data say of a model into a result as the final one, and cross-checks it.
-void set_final(const Problem& problem, const FittedModel& fitted, ModelResult summary, Scope scope,
-               Result& result);
+/// The same without a final model and its cross-check.
+Result identify_declared(const Problem& problem, const std::vector<Profile>& profiles,
+                         const FittedModel& declared, Scope scope, bool with_budget);
+
+/// Puts what the data say of a model into such a result as the final one, and cross-checks it.
+/// Where profiles disagree in an effect, uncertainties are widened by what the estimates without
+/// one profile each differ by (delete-one jackknife; Efron 1982, Eq. 3.12).
+/// @param more  what else widens uncertainties
+void set_final(const Problem& problem, const FittedModel& fitted, const MoreVariance& more,
+               Scope scope, bool with_budget, Result& result);
 
 /// What the profiles are and whether their lines close, no more.
 Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles);
