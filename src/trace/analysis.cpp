@@ -4,6 +4,7 @@
 
 #include "fit_numbers.hpp"
 #include "loop.hpp"
+#include "outcome.hpp"
 #include "slideway/base/error.hpp"
 
 namespace slideway {
@@ -41,6 +42,7 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
     for (TraceRound& round : out.trace->rounds)
       round.parameters =
           parameters_of(*out.result.final, term_name(round.accepted, round.profiles));
+    doubt_what_is_uncertain(last->model, *out.result.final, *out.trace);
   }
   if (options.with_details)
     out.details =

@@ -21,4 +21,10 @@ std::vector<FittedParameter> parameters_of(const ModelResult& fit, const std::st
   return out;
 }
 
+double size_in_uncertainties(const ModelResult& fit, const ModelTerm& term) {
+  const FittedParameter* own = fit.find(term.name + "." + term.effect->parameters()[0].name);
+  if (!own || !own->value || !own->standard_uncertainty) return INFINITY;
+  return std::abs(*own->value) / *own->standard_uncertainty;
+}
+
 }  // namespace slideway

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fit_numbers.hpp"
 #include "slideway/base/text.hpp"
 
 namespace slideway {
@@ -49,6 +50,22 @@ std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck&
          joined(others) +
          ", and nothing here tells them apart: read the straightness along the slide "
          "(autocollimator), or cut and trace otherwise";
+}
+
+void doubt_what_is_uncertain(const Model& model, const ModelResult& final, TraceResult& out) {
+  for (TraceRound& round : out.rounds) {
+    const std::string name = term_name(round.accepted, round.profiles);
+    const auto term = std::ranges::find(model.terms, name, &ModelTerm::name);
+    if (!round.ambiguous_with.empty() || term == model.terms.end() || !term->effect->has_one_size())
+      continue;
+    const double size = size_in_uncertainties(final, *term);
+    if (!(size < model.gates.size)) continue;
+    round.ambiguous_with.emplace_back(kUnnamedRival);
+    if (out.verdict == TraceVerdict::explained) out.verdict = TraceVerdict::ambiguous;
+    out.notes.push_back(name + ": its size is only " + significant(size, 2) +
+                        " of its standard uncertainties, which hold what else may have made the "
+                        "form");
+  }
 }
 
 TraceVerdict verdict(const TraceResult& out, bool other_cause) {

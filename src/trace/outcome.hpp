@@ -15,6 +15,10 @@ std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
 std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,
                                   const ModelResult& fit);
 
+/// An effect that is no longer so many times larger than its uncertainty as it must be, once that
+/// holds its rivals, those of the others and what has no name, is not said alone.
+void doubt_what_is_uncertain(const Model& model, const ModelResult& final, TraceResult& out);
+
 TraceVerdict verdict(const TraceResult& out, bool other_cause);
 
 }  // namespace slideway

@@ -31,14 +31,6 @@ std::string worsens(const ModelResult& without, const ModelResult& with) {
   return "";
 }
 
-/// Size of an effect in the declared low band, in its standard uncertainties.
-double size_in_report(const ModelResult& told, const ModelTerm& term) {
-  const std::string name = term.name + "." + term.effect->parameters()[0].name;
-  const auto own = std::ranges::find(told.parameters, name, &FittedParameter::name);
-  if (!own->value || !own->standard_uncertainty) return INFINITY;
-  return std::abs(*own->value) / *own->standard_uncertainty;
-}
-
 class Selector {
  public:
   Selector(const Problem& problem, SetStatistics& statistics, const Gates& gates,
@@ -181,8 +173,12 @@ class Selector {
     const auto term =
         std::ranges::find(fitted.model.terms, effects[which].name(), &ModelTerm::name);
     if (!term->effect->has_one_size() || effects[which].candidate->raises_degree) return "";
-    const double size = std::min(size_in_uncertainties(fitted, *term, unnamed),
-                                 size_in_report(extender_.summary(effects), *term));
+    const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term->first_parameter);
+    const double more = unnamed ? unnamed->variance(row) : 0.0;
+    const double size = std::min(
+        std::abs(fitted.fit.parameters.values[term->first_parameter]) /
+            std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more)),
+        size_in_uncertainties(extender_.summary(effects), *term));
     if (!(size < gates_.size)) return "";
     return "its size is only " + significant(size, 2) + " of its standard uncertainties";
   }

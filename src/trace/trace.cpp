@@ -79,8 +79,6 @@ class Loop {
     if (!out.blunders.empty()) out.advice.insert(out.advice.begin(), blunder_advice(out.blunders));
     out.verdict = verdict(out, !other_cause.empty());
     widen(selection, closed);
-    doubt_what_is_uncertain(selection, closed);
-    out.verdict = verdict(out, !other_cause.empty());
     if (other_cause.empty() && out.blunders.empty() &&
         out.rounds.size() == selection.effects.size() && !limit_.allows([&] {
           out.fragile = smallest_change(problem_, statistics_, selection, gates);
@@ -269,28 +267,6 @@ class Loop {
       if (place.rivals.empty()) continue;
       if (!closed.widening) closed.widening.emplace(fitted.fit.linear.prior_rows.cols());
       closed.widening->add_rivals(fitted, place.fitted, place.rivals);
-    }
-  }
-
-  /// An effect that is no longer larger than its uncertainty, once that holds its rivals and those
-  /// of the others, is not said alone.
-  void doubt_what_is_uncertain(const Selection& selection, ClosedLoop& closed) {
-    if (!closed.widening) return;
-    const Gates& gates = problem_.trace.gates;
-    const FittedModel& fitted = extender_.extended(selection.effects);
-    for (std::size_t i = 0; i < selection.effects.size(); ++i) {
-      const AcceptedEffect& effect = selection.effects[i];
-      TraceRound& round = closed.trace.rounds[i];
-      const auto term = std::ranges::find(fitted.model.terms, effect.name(), &ModelTerm::name);
-      if (!round.ambiguous_with.empty() || effect.candidate->raises_degree ||
-          !term->effect->has_one_size())
-        continue;
-      const double size = size_in_uncertainties(fitted, *term, &*closed.widening);
-      if (!(size < gates.size)) continue;
-      round.ambiguous_with.emplace_back(kUnnamedRival);
-      closed.trace.notes.push_back(effect.name() + ": its size is only " + significant(size, 2) +
-                                   " of its standard uncertainties once these hold what else may "
-                                   "have made the form");
     }
   }
 

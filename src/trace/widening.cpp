@@ -66,14 +66,6 @@ double Widening::variance(const Eigen::RowVectorXd& row) const {
   return (row * process).squaredNorm() + change * change / 3.0;
 }
 
-double size_in_uncertainties(const FittedModel& fitted, const ModelTerm& term,
-                             const Widening* more) {
-  const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term.first_parameter);
-  const double beside = more ? std::sqrt(more->variance(row)) : 0.0;
-  return std::abs(fitted.fit.parameters.values[term.first_parameter]) /
-         std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, beside);
-}
-
 Widening widening(const Model& model, const Solution& fit, const Structure& structure,
                   const std::vector<TestedCandidate>& refused) {
   Widening out(fit.linear.prior_rows.cols());

@@ -30,10 +30,6 @@ struct Widening {
   void add(const Eigen::MatrixXd& more);
 };
 
-/// Size of an effect's first parameter in its standard uncertainties. @param more  null: nothing
-double size_in_uncertainties(const FittedModel& fitted, const ModelTerm& term,
-                             const Widening* more);
-
 Widening widening(const Model& model, const Solution& fit, const Structure& structure,
                   const std::vector<TestedCandidate>& refused);
 
