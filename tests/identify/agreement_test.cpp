@@ -70,6 +70,21 @@ TEST(ProfileCheck, FalseAlarmsStayNearTheirShare) {
   EXPECT_LE(alarms, 10);
 }
 
+// Of three profiles of equal weight one is off by d: the estimates without one each are d/3 above
+// their mean once, d/6 below it twice, so u = sqrt(2/3 (1/9 + 2/36)) d = d/3, as much as the joint
+// estimate is off.
+TEST(ScatterOfProfiles, OfOneUnlikeOfThreeIsAThirdOfItsDifference) {
+  constexpr double kMore = 1e-6;  // mm of sag: too little to move the weights
+  std::vector<Profile> profiles{run("a", 5e-3, 1), run("b", 5e-3, 1), run("c", 5e-3 + kMore, 1)};
+  for (Profile& profile : profiles) profile.standard_uncertainty = kNoise;
+  const FittedModel fitted = fit_declared(straight(), profiles);
+  const Eigen::RowVectorXd b2 = fitted.fit.parameters.jacobian.row(2);
+  const double expected = kMore / (kLength * kLength) / 3.0;
+  // 1e-4: of numbers a thousand times as large.
+  EXPECT_NEAR((b2 * scatter_of_profiles(fitted.fit, fitted.model.gates)).norm(), expected,
+              1e-4 * expected);
+}
+
 TEST(ProfileCheck, NothingIsComparedThatOneProfileCannotTell) {
   EXPECT_TRUE(checks_of({run("a", 5e-3, 1)}).empty());
 }

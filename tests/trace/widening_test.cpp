@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "identify/cases.hpp"
+#include "response.hpp"
 #include "slideway/base/random.hpp"
 
 namespace slideway::widening_test {
@@ -75,6 +76,36 @@ TEST(Widening, OfARivalIsTheChangeThatItsFitBrings) {
   // 1e-6: normal equations of columns that are nearly one another.
   EXPECT_NEAR(widening.variance(row), change * change / 3.0, 1e-6 * change * change);
   EXPECT_GT(std::abs(change), 1e-6);
+}
+
+TEST(Widening, OfAnAbsenceIsTheChangeThatItBrings) {
+  const std::vector<Profile> profiles{bent_face()};
+  const FittedModel with = fitted(profiles, {"squareness", "cup"});
+  const FittedModel without = fitted(profiles, {"squareness"});
+  Widening widening(with.fit.linear.prior_rows.cols());
+  widening.add_absence(with, without);
+  const double change = with.fit.parameters.values[0] - without.fit.parameters.values[0];
+  EXPECT_NEAR(widening.variance(with.fit.parameters.jacobian.row(0)), change * change / 3.0,
+              1e-9 * change * change);
+  EXPECT_GT(std::abs(change), 1e-6);
+}
+
+// Least squares is linear in the data: the slope of the signal beside the other columns.
+TEST(ParameterResponse, OfASignalIsItsOwnFit) {
+  const std::vector<Profile> profiles{bent_face()};
+  const FittedModel fit = fitted(profiles, {"squareness", "cup"});
+  const Observation& observation = fit.model.observations[0];
+  const Eigen::VectorXd signal = 1e-3 * power(observation, 1.5);
+  Eigen::MatrixXd design(kReadings, 3);
+  for (Eigen::Index i = 0; i < kReadings; ++i) {
+    const double r = observation.profile->positions[static_cast<std::size_t>(i)];
+    design.row(i) << 1.0, r, r * r;
+  }
+  const double slope = design.colPivHouseholderQr().solve(signal)[1];
+  EXPECT_NEAR(std::abs(ParameterResponse(fit.fit, 0).to(signal)), std::abs(slope),
+              1e-9 * std::abs(slope));
+  EXPECT_NEAR(std::abs((fit.fit.parameters.jacobian * response(fit.fit, signal))(0, 0)),
+              std::abs(slope), 1e-9 * std::abs(slope));
 }
 
 TEST(Widening, ByNothingIsNone) {
