@@ -146,7 +146,8 @@ class Selector {
       const bool in_all = has_several && each.refined.candidate->term.profiles.empty() &&
                           std::ranges::count(ruled_out_, each.name()) == 0;
       return each.refined.projection.rank > 0 && each.modulates.empty() && each.folded.empty() &&
-             each.p_value <= gates_.significance && !(each.held_out && !each.held_out->helps) &&
+             each.p_value <= (in_all ? gates_.significance : gates_.lack_of_fit_p) &&
+             !(each.held_out && !each.held_out->helps) &&
              each.refined.delta_bic <= -(in_all ? gates_.delta_bic : gates_.left_over_bic);
     });
   }
