@@ -115,7 +115,9 @@ TEST(ZeroDrift, OfOneReadingAtAnEvenPaceIsNotIdentifiableBesideABow) {
   const Result result = identify(bed({{"zero_drift", {}, {}}}), {one}, Scope::fit);
   ASSERT_TRUE(result.declared);
   for (const FittedParameter& parameter : result.declared->parameters)
-    if (parameter.name == "zero_drift.rate_per_min") EXPECT_FALSE(parameter.identifiable);
+    if (parameter.name == "zero_drift.rate_per_min") {
+      EXPECT_FALSE(parameter.identifiable);
+    }
 }
 
 // One zero for all lines of a session, and one of them read again with the level turned: the
