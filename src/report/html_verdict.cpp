@@ -38,8 +38,7 @@ Html squareness_card(const FittedParameter& p) {
 
 Html unseen_line(const Summary& summary) {
   if (summary.unseen.empty()) return {};
-  return element("br") +
-         small("an effect too small to be found may move it " + Html(summary.unseen));
+  return element("br") + small("what these data do not show may move it " + Html(summary.unseen));
 }
 
 Html straightness_card(const Straightness& form) {

@@ -316,7 +316,16 @@ std::string next_step(const Analysis& analysis) {
   return kNothingToDo;
 }
 
-/// The most that an effect at its detection limit moves the squareness.
+/// Effects whose column is that of the squareness, but for the one that is so by Eq. (16).
+std::string one_with_squareness(const TraceResult& trace) {
+  std::vector<std::string> names;
+  for (const NotSeparable& each : trace.not_separable)
+    if (each.same_as.find("dbeta_xz") != std::string::npos && !is_vertical(each.effect))
+      names.push_back(each.effect);
+  return effect_titles(names, ", ");
+}
+
+/// The most that an effect which is just not seen moves the squareness.
 std::string unseen(const Analysis& analysis) {
   if (!analysis.trace) return "";
   const DetectionLimit* worst = nullptr;
@@ -324,8 +333,9 @@ std::string unseen(const Analysis& analysis) {
     if (each.squareness_rad && (!worst || *each.squareness_rad > *worst->squareness_rad))
       worst = &each;
   if (!worst) return "";
-  return "by up to " + number(*worst->squareness_rad / kMicroradian, 2) +
-         " µm/m: " + effect_title(worst->effect);
+  const std::string same = one_with_squareness(*analysis.trace);
+  return (same.empty() ? "" : "by any amount: " + same + "; ") + "by up to " +
+         number(*worst->squareness_rad / kMicroradian, 2) + " µm/m: " + effect_title(worst->effect);
 }
 
 }  // namespace
