@@ -238,7 +238,7 @@ std::string notes(const Analysis& analysis, std::size_t room) {
 
 std::string unseen_line(const Summary& summary) {
   if (summary.unseen.empty()) return "";
-  return item("What these data do not show may move the squareness " + summary.unseen + ".");
+  return note("What these data do not show may move the squareness " + summary.unseen + ".");
 }
 
 std::string short_text(const Analysis& analysis, const Summary& summary, std::string text) {

@@ -41,6 +41,7 @@ position_column = "x_mm"
 value_column = "z_um"
 position_unit = "mm"
 value_unit = "um"
+free = ["offset"]
 feed_mm_per_min = {feed}
 spindle_rpm = 500
 cut_direction = "inward"
