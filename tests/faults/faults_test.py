@@ -17,7 +17,7 @@ import tempfile
 import unittest
 
 PROGRAM, LIBRARY = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
-MOST = int(sys.argv[3]) if len(sys.argv) > 3 else 12
+MOST = int(sys.argv[3]) if len(sys.argv) > 3 else 25
 CALLS = ["malloc", "read", "write", "writev", "open", "fopen", "fopen64", "close", "fstat", "fsync", "rename",
          "linkat", "mkdir", "mmap", "fork", "pipe2", "pthread_create", "clock_gettime"]
 DONE, FAILED, BAD_USAGE, BAD_DATA, SOME_FAILED = 0, 1, 2, 3, 5

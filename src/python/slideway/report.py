@@ -713,6 +713,8 @@ class DetectionLimit:
     """none: found at no size a workpiece has"""
     at: str
     by_shape: list[LimitAtShape]
+    squareness_rad: float | None
+    """the most that it moves Δβxz at any shape while its gain is just not seen"""
 
 
 @dataclass(frozen=True)
