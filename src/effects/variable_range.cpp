@@ -48,6 +48,11 @@ std::pair<double, double> transient_range(const Stations& stations, VariableRead
   return {4.0 * range.step, 10.0 * range.extent()};
 }
 
+std::pair<double, double> distance_from_axis(const Stations& stations) {
+  constexpr double kLeast = 0.005, kMost = 10.0, kOfTheRadius = 0.2;
+  return {kLeast, std::clamp(kOfTheRadius * range_of(stations, radius_of).high, 1.0, kMost)};
+}
+
 bool is_height(const Setup& setup) { return setup.quantity == Quantity::height; }
 
 bool is_face_height(const Setup& setup) { return is_height(setup) && setup.kind == Kind::face; }

@@ -33,6 +33,10 @@ VariableRange range_of(const Stations& stations, VariableReading reading);
 // Time constants (or distances) of a transient the profile can show.
 std::pair<double, double> transient_range(const Stations& stations, VariableReading reading);
 
+// How far beside the axis a tool or a trace may pass, mm: the face is a parabola beyond a fifth of
+// its radius.
+std::pair<double, double> distance_from_axis(const Stations& stations);
+
 // Which readings see an effect.
 bool is_height(const Setup& setup);
 bool is_face_height(const Setup& setup);

@@ -112,7 +112,9 @@ std::string extremes(const DetectionLimit& limit) {
 
 std::string limits(const TraceResult& trace) {
   if (trace.detection_limits.empty()) return "";
-  TextTable table({"effect", "found from", "other shapes", "at", "moves Δβxz, µm/m"},
+  const bool has_squareness = std::ranges::any_of(
+      trace.detection_limits, [](const auto& limit) { return limit.squareness_rad.has_value(); });
+  TextTable table({"effect", "found from", "other shapes", "at", has_squareness ? "µm/m" : ""},
                   {TextColumn::effect, TextColumn::number, TextColumn::number, TextColumn::name,
                    TextColumn::number});
   for (const DetectionLimit& limit : trace.detection_limits)
@@ -120,7 +122,9 @@ std::string limits(const TraceResult& trace) {
                limit.value ? number(*limit.value, 2) + " " + unit_text(limit.unit) : "at no size",
                extremes(limit), limit.at,
                limit.squareness_rad ? number(*limit.squareness_rad / kMicroradian, 2) : ""});
-  return item("Sizes found with 80 % probability:") + table.text();
+  return item(std::string("Sizes found with 80 % probability") +
+              (has_squareness ? ", and the most that what is just not seen moves Δβxz:" : ":")) +
+         table.text();
 }
 
 /// One line for each thing that is needed.

@@ -44,9 +44,7 @@ std::unique_ptr<Effect> make_centre_height(const Request& request) {
       .shape = ShapeSpec{.parameter = {"height_mm", "h", "mm", 0.05, 1e-4, 10.0},
                          .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
                          .derivative = centre_height_derivative,
-                         .range = [](const Stations&) {
-                           return std::pair{0.005, 10.0};
-                         }}});
+                         .range = distance_from_axis}});
 }
 
 }  // namespace slideway

@@ -41,9 +41,7 @@ std::unique_ptr<Effect> make_chord(const Request& request) {
       .shape = ShapeSpec{.parameter = {"distance_mm", "d", "mm", 0.05, 1e-4, 10.0},
                          .shape = {.parameter = 1, .logarithmic = true, .stepwise = false},
                          .derivative = chord_derivative,
-                         .range = [](const Stations&) {
-                           return std::pair{0.005, 10.0};
-                         }}});
+                         .range = distance_from_axis}});
 }
 
 }  // namespace slideway
