@@ -1,5 +1,5 @@
-/* Preloaded before a program under test: of one function of the C library the n-th call after main()
- * began fails, once, with an error that is documented for it.
+/* Preloaded before a program under test: of one function of the C library the n-th call after
+ * main() began fails, once, with an error that is documented for it.
  *
  * FAILING_CALL="write:3"  the third write() fails; "write:0": none does
  * FAILING_COUNT=FILE      how many calls there were, of the first process, is written there
@@ -35,15 +35,15 @@ static int fails(const char* name) {
 
 #define REAL(name) ((__typeof__(&name))dlsym(RTLD_NEXT, #name))
 
-#define FAILING(type, name, parameters, arguments, error, result) \
-  type name parameters {                                          \
-    static type(*real) parameters;                                \
+#define FAILING(type, name, parameters, arguments, error, result)  \
+  type name parameters {                                           \
+    static type(*real) parameters;                                 \
     if (!real) real = (type(*) parameters)dlsym(RTLD_NEXT, #name); \
-    if (fails(#name)) {                                           \
-      errno = error;                                              \
-      return result;                                              \
-    }                                                             \
-    return real arguments;                                        \
+    if (fails(#name)) {                                            \
+      errno = error;                                               \
+      return result;                                               \
+    }                                                              \
+    return real arguments;                                         \
   }
 
 FAILING(ssize_t, read, (int file, void* to, size_t size), (file, to, size), EIO, -1)

@@ -9,7 +9,8 @@
 namespace slideway {
 
 /// The bytes of a file. A regular file of more than 64 MiB is mapped, all else is read.
-/// @throws DataError  "path: what is wrong" if it is missing, is a directory, cannot be read, or was
+/// @throws DataError  "path: what is wrong" if it is missing, is a directory, cannot be read, or
+/// was
 ///                    changed while it was read
 class FileBytes {
  public:
