@@ -14,7 +14,9 @@ foreach(name IN ITEMS gfortran quadmath gomp)  # the compiler knows where
 endforeach()
 find_library(SLIDEWAY_metis libmetis.so.5)  # not to be had as a static one, no more than unwind
 mark_as_advanced(SLIDEWAY_metis)
-list(APPEND parts "${SLIDEWAY_metis}" unwind Threads::Threads)
+# Both gcc_s and unwind unwind for exceptions, and the first does it for all: unwind needs two free
+# file descriptors, and the program ends by a signal where there are none.
+list(APPEND parts "${SLIDEWAY_metis}" gcc_s unwind Threads::Threads)
 
 if(NOT "${parts}" MATCHES NOTFOUND)
   get_target_property(archive Ceres::ceres LOCATION)

@@ -72,7 +72,7 @@ void limit_memory(std::uint64_t bytes) {
   ::setrlimit(RLIMIT_DATA, &limit);
 }
 
-/// Checked before any worker is started: without a free descriptor the unwinder cannot work.
+/// Checked before any worker is started, so that one line says what is lacking.
 void require_descriptors(std::size_t workers) {
   constexpr rlim_t kOthers = 32;  // files that the program and its libraries keep open
   struct rlimit limit {};

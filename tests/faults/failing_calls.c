@@ -2,7 +2,10 @@
  * main() began fails, once, with an error that is documented for it.
  *
  * FAILING_CALL="write:3"  the third write() fails; "write:0": none does
- * FAILING_COUNT=FILE      how many calls there were, of the first process, is written there
+ * FAILING_CALL="bytes:3"  the disk is full from the third byte on that goes into a regular file
+ * FAILING_CALL="torn:3"   the same, and no file can be cut to another length
+ * FAILING_FILE=FILE       every read() of it fails
+ * FAILING_COUNT=FILE      how many calls (bytes) there were, of the first process, is written there
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -15,6 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/sendfile.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <sys/uio.h>
@@ -26,6 +30,8 @@ static long number;
 static atomic_long calls;
 static atomic_int armed;
 static pid_t first_process;
+static int fills;            /* the disk */
+static struct stat bad_file; /* st_ino 0: none */
 
 /* Whether this call is the one. */
 static int fails(const char* name) {
@@ -46,10 +52,83 @@ static int fails(const char* name) {
     return real arguments;                                         \
   }
 
-FAILING(ssize_t, read, (int file, void* to, size_t size), (file, to, size), EIO, -1)
-FAILING(ssize_t, write, (int file, const void* from, size_t size), (file, from, size), ENOSPC, -1)
-FAILING(ssize_t, writev, (int file, const struct iovec* parts, int count), (file, parts, count),
-        ENOSPC, -1)
+static int status_of(int file, struct stat* status) {
+  static int (*real)(int, struct stat*);
+  if (!real) real = (int (*)(int, struct stat*))dlsym(RTLD_NEXT, "fstat");
+  return real(file, status);
+}
+
+/* How many of so many bytes the disk takes. */
+static size_t room_for(int file, size_t size) {
+  struct stat status;
+  if (!atomic_load(&armed) || !fills || status_of(file, &status) != 0 || !S_ISREG(status.st_mode))
+    return size;
+  const long before = atomic_fetch_add(&calls, (long)size), room = number - 1 - before;
+  return number == 0 || room >= (long)size ? size : room > 0 ? (size_t)room : 0;
+}
+
+static ssize_t disk_is_full(void) {
+  errno = ENOSPC;
+  return -1;
+}
+
+ssize_t write(int file, const void* from, size_t size) {
+  static ssize_t (*real)(int, const void*, size_t);
+  if (!real) real = (ssize_t(*)(int, const void*, size_t))dlsym(RTLD_NEXT, "write");
+  const size_t room = room_for(file, size);
+  return fails("write") || (room == 0 && size > 0) ? disk_is_full() : real(file, from, room);
+}
+
+ssize_t pwrite(int file, const void* from, size_t size, off_t at) {
+  static ssize_t (*real)(int, const void*, size_t, off_t);
+  if (!real) real = (ssize_t(*)(int, const void*, size_t, off_t))dlsym(RTLD_NEXT, "pwrite");
+  const size_t room = room_for(file, size);
+  return fails("write") || (room == 0 && size > 0) ? disk_is_full() : real(file, from, room, at);
+}
+
+ssize_t sendfile(int to, int from, off_t* at, size_t size) {
+  static ssize_t (*real)(int, int, off_t*, size_t);
+  if (!real) real = (ssize_t(*)(int, int, off_t*, size_t))dlsym(RTLD_NEXT, "sendfile");
+  const size_t room = room_for(to, size);
+  return room == 0 && size > 0 ? disk_is_full() : real(to, from, at, room);
+}
+
+/* A short one writes the parts that fit whole, or some of the first. */
+ssize_t writev(int file, const struct iovec* parts, int count) {
+  static ssize_t (*real)(int, const struct iovec*, int);
+  if (!real) real = (ssize_t(*)(int, const struct iovec*, int))dlsym(RTLD_NEXT, "writev");
+  if (fails("writev")) return disk_is_full();
+  size_t size = 0;
+  for (int i = 0; i < count; ++i) size += parts[i].iov_len;
+  size_t room = room_for(file, size);
+  if (room == size) return real(file, parts, count);
+  int whole = 0;
+  while (parts[whole].iov_len <= room) room -= parts[whole++].iov_len;
+  if (whole > 0) return real(file, parts, whole);
+  const struct iovec first = {parts[0].iov_base, room};
+  return room == 0 ? disk_is_full() : real(file, &first, 1);
+}
+
+int ftruncate(int file, off_t size) {
+  static int (*real)(int, off_t);
+  if (!real) real = (int (*)(int, off_t))dlsym(RTLD_NEXT, "ftruncate");
+  if (!fails("ftruncate") && (!atomic_load(&armed) || strcmp(function, "torn") != 0))
+    return real(file, size);
+  errno = EIO;
+  return -1;
+}
+
+ssize_t read(int file, void* to, size_t size) {
+  static ssize_t (*real)(int, void*, size_t);
+  if (!real) real = (ssize_t(*)(int, void*, size_t))dlsym(RTLD_NEXT, "read");
+  struct stat status;
+  const int is_bad = atomic_load(&armed) && bad_file.st_ino != 0 && status_of(file, &status) == 0 &&
+                     status.st_dev == bad_file.st_dev && status.st_ino == bad_file.st_ino;
+  if (!is_bad && !fails("read")) return real(file, to, size);
+  errno = EIO;
+  return -1;
+}
+
 FAILING(int, close, (int file), (file), EIO, -1)
 FAILING(int, fsync, (int file), (file), EIO, -1)
 FAILING(int, rename, (const char* from, const char* to), (from, to), EIO, -1)
@@ -137,6 +216,9 @@ static int counted_main(int count_of, char** arguments, char** environment) {
   first_process = getpid();
   const char* const call = getenv("FAILING_CALL");
   if (call) sscanf(call, "%31[a-z0-9_]:%ld", function, &number);
+  fills = !strcmp(function, "bytes") || !strcmp(function, "torn");
+  const char* const bad = getenv("FAILING_FILE");
+  if (bad && stat(bad, &bad_file) != 0) bad_file.st_ino = 0;
   atomic_store(&armed, 1);
   const int result = real_main(count_of, arguments, environment);
   count();
