@@ -77,6 +77,13 @@ void ask_draft(Draw& draw, DraftSession& draft) {
   }
 }
 
+/// A body as it came: answers, and a problem.
+void ask_with(const std::string& text, DraftSession& draft) {
+  ask([&] { draft.add("a.csv", "x_mm,z_um\n0,1\n1,2\n2,1\n"); });
+  ask([&] { static_cast<void>(draft.questions(text)); });
+  ask([&] { static_cast<void>(draft.traces(text)); });
+}
+
 void ask_results(Draw& draw, Workspace& workspace, ResultsView& results) {
   const std::filesystem::path run = workspace.folder() / "run";
   std::filesystem::create_directory(run);
@@ -93,16 +100,20 @@ void ask_results(Draw& draw, Workspace& workspace, ResultsView& results) {
 }  // namespace slideway
 
 // What the requests of `serve` do, without a socket: files and answers of a draft, runs and batches
-// whose files are damaged.
+// whose files are damaged. A text that begins with [ is a body as it is.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace slideway;
   static Workspace workspace(std::filesystem::temp_directory_path() /
                              ("slideway_serve_fuzz_" + std::to_string(::getpid())));
   static ResultsView results(workspace);
-  Draw draw({data, size});
-  if (draw.once_in(3)) ask_results(draw, workspace, results);
   Drafts drafts(workspace);
   const auto draft = drafts.at(drafts.open());
+  if (size > 0 && data[0] == '[') {
+    ask_with(std::string(text_of(data, size)), *draft);
+    return 0;
+  }
+  Draw draw({data, size});
+  if (draw.once_in(3)) ask_results(draw, workspace, results);
   for (std::size_t left = draw.below(12); left > 0; --left) ask_draft(draw, *draft);
   return 0;
 }
