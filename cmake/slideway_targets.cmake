@@ -14,6 +14,16 @@ if(SLIDEWAY_SANITIZE)
   endif()
   target_link_options(slideway_options INTERFACE -fsanitize=${SLIDEWAY_SANITIZE})
 endif()
+if(SLIDEWAY_COVERAGE)
+  # Functions are counted before they are inlined, and only ours.
+  target_compile_options(slideway_options INTERFACE --coverage -fprofile-update=atomic
+                         -fprofile-exclude-files=^/usr/ -fno-early-inlining -finline-functions
+                         -finline-small-functions)
+  target_link_options(slideway_options INTERFACE --coverage -Wl,--wrap=_exit -Wl,-u,__wrap__exit)
+  add_library(slideway_counted_exit STATIC ${CMAKE_CURRENT_LIST_DIR}/counted_exit.cpp)
+  set_target_properties(slideway_counted_exit PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(slideway_options INTERFACE slideway_counted_exit)
+endif()
 
 # slideway_room(name SOURCES a.cpp ... DEPENDS slideway::x ... PRIVATE_DEPENDS lib ...
 #               HEADER_ONLY lib ...)
