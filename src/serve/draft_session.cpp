@@ -217,7 +217,8 @@ void DraftSession::write_problem(const std::string& problem) const {
 void DraftSession::copy(const std::string& problem, const fs::path& folder) {
   with_problem(problem, [&](const fs::path& from) {
     for (const std::string& named : files_named(from / run_file::kProblem))
-      fs::copy_file(from / named, folder / named, fs::copy_options::skip_existing);
+      if (const fs::path to = folder / named; !fs::exists(to))
+        write_file(to, FileBytes::of_regular_file(from / named).text());
     write_file(folder / run_file::kProblem, problem);
   });
 }

@@ -8,6 +8,8 @@ last byte of every file; 0: at each byte.
 """
 
 import itertools
+import json
+import os
 import pathlib
 import resource
 import signal
@@ -15,8 +17,12 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
-from commands import (BAD_DATA, BAD_USAGE, COMMANDS, DONE, FAILED, PROGRAM, SOME_FAILED, given_files, run)
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "serve"))
+from commands import (BAD_DATA, BAD_USAGE, COMMANDS, DONE, FAILED, LIBRARY, PROGRAM, SOME_FAILED,  # noqa: E402
+                      given_files, run)
+from server import Server  # noqa: E402
 
 PLACES = int(sys.argv[3]) if len(sys.argv) > 3 else 60
 LINE_OF_LOADER = 127
@@ -115,6 +121,44 @@ class BatchOnAFullDisk(Disk):
 
     def test_goes_on_behind_a_torn_line(self):
         self.walk("torn")
+
+
+class ServeOnAFullDisk(Disk):
+    """It says so to who asks, shows no part of a run, and goes on answering."""
+
+    FILES = ("fine.csv", "coarse.csv", "problem.toml")
+
+    def ask_for_run(self, server):
+        """@return what the first request that failed was told, or nothing"""
+        status, body, _ = server.ask("POST", "drafts")
+        self.assertEqual(200, status)
+        draft = f"drafts/{json.loads(body)['id']}"
+        requests = ("files?name=fine.csv", "files?name=coarse.csv", "run?name=run")
+        for request, data in zip(requests, self.FILES):
+            status, body, _ = server.ask("POST", f"{draft}/{request}", self.given[data])
+            if status != 200:
+                return status, json.loads(body)["error"]
+        self.assertEqual("done", server.wait(json.loads(body)["job"])["state"])
+        return None
+
+    def test_at_each_byte(self):
+        # Each file goes into the draft and from there into the run, the problem into both as well.
+        sizes = [len(self.given[name]) for name in self.FILES]
+        environment = {**os.environ, "LD_PRELOAD": LIBRARY}
+        for at in [*places(sizes * 2), sum(sizes) * 4]:
+            with self.subTest(at=at), tempfile.TemporaryDirectory() as name, unittest.mock.patch.dict(
+                    os.environ, {**environment, "FAILING_CALL": f"bytes:{at}"}):
+                server = Server(PROGRAM, pathlib.Path(name) / "runs")
+                try:
+                    told = self.ask_for_run(server)
+                    if told or at <= sum(sizes):
+                        self.assertEqual(500, told[0])
+                        self.assertIn("No space left on device", told[1])
+                    self.assertEqual([] if told else ["run"],
+                                     [each["name"] for each in server.get("runs")["runs"]])
+                finally:
+                    self.assertEqual(DONE, server.end())
+        self.assertIsNone(told)
 
 
 class Unreadable(Disk):
