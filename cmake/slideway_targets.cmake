@@ -19,7 +19,8 @@ if(SLIDEWAY_COVERAGE)
   target_compile_options(slideway_options INTERFACE --coverage -fprofile-update=atomic
                          -fprofile-exclude-files=^/usr/ -fno-early-inlining -finline-functions
                          -finline-small-functions)
-  target_link_options(slideway_options INTERFACE --coverage -Wl,--wrap=_exit -Wl,-u,__wrap__exit)
+  target_link_options(slideway_options INTERFACE --coverage -Wl,--wrap=_exit,--wrap=execve,--wrap=kill
+                      -Wl,-u,__wrap__exit)
   add_library(slideway_counted_exit STATIC ${CMAKE_CURRENT_LIST_DIR}/counted_exit.cpp)
   set_target_properties(slideway_counted_exit PROPERTIES POSITION_INDEPENDENT_CODE ON)
   target_link_libraries(slideway_options INTERFACE slideway_counted_exit)

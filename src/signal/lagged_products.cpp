@@ -129,12 +129,6 @@ std::vector<double> lagged_products(std::span<const double> x, std::span<const d
   return out;
 }
 
-Eigen::MatrixXd rows_of(const ColumnParts& parts, Eigen::Index first, Eigen::Index count) {
-  Eigen::MatrixXd out(count, columns_of(parts));
-  set_rows(parts, first, out);
-  return out;
-}
-
 std::vector<Eigen::MatrixXd> lagged_grams(const ColumnParts& parts, Eigen::Index most_lag) {
   constexpr std::size_t kPart = 1 << 14;  // rows that are worth a thread
   const auto count = static_cast<std::size_t>(parts.front().rows() - most_lag);

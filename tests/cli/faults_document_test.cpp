@@ -84,13 +84,12 @@ TEST(Documents, FaultsAreWhatTheProgramSays) {
       "1 of\n"
       "`identify`; the others are `timeout`, `out_of_memory` and `crashed`\n"
       "(`cli/Batch.OneBadItemStopsAndChangesNoOther`, `batch/ProcessPool`).\n\n"
-      "A file is written completely or not at all, also when a signal ends the program or the "
-      "power "
-      "fails\n"
-      "(`cli/Signal/Interrupted`, `base/WriteFile`, `faults/EveryCallOnce`). A file that changes "
-      "while it is read is refused;\n"
-      "one of more than 64 MiB that is cut short ends the program with exit code 3. Every reader "
-      "is "
+      "A file is written completely or not at all, also when a signal ends the program, the power "
+      "fails or the disk\n"
+      "is full at any of its bytes (`cli/Signal/Interrupted`, `base/WriteFile`, `faults`). A file "
+      "that changes while it is\n"
+      "read is refused; one of more than 64 MiB that is cut short ends the program with exit code "
+      "3. Every reader is\n"
       "fuzzed: `./dev fuzz`.\n" +
       section("Problem file", bad_problems()) + section("Data", bad_data()) +
       section("File formats", bad_formats()) +

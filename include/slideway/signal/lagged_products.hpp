@@ -15,9 +15,6 @@ std::vector<double> lagged_products(std::span<const double> x, std::span<const d
 /// A matrix as blocks of columns, each with all rows.
 using ColumnParts = std::vector<Eigen::Ref<const Eigen::MatrixXd>>;
 
-/// `count` rows from `first` on, as one matrix.
-Eigen::MatrixXd rows_of(const ColumnParts& parts, Eigen::Index first, Eigen::Index count);
-
 /// Σ_t x_t' x_(t-k) of a matrix with rows x_t, over t from most_lag on, for k = 0 ... most_lag.
 /// REQUIRES 0 <= most_lag <= rows.
 std::vector<Eigen::MatrixXd> lagged_grams(const ColumnParts& parts, Eigen::Index most_lag);
