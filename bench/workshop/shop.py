@@ -55,7 +55,7 @@ class Shop:
 def draw_shop(rng: Rng, diameter: bool | None = None, cone: tuple[float, float] = (2, 40)) -> Shop:
     """A finishing cut of an ordinary workshop; cone: the squareness error, from to, µrad."""
     nose = between(rng, 0.4, 1.6)
-    scallop = between(rng, 2e-5, 3e-4)  # mm: f = sqrt(8 r h), the finishing feed of that height
+    scallop = between(rng, 2e-5, 3e-3)  # mm: f = sqrt(8 r h), the feed of that height
     degree = int(rng.choice([3, 3, 3, 2, 5]))
     lever = str(rng.choice(["paper", "paper", "paper", "split"]))
     return Shop(

@@ -54,6 +54,12 @@ std::vector<EffectOptions> Effect::hypotheses(const EffectOptions* declared) con
   return {EffectOptions{}};
 }
 
+std::optional<ShownBySamples> Effect::shown_by(const Stations& /*stations*/,
+                                               std::span<const double> /*values*/,
+                                               double /*significance*/) const {
+  return std::nullopt;
+}
+
 std::string Effect::fault(const Stations& /*stations*/) const { return ""; }
 
 double Effect::noise_share(const Stations& /*stations*/, std::span<const double> /*shape*/) const {

@@ -14,9 +14,11 @@ namespace slideway {
 namespace {
 
 constexpr int kHighestDegree = 99;
+constexpr std::size_t kMostHarmonic = 1000;
 constexpr int kHighestSeed = std::numeric_limits<int>::max();
 
-constexpr const char* kEffectOptions = "name body degree span_mm form resolution_mm profiles scope";
+constexpr const char* kEffectOptions =
+    "name body degree span_mm form resolution_mm harmonics profiles scope";
 
 EffectOptions read_effect_options(const Section& section, const Problem& problem) {
   EffectOptions options{section.text("body"), section.integer("degree", 0, kHighestDegree),
@@ -30,6 +32,10 @@ EffectOptions read_effect_options(const Section& section, const Problem& problem
   if (const auto form = section.one_of("form", "polynomial curve"))
     options.form = *form == "curve" ? Form::curve : Form::polynomial;
   options.resolution_mm = section.magnitude("resolution_mm");
+  if (const auto harmonics =
+          section.indices("harmonics", "must be a list of whole numbers from 1 on, rising"))
+    for (const std::size_t each : *harmonics)
+      options.harmonics.push_back(static_cast<int>(std::min<std::size_t>(each, kMostHarmonic)));
   return options;
 }
 

@@ -29,7 +29,7 @@ std::vector<FormulaParameter> read_formula_parameters(const Section& effect) {
                                section.number("upper")};
     // A [[truth.effect]] has keys and values of parameters in one table.
     const std::vector<std::string> keys =
-        words("name body degree span_mm form resolution_mm profiles scope priors " +
+        words("name body degree span_mm form resolution_mm harmonics profiles scope priors " +
               std::string(kFormulaKeys));
     if (std::ranges::count(keys, parameter.name) > 0)
       section.fail("name",

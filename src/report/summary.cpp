@@ -34,22 +34,43 @@ std::string in_expanded_uncertainties(double shift) {
   return number(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " U";  // no -0
 }
 
+/// Accepted effects: one of the same rivals that came in for one cut after the other is one, of all
+/// these cuts.
+std::vector<TraceRound> found_effects(const TraceResult& trace) {
+  std::vector<TraceRound> out;
+  for (const TraceRound& round : trace.rounds) {
+    const auto same = std::ranges::find_if(out, [&](const TraceRound& other) {
+      return other.accepted == round.accepted && other.ambiguous_with == round.ambiguous_with &&
+             !other.profiles.empty() && !round.profiles.empty();
+    });
+    if (same == out.end()) {
+      TraceRound& effect = out.emplace_back();
+      effect.accepted = round.accepted;
+      effect.profiles = round.profiles;
+      effect.ambiguous_with = round.ambiguous_with;
+    } else {
+      same->profiles.insert(same->profiles.end(), round.profiles.begin(), round.profiles.end());
+    }
+  }
+  return out;
+}
+
 std::string found(const TraceResult& trace) {
   std::vector<std::string> out;
-  for (const TraceRound& round : trace.rounds) {
-    out.push_back(effect_titles(names_of(round), " or "));
-  }
+  for (const TraceRound& effect : found_effects(trace))
+    out.push_back(effect_titles(names_of(effect), " or "));
   return joined(out, " and ");
 }
 
 /// The same in so many letters, if it can be: rivals are counted, then the last effects, and the
 /// rivals are left out.
 std::string found_in_brief(const TraceResult& trace, std::size_t letters) {
-  const std::size_t count = trace.rounds.size();
+  const std::vector<TraceRound> effects = found_effects(trace);
+  const std::size_t count = effects.size();
   const auto first = [&](std::size_t named, bool with_rivals) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < named; ++i) {
-      const TraceRound& round = trace.rounds[i];
+      const TraceRound& round = effects[i];
       const std::size_t rivals = with_rivals ? round.ambiguous_with.size() : 0;
       names.push_back(effect_title(round.accepted) +
                       (rivals > 0 ? " (" + counted(rivals, "rival") + ")" : std::string()));
@@ -87,7 +108,7 @@ std::string moved_by(const Shift& shift) {
 
 std::string what_was_missing(const Analysis& analysis) {
   const TraceResult& trace = *analysis.trace;
-  const std::size_t count = trace.rounds.size();
+  const std::size_t count = found_effects(trace).size();
   const std::string names = found(trace);
   const std::string were = (names.size() <= kFewLetters ? names : counted(count, "effect")) +
                            (count > 1 ? " were missing" : " was missing");

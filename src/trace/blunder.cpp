@@ -251,7 +251,7 @@ class Finder {
     Observation observation = recorded(i, list);
     const Prediction as_it_is = prediction(observation, others, noise);
     if (as_it_is.directions() == 0) return;
-    const double before = as_it_is.best(1.0, factor).cost, square = as_it_is.disagreement(1.0);
+    const double before = as_it_is.best(1.0, kAnyFactor).cost, square = as_it_is.disagreement(1.0);
     for (const Hypothesis& each : list) {
       if (each.profile) observation.profile = &*each.profile;
       const Prediction& meant = each.profile ? prediction(observation, others, noise) : as_it_is;

@@ -13,11 +13,12 @@ namespace slideway {
 ///
 /// Each profile is predicted from the fit of all others, its levelling free. Its values e = f y - C
 /// a have the covariance s² R + C Σ Cᵀ with Σ of the others' fit, the noise R of a profile read in
-/// the same way, and its size s free but for a normal prior on ln s (Gates::sister_factor). The
-/// likelihood of the values y as they were recorded, |f|ⁿ times that of e, is compared between
-/// "as it is", other factors f (sign, inch, metre) and other columns C (direction and start of the
-/// cut; positions in another unit, where that makes the trace about as long as the others). A
-/// blunder takes away most of the disagreement, not only some of it.
+/// the same way, and its size s free but for a normal prior on ln s (Gates::sister_factor; as it
+/// is, s may be any: a profile of another noise is no blunder). The likelihood of the values y as
+/// they were recorded, |f|ⁿ times that of e, is compared between "as it is", other factors f (sign,
+/// inch, metre) and other columns C (direction and start of the cut; positions in another unit,
+/// where that makes the trace about as long as the others). A blunder takes away most of the
+/// disagreement, not only some of it.
 std::vector<Blunder> find_blunders(const FittedModel& fitted);
 
 /// What to do about them, in a sentence. REQUIRES one.

@@ -305,6 +305,10 @@ Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::In
     }
   }
   std::ranges::move(alone, std::back_inserter(out.candidates));
+  std::erase_if(out.candidates, [&](const Candidate& each) {
+    return !each.raises_degree &&
+           std::ranges::count(model.terms, each.name(), &ModelTerm::name) > 0;
+  });
   return out;
 }
 

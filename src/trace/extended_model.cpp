@@ -43,13 +43,13 @@ std::vector<AcceptedEffect> all_but(const std::vector<AcceptedEffect>& effects,
 }
 
 ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
-                             const FittedModel& declared, const TimeLimit& limit,
-                             const Progress& progress)
+                             const FittedModel& declared, const std::vector<ShownEffect>& shown,
+                             const TimeLimit& limit, const Progress& progress)
     : profiles_(profiles),
       declared_(declared),
       limit_(limit),
       progress_(progress),
-      coarser_(search_band(problem, profiles, declared)) {
+      coarser_(search_band(problem, profiles, declared, shown)) {
   if (progress_) progress_("making the columns of every candidate", 0.0);
   dictionary_ = make_dictionary(base().model, problem, base().fit.linear.prior_rows.rows());
 }
@@ -57,7 +57,8 @@ ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>&
 ModelExtender::Key ModelExtender::key_of(const std::vector<AcceptedEffect>& effects) {
   Key key;
   for (const AcceptedEffect& effect : effects)
-    key.emplace_back(effect.name(), effect.candidate->options.degree.value_or(0));
+    key.emplace_back(effect.name(), effect.candidate->options.degree.value_or(
+                                        effect.candidate->term.effect->amplitudes()));
   std::ranges::sort(key);
   return key;
 }

@@ -31,8 +31,10 @@ std::vector<AcceptedEffect> all_but(const std::vector<AcceptedEffect>& effects,
 class ModelExtender {
  public:
   /// All arguments must outlive it and what it makes.
+  /// @param declared  with what is shown
   ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
-                const FittedModel& declared, const TimeLimit& limit, const Progress& progress);
+                const FittedModel& declared, const std::vector<ShownEffect>& shown,
+                const TimeLimit& limit, const Progress& progress);
 
   /// The declared model, in the low band of the search.
   [[nodiscard]] const FittedModel& base() const { return coarser_ ? coarser_->fitted : declared_; }
@@ -72,7 +74,8 @@ class ModelExtender {
  private:
   [[nodiscard]] FittedModel in_declared_band(const std::vector<AcceptedEffect>& effects);
 
-  using Key = std::vector<std::pair<std::string, int>>;  // names with degrees, in order
+  using Key =
+      std::vector<std::pair<std::string, int>>;  // names with degrees, or amplitudes, in order
 
   static Key key_of(const std::vector<AcceptedEffect>& effects);
   [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<AcceptedEffect>& effects) const;

@@ -29,13 +29,16 @@ Profile thinned(const Problem& problem, const Profile& profile, std::size_t most
 
 std::unique_ptr<SearchBand> search_band(const Problem& problem,
                                         const std::vector<Profile>& profiles,
-                                        const FittedModel& declared) {
+                                        const FittedModel& declared,
+                                        const std::vector<ShownEffect>& shown) {
   const auto most = static_cast<std::size_t>(declared.model.gates.search_values);
   const auto is_long = [&](const Observation& each) { return has_more_values(each, most); };
   if (std::ranges::none_of(declared.model.observations, is_long)) return nullptr;
   std::vector<Profile> thin;
   for (const Profile& profile : profiles) thin.push_back(thinned(problem, profile, most));
-  FittedModel fitted = fit_model(build_model(problem, thin, most));  // points into the profiles
+  Model model = build_model(problem, thin, most);  // points into the profiles
+  for (const ShownEffect& each : shown) append_term(model, each.effect, model.range);
+  FittedModel fitted = fit_model(std::move(model));
   return std::make_unique<SearchBand>(SearchBand{std::move(thin), std::move(fitted)});
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "shown.hpp"
 #include "slideway/identify/fit.hpp"
 #include "slideway/identify/problem.hpp"
 
@@ -22,6 +23,7 @@ struct SearchBand {
 /// length h.
 std::unique_ptr<SearchBand> search_band(const Problem& problem,
                                         const std::vector<Profile>& profiles,
-                                        const FittedModel& declared);
+                                        const FittedModel& declared,
+                                        const std::vector<ShownEffect>& shown);
 
 }  // namespace slideway

@@ -14,6 +14,7 @@
 #include "outcome.hpp"
 #include "selection.hpp"
 #include "sensitivity.hpp"
+#include "shown.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/agreement.hpp"
 #include "slideway/identify/crosscheck.hpp"
@@ -26,12 +27,13 @@ namespace {
 
 class Loop {
  public:
+  /// @param declared  with what is shown
   Loop(const Problem& problem, const std::vector<Profile>& profiles, const FittedModel& declared,
-       const Progress& progress)
+       const std::vector<ShownEffect>& shown, const Progress& progress)
       : problem_(problem),
         progress_(progress),
         limit_(problem.trace.time_limit_s),
-        extender_(problem, profiles, declared, limit_, progress),
+        extender_(problem, profiles, declared, shown, limit_, progress),
         statistics_(extender_) {}
 
   ClosedLoop run() {
@@ -309,7 +311,16 @@ TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profi
 
 ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profiles,
                       const FittedModel& declared, const Progress& progress) {
-  return Loop(problem, profiles, declared, progress).run();
+  const std::vector<ShownEffect> shown = shown_by_samples(problem, declared);
+  if (shown.empty()) return Loop(problem, profiles, declared, shown, progress).run();
+  ShownModel known = with_shown(declared, shown);
+  ClosedLoop out = Loop(problem, profiles, known.fitted, shown, progress).run();
+  std::vector<TraceRound>& rounds = out.trace.rounds;
+  rounds.insert(rounds.begin(), known.rounds.begin(), known.rounds.end());
+  if (out.trace.verdict == TraceVerdict::nothing_missing)
+    out.trace.verdict = TraceVerdict::explained;
+  if (!out.extended) out.extended = std::move(known.fitted);
+  return out;
 }
 
 bool is_negative(const TraceResult& trace) {

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "effects/heights.hpp"
+#include "slideway/base/random.hpp"
+#include "slideway/base/units.hpp"
 
 namespace slideway::terms_test {
 namespace {
@@ -101,6 +103,45 @@ TEST(FeedMarks, DoNotMoveWithTheStartOfTheCut) {
   const Eigen::VectorXd z = height_um("feed_marks", late, {1.0});
   late.setup.start_s = 77.7;
   EXPECT_LT((height_um("feed_marks", late, {1.0}) - z).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+/// Heights of a face with marks of this amplitude, the parabola of a nose, and noise of 20 nm. mm
+std::vector<double> marked(const Case& here, double amplitude_um, std::uint64_t seed) {
+  const Eigen::VectorXd marks = height_um("feed_marks", here, {amplitude_um});
+  RandomStream random(seed, "feed marks");
+  std::vector<double> out;
+  for (const double mark : marks) out.push_back(1e-3 * mark + 2e-5 * random.normal());
+  return out;
+}
+
+TEST(FeedMarks, AreSeenInSamplesWithTheHarmonicsOfAParabola) {
+  // 4u² - 1/3 = Σ_h 4 (-1)^h / (π² h²) cos 2πhu; grooves of 55 µm read every 12.4 µm.
+  const Case here = face(spaced(0.3, 9.7, 760), 6.1);
+  const double amplitude = 2.0;
+  const auto shown =
+      specimen("feed_marks")
+          .shown_by({here.positions, here.setup, lathe()}, marked(here, amplitude, 7), 1e-3);
+  ASSERT_TRUE(shown);
+  ASSERT_GE(shown->options.harmonics.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int h = shown->options.harmonics[k];
+    EXPECT_EQ(h, static_cast<int>(k) + 1);
+    const Prior& cosine = shown->values[2 * k];
+    const double truth = 4.0 * amplitude * (h % 2 == 0 ? 1 : -1) / (kPi * kPi * h * h);
+    // What the harmonics that are not shown put into it: the first of them is below the noise.
+    EXPECT_NEAR(cosine.value, truth, 5.0 * cosine.standard_uncertainty) << h;
+    EXPECT_LT(cosine.standard_uncertainty, 0.01) << h;
+  }
+}
+
+TEST(FeedMarks, AreNotSeenInNoise) {
+  const Case here = face(spaced(0.3, 9.7, 760), 6.1);
+  int alarms = 0;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed)
+    alarms += specimen("feed_marks")
+                  .shown_by({here.positions, here.setup, lathe()}, marked(here, 0.0, seed), 0.01)
+                  .has_value();
+  EXPECT_LE(alarms, 12);  // of 4 expected; more in 3e-4 of all choices of the seeds
 }
 
 TEST(Step, LiftsEverythingInsideItsRadius) {

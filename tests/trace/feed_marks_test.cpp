@@ -1,4 +1,5 @@
-// Sampled coarser than the feed, the grooves fold to lines whose phase differs from cut to cut.
+// Grooves that the low band cannot average: sampled coarser than the feed they fold to lines whose
+// phase differs from cut to cut; deep ones stand far above the noise.
 
 #include <array>
 
@@ -13,24 +14,24 @@ using ::testing::Each;
 using ::testing::Eq;
 using ::testing::SizeIs;
 
-/// Radii of three cuts read at one place in 44 µm: 18, 30 and 18 µm a turn, grooves of 0.3 to 0.8
-/// µm, noise of 20 nm. Where each cut began is not known to a groove.
-std::vector<Profile> coarsely_read(std::uint64_t seed) {
-  struct Design {
-    double feed, radius;
-    bool inward;
-  };
-  constexpr std::array<Design, 3> kDesigns{
-      {{2.0, 20.0031, true}, {3.3, 20.0173, true}, {2.0, 20.0, false}}};
+struct Design {
+  double feed, radius;
+  bool inward;
+};
+using Designs = std::array<Design, 3>;
+
+/// Radii of three cuts read at one place in 44 µm, noise of 20 nm. Where each cut began is not
+/// known to a groove.
+std::vector<Profile> read(const Designs& designs, double nose_mm, std::uint64_t seed) {
   const turning::Carriage carriage{{0.0, 0.0, 2e-7, -6e-9}, {}, turning::kFaceSquareness};
   std::vector<Profile> out;
-  for (const Design& design : kDesigns) {
+  for (const Design& design : designs) {
     turning::Cut cut;
     cut.radius_mm = design.radius;
     cut.feed_mm_per_min = design.feed;
     cut.spindle_rpm = 110.0;
     cut.inward = design.inward;
-    cut.nose_radius_mm = 0.15;
+    cut.nose_radius_mm = nose_mm;
     const turning::Face face(
         cut, [&](const turning::ToolPoint& p) { return turning::one_lever(carriage, p); });
     turning::Stylus stylus;
@@ -53,17 +54,37 @@ std::vector<Profile> coarsely_read(std::uint64_t seed) {
   return out;
 }
 
+// 18, 30 and 18 µm a turn, grooves of 0.3 to 0.8 µm.
+constexpr Designs kFine{{{2.0, 20.0031, true}, {3.3, 20.0173, true}, {2.0, 20.0, false}}};
+// 100, 250 and 100 µm a turn, grooves of 1.6 to 10 µm.
+constexpr Designs kOrdinary{{{11.0, 20.0031, true}, {27.5, 20.0173, true}, {11.0, 20.0, false}}};
+
 TEST(FeedMarks, OfEachCutAreNamedWhereSamplingFoldsThem) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     Problem problem = problem_of();
     problem.low_band.level = 1;
-    const Closed result = closed(problem, coarsely_read(seed));
+    const Closed result = closed(problem, read(kFine, 0.15, seed));
     SCOPED_TRACE(story(result));
     EXPECT_EQ(result.verdict, TraceVerdict::explained);
     std::vector<std::string> names;
     for (const TraceRound& round : result.rounds) names.push_back(round.accepted);
     EXPECT_THAT(names, SizeIs(3));
     EXPECT_THAT(names, Each(Eq("feed_marks")));
+    expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
+  }
+}
+
+TEST(FeedMarks, OfAnOrdinaryFeedAreTakenFromTheSamples) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Problem problem = problem_of();
+    problem.low_band.level = 2;
+    std::vector<Profile> profiles = read(kOrdinary, 0.8, seed);
+    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    const Closed result = closed(problem, profiles);
+    SCOPED_TRACE(story(result));
+    EXPECT_TRUE(result.blunders.empty());
+    EXPECT_EQ(result.verdict, TraceVerdict::explained);
+    EXPECT_EQ(named(result), std::vector<std::string>());
     expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
   }
 }

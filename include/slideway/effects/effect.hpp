@@ -127,7 +127,22 @@ struct EffectOptions {
   std::vector<std::string> profiles = {};
   std::optional<Form> form = std::nullopt;             // of a straightness: a polynomial
   std::optional<double> resolution_mm = std::nullopt;  // of a curve: between its knots
+  std::vector<int> harmonics = {};                     // of feed marks in one cut, rising
   EffectFactory own = {};  // makes an effect that is not in the catalogue; empty: it is
+};
+
+/// A normal prior on one parameter, in the parameter's unit.
+struct Prior {
+  std::string parameter;
+  double value = 0.0;
+  double standard_uncertainty = 0.0;
+};
+
+/// What the samples of one profile show of an effect for certain, before any search.
+struct ShownBySamples {
+  EffectOptions options;
+  std::vector<Prior> values;  // of its parameters, by the samples
+  double p_value = 1.0;       // that noise does so
 };
 
 /// Rates between which a line of an effect lies, in cycles over one profile: the resolution of the
@@ -229,6 +244,14 @@ class Effect {
   /// declared, and none where it is; an effect with a degree has one for each degree to be tried.
   /// @param declared  the options it is declared with, or null
   [[nodiscard]] virtual std::vector<EffectOptions> hypotheses(const EffectOptions* declared) const;
+
+  /// What the samples of one profile show of it, where they resolve what its low band does not.
+  /// None by default. REQUIRES as columns().
+  /// @param values        #stations: heights, mm, or slopes, rad
+  /// @param significance  of the test that it is there
+  [[nodiscard]] virtual std::optional<ShownBySamples> shown_by(const Stations& stations,
+                                                               std::span<const double> values,
+                                                               double significance) const;
 
   /// Why its columns cannot be used on a profile, with the place; "": they can. REQUIRES as
   /// search_range().

@@ -16,13 +16,6 @@
 
 namespace slideway {
 
-/// A normal prior on one parameter, in the parameter's unit.
-struct Prior {
-  std::string parameter;
-  double value = 0.0;
-  double standard_uncertainty = 0.0;
-};
-
 struct DeclaredEffect {
   std::string name;
   EffectOptions options;

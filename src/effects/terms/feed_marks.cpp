@@ -1,43 +1,60 @@
+#include <algorithm>
 #include <complex>
+#include <functional>
 
 #include "../groove.hpp"
+#include "../line_test.hpp"
 #include "../linear_effect.hpp"
 #include "../request.hpp"
 #include "../variable_range.hpp"
+#include "slideway/base/error.hpp"
 
 namespace slideway {
 namespace {
 
-constexpr int kMostHarmonics = 8;
+constexpr int kMostHarmonics = 16;
+constexpr Eigen::Index kMostSamples = 4096;  // looked at for lines
+constexpr Eigen::Index kLeastSamples = 64;
+constexpr double kEnds = 2.0;        // grooves at the axis and at the rim, which have another form
+constexpr double kMostShared = 0.9;  // of the square of a harmonic with others, folded
 
 Description describe_feed_marks() {
-  return {
-      .name = "feed_marks",
-      .plain_name = "feed marks",
-      .standard_name = "kinematic roughness, scallop height f²/(8 r_ε)",
-      .formula =
-          "A (f/f_max)² (4u² - 1/3), u in [-1/2, 1/2] across each groove of width f; f_max the "
-          "coarsest feed per turn of the problem. With a degree: Σ_h a_h cos 2πhu + b_h sin 2πhu, "
-          "h = 1 to degree, in one cut: a phase and a form of its own",
-      .source = "A = f²/(8 r_ε) for nose radius r_ε and feed per turn f",
-      .cause = "the nose of the tool leaves one groove per turn",
-      .typical =
-          "8 to 83 nm at 18 µm per turn, 0.1 to 1.3 µm at 73 µm per turn (nose "
-          "radius 5 to 0.5 mm)",
-      .variable = IndependentVariable::revolution,
-      .confounded_with =
-          "nothing if the grooves are resolved; averaged over blocks of a similar width, or "
-          "sampled coarser than the feed, it returns as a long alias whose phase differs from "
-          "cut to cut",
-      .separated_by =
-          "its period is exactly the feed per turn and its height goes "
-          "with the square of the feed"};
+  return {.name = "feed_marks",
+          .plain_name = "feed marks",
+          .standard_name = "kinematic roughness, scallop height f²/(8 r_ε)",
+          .formula =
+              "A (f/f_max)² (4u² - 1/3), u in [-1/2, 1/2] across each groove of width f; f_max the "
+              "coarsest feed per turn of the problem. With harmonics h: Σ_h a_h cos 2πhu + b_h sin "
+              "2πhu, in one cut: a phase and a form of its own",
+          .source = "A = f²/(8 r_ε) for nose radius r_ε and feed per turn f",
+          .cause = "the nose of the tool leaves one groove per turn",
+          .typical =
+              "8 to 83 nm at 18 µm per turn, 0.1 to 1.3 µm at 73 µm per turn (nose "
+              "radius 5 to 0.5 mm)",
+          .variable = IndependentVariable::revolution,
+          .confounded_with =
+              "nothing if the grooves are resolved; averaged over blocks of a similar width, or "
+              "sampled coarser than the feed, it returns as a long alias whose phase differs from "
+              "cut to cut",
+          .separated_by =
+              "its period is exactly the feed per turn and its height goes "
+              "with the square of the feed"};
 }
 
 // Parabola of the tool nose in each groove, mean zero.
 double scallop(const Stations& stations, Eigen::Index i) {
   const double u = groove_at(stations, i).across;
   return 4.0 * u * u - 1.0 / 3.0;
+}
+
+std::vector<Parameter> parameters_of(const std::vector<int>& harmonics) {
+  std::vector<Parameter> list;
+  for (const int h : harmonics) {
+    const std::string order = std::to_string(h);
+    list.push_back({"cos" + order + "_um", "a_" + order, "µm", 0.1});
+    list.push_back({"sin" + order + "_um", "b_" + order, "µm", 0.1});
+  }
+  return list;
 }
 
 class FeedMarks : public LinearEffect {
@@ -64,7 +81,49 @@ class FeedMarks : public LinearEffect {
       const EffectOptions* declared) const override {
     if (declared) return {};
     std::vector<EffectOptions> out(1);
-    for (const int degree : {1, 2, 3, 4, 6, kMostHarmonics}) out.push_back({.degree = degree});
+    for (const int last : {1, 2, 3, 4, 6, 8}) {
+      std::vector<int>& harmonics = out.emplace_back().harmonics;
+      for (int h = 1; h <= last; ++h) harmonics.push_back(h);
+    }
+    return out;
+  }
+
+  // The harmonics that stand out of the spectrum of the samples, where the first one is one of
+  // them: sampling may have folded them, but the grooves of a cut lie where its feed says.
+  [[nodiscard]] std::optional<ShownBySamples> shown_by(const Stations& stations,
+                                                       std::span<const double> values,
+                                                       double significance) const override {
+    const Setup& setup = stations.setup();
+    const Eigen::Index all = stations.size(), count = std::min(all, kMostSamples);
+    if (!applies_to(setup) || !lacking(setup).empty() || count < kLeastSamples) return std::nullopt;
+    const Eigen::Index first = (all - count) / 2;
+    Eigen::VectorXd radii(count), phase(count), weights(count);
+    const double ends = kEnds * *setup.feed_mm_per_min / *setup.spindle_rpm;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      radii[i] = stations.radius(first + i);
+      phase[i] = 2.0 * kPi * groove_at(stations, first + i).across;
+      weights[i] = radii[i] > ends && radii[i] < *setup.cut_radius_mm - ends ? 1.0 : 0.0;
+    }
+    const LineTest lines(
+        values.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)), radii,
+        weights);
+    ShownBySamples out{.options = {}, .values = {}, .p_value = lines.p_value(phase)};
+    if (out.p_value > significance) return std::nullopt;
+    std::vector<Eigen::VectorXd> shown;
+    for (int h = 1; h <= kMostHarmonics; ++h) {
+      const Eigen::VectorXd own = h * phase;
+      if (h > 1 && lines.p_value(own) > significance) continue;
+      if (!lines.stands_apart(own, shown, kMostShared)) continue;
+      shown.push_back(own);
+      out.options.harmonics.push_back(h);
+    }
+    const auto [amplitudes, uncertainties] = lines.amplitudes(shown);
+    const std::vector<Parameter> parameters = parameters_of(out.options.harmonics);
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      const auto k = static_cast<Eigen::Index>(p);
+      out.values.push_back(
+          {parameters[p].name, amplitudes[k] / kMicrometre, uncertainties[k] / kMicrometre});
+    }
     return out;
   }
 
@@ -72,22 +131,13 @@ class FeedMarks : public LinearEffect {
   double coarsest_feed_mm_;
 };
 
-std::vector<Parameter> harmonics(int degree) {
-  std::vector<Parameter> list;
-  for (int h = 1; h <= degree; ++h) {
-    const std::string order = std::to_string(h);
-    list.push_back({"cos" + order + "_um", "a_" + order, "µm", 0.1});
-    list.push_back({"sin" + order + "_um", "b_" + order, "µm", 0.1});
-  }
-  return list;
-}
-
 // The marks of one cut, where neither their phase nor how the reading rounds them is known.
 class FeedMarksOfOneCut : public LinearEffect {
  public:
-  explicit FeedMarksOfOneCut(int degree)
-      : LinearEffect(describe_feed_marks(), harmonics(degree),
-                     diagonal_map(2 * degree, kMicrometre)) {}
+  explicit FeedMarksOfOneCut(const std::vector<int>& harmonics)
+      : LinearEffect(describe_feed_marks(), parameters_of(harmonics),
+                     diagonal_map(2 * static_cast<int>(harmonics.size()), kMicrometre)),
+        harmonics_(harmonics) {}
 
   [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_face_height(setup); }
 
@@ -102,24 +152,34 @@ class FeedMarksOfOneCut : public LinearEffect {
     if (!applies_to(stations.setup())) return void(out.setZero());
     for (Eigen::Index i = 0; i < stations.size(); ++i) {
       const auto turn = std::polar(1.0, 2.0 * kPi * groove_at(stations, i).across);
-      std::complex<double> harmonic = turn;
-      for (Eigen::Index j = 0; j < out.cols(); j += 2, harmonic *= turn) {
-        out(i, j) = harmonic.real();
-        out(i, j + 1) = harmonic.imag();
+      std::complex<double> harmonic = 1.0;
+      int reached = 0;
+      Eigen::Index j = 0;
+      for (const int h : harmonics_) {
+        for (; reached < h; ++reached) harmonic *= turn;
+        out(i, j++) = harmonic.real();
+        out(i, j++) = harmonic.imag();
       }
     }
   }
 
   [[nodiscard]] double size(const Eigen::VectorXd& values) const override { return values.norm(); }
+
+ private:
+  std::vector<int> harmonics_;
 };
 
 }  // namespace
 
 std::unique_ptr<Effect> make_feed_marks(const Request& request) {
-  request.accept_only({"degree"});
-  if (request.options.degree && *request.options.degree != 0)
-    return std::make_unique<FeedMarksOfOneCut>(request.degree(0, kMostHarmonics));
-  return std::make_unique<FeedMarks>(request.range.coarsest_feed_mm);
+  request.accept_only({"harmonics"});
+  const std::vector<int>& harmonics = request.options.harmonics;
+  if (harmonics.empty()) return std::make_unique<FeedMarks>(request.range.coarsest_feed_mm);
+  if (std::ranges::adjacent_find(harmonics, std::greater_equal()) != harmonics.end() ||
+      harmonics.back() > kMostHarmonics)
+    throw UsageError("effect feed_marks: 'harmonics' must rise, from 1 to " +
+                     std::to_string(kMostHarmonics));
+  return std::make_unique<FeedMarksOfOneCut>(harmonics);
 }
 
 }  // namespace slideway

@@ -1,0 +1,101 @@
+#include "line_test.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <array>
+#include <cmath>
+
+#include "slideway/base/units.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::array<int, 12> kBeside{-9, -8, -7, -6, -5, -4, 4, 5, 6, 7, 8, 9};  // cycles
+constexpr double kIndependent = 8.0;  // of them under a Hann window: its noise is 1.5 bins wide
+constexpr Eigen::Index kTerms = 4;    // of a cubic
+
+}  // namespace
+
+LineTest::LineTest(std::span<const double> values, const Eigen::VectorXd& places,
+                   const Eigen::VectorXd& weights) {
+  const auto count = static_cast<Eigen::Index>(values.size());
+  const double first = places.minCoeff(), extent = places.maxCoeff() - first;
+  turn_ = 2.0 * kPi * (places.array() - first) / extent;
+  const Eigen::ArrayXd at =
+      Eigen::ArrayXd::LinSpaced(count, 0.5, static_cast<double>(count) - 0.5) /
+      static_cast<double>(count);
+  window_ = weights.array() * (0.5 - 0.5 * (2.0 * kPi * at).cos());
+  Eigen::MatrixXd powers(count, kTerms);
+  powers.col(0) = window_;
+  for (Eigen::Index k = 1; k < kTerms; ++k)
+    powers.col(k) = powers.col(k - 1).array() * (2.0 * at - 1.0);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(powers);
+  form_ = qr.householderQ() * Eigen::MatrixXd::Identity(count, kTerms);
+  values_ = weighted(Eigen::Map<const Eigen::VectorXd>(values.data(), count));
+}
+
+Eigen::MatrixXd LineTest::weighted(const Eigen::MatrixXd& columns) const {
+  Eigen::MatrixXd out = window_.asDiagonal() * columns;
+  out -= form_ * (form_.transpose() * out).eval();
+  return out;
+}
+
+Eigen::MatrixX2d LineTest::columns(const Eigen::VectorXd& phase) const {
+  Eigen::MatrixX2d out(phase.size(), 2);
+  out << phase.array().cos(), phase.array().sin();
+  return weighted(out);
+}
+
+Eigen::MatrixXd LineTest::columns(const std::vector<Eigen::VectorXd>& phases) const {
+  Eigen::MatrixXd out(window_.size(), 2 * std::ssize(phases));
+  for (Eigen::Index k = 0; k < std::ssize(phases); ++k)
+    out.middleCols(2 * k, 2) = columns(phases[static_cast<std::size_t>(k)]);
+  return out;
+}
+
+double LineTest::gain(const Eigen::VectorXd& phase) const {
+  const Eigen::MatrixX2d own = columns(phase);
+  const Eigen::Matrix2d gram = own.transpose() * own;
+  const Eigen::Vector2d products = own.transpose() * values_;
+  const Eigen::FullPivLU<Eigen::Matrix2d> lu(gram);
+  return lu.isInvertible() ? products.dot(lu.solve(products)) : 0.0;
+}
+
+double LineTest::gain_beside(const Eigen::VectorXd& phase) const {
+  double out = 0.0;
+  for (const int cycles : kBeside) out += gain(phase + cycles * turn_);
+  return out / static_cast<double>(kBeside.size());
+}
+
+double LineTest::p_value(const Eigen::VectorXd& phase) const {
+  const double own = gain(phase), beside = gain_beside(phase);
+  if (!(beside > 0.0)) return own > 0.0 ? 0.0 : 1.0;
+  return std::pow(1.0 + own / beside / kIndependent, -kIndependent);
+}
+
+bool LineTest::stands_apart(const Eigen::VectorXd& phase,
+                            const std::vector<Eigen::VectorXd>& others, double share) const {
+  const Eigen::MatrixX2d own = columns(phase);
+  if (others.empty()) return own.squaredNorm() > 0.0;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns(others));
+  const Eigen::MatrixXd inside = qr.householderQ().transpose() * own;
+  const Eigen::Index known = 2 * std::ssize(others);
+  for (Eigen::Index j = 0; j < 2; ++j)
+    if (!(inside.col(j).head(known).squaredNorm() < share * own.col(j).squaredNorm())) return false;
+  return true;
+}
+
+LineTest::Amplitudes LineTest::amplitudes(const std::vector<Eigen::VectorXd>& phases) const {
+  const Eigen::MatrixXd all = columns(phases);
+  const Eigen::LDLT<Eigen::MatrixXd> gram(all.transpose() * all);
+  Amplitudes out{gram.solve(all.transpose() * values_), {}};
+  out.uncertainties =
+      gram.solve(Eigen::MatrixXd::Identity(all.cols(), all.cols())).diagonal().cwiseSqrt();
+  for (Eigen::Index k = 0; k < std::ssize(phases); ++k)  // a gain has two degrees of freedom
+    out.uncertainties.segment(2 * k, 2) *=
+        std::sqrt(0.5 * gain_beside(phases[static_cast<std::size_t>(k)]));
+  return out;
+}
+
+}  // namespace slideway

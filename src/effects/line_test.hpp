@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+namespace slideway {
+
+// Lines of known phase in equally dense samples, each held against the spectrum beside it.
+//
+// What a cubic leaves of the values, under a Hann window, is fitted with a cosine and a sine of the
+// phase. What that takes away is compared with what the same phase takes away when it runs some
+// cycles more or less over the samples: under noise that is even there the ratio has an F
+// distribution of 2 and 2 m degrees of freedom, so p = (1 + ratio / m)^-m.
+class LineTest {
+ public:
+  // REQUIRES 16 values at least, as many places and weights as values. A weight of 0 leaves one
+  // out.
+  LineTest(std::span<const double> values, const Eigen::VectorXd& places,
+           const Eigen::VectorXd& weights);
+
+  // Probability that noise makes a line as strong. `phase` (rad), one for each value.
+  [[nodiscard]] double p_value(const Eigen::VectorXd& phase) const;
+
+  // Of lines: amplitudes of the cosine and the sine of each, fitted together, and their standard
+  // uncertainties by the spectrum beside each of them.
+  struct Amplitudes {
+    Eigen::VectorXd values, uncertainties;
+  };
+  [[nodiscard]] Amplitudes amplitudes(const std::vector<Eigen::VectorXd>& phases) const;
+
+  // Whether its cosine and sine are more than those of other lines: less than `share` of their
+  // square is theirs.
+  [[nodiscard]] bool stands_apart(const Eigen::VectorXd& phase,
+                                  const std::vector<Eigen::VectorXd>& others, double share) const;
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd weighted(const Eigen::MatrixXd& columns) const;
+  [[nodiscard]] Eigen::MatrixX2d columns(const Eigen::VectorXd& phase) const;
+  [[nodiscard]] Eigen::MatrixXd columns(const std::vector<Eigen::VectorXd>& phases) const;
+  [[nodiscard]] double gain(const Eigen::VectorXd& phase) const;
+  [[nodiscard]] double gain_beside(const Eigen::VectorXd& phase) const;
+
+  Eigen::VectorXd window_;
+  Eigen::MatrixXd form_;    // orthonormal: the cubic under the window
+  Eigen::VectorXd values_;  // what it leaves of them
+  Eigen::VectorXd turn_;    // phase of one cycle over the places
+};
+
+}  // namespace slideway

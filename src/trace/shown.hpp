@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "slideway/identify/fit.hpp"
+#include "slideway/trace/trace.hpp"
+
+namespace slideway {
+
+/// An effect of one profile that its samples show for certain (Effect::shown_by()), and its low
+/// band, too.
+struct ShownEffect {
+  DeclaredEffect effect;
+  double p_value = 1.0;  // of the samples
+};
+
+/// Those of the candidates. Feed marks that samples resolve and the low band folds would else be a
+/// noise or lines that nothing makes.
+///
+/// Its parameters have the values of the samples as priors: the low band, which folds and damps
+/// them, knows them less. Those whose image in the low band is below its noise are left out. None
+/// is taken where they are less than half of what the low band has faster than slow cosines, which
+/// is a matter of the search, or where the effect without options explains as much.
+std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedModel& declared);
+
+/// The model with these effects, fitted, and a round for each of them as if they had been added one
+/// after the other. REQUIRES one of them.
+struct ShownModel {
+  FittedModel fitted;
+  std::vector<TraceRound> rounds;
+};
+ShownModel with_shown(const FittedModel& declared, const std::vector<ShownEffect>& shown);
+
+}  // namespace slideway
