@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 namespace slideway {
 namespace {
-
-constexpr double kVisible = 0.25;  // of the noise of a value: several of them show together
 
 /// Radii of the low-band values, and the width that one of them or one groove covers.
 struct Radii {
@@ -60,23 +57,6 @@ double lost_radius(const Radii& radii, const Observation& observation, const Gat
   return lost < gates.most_lost * radii.largest ? lost : 0.0;
 }
 
-/// Low band of what the first and the last turn leave at the rim and at the axis: a groove's depth
-/// within a groove's width. A wavelet of many taps carries it further than one value. Empty: feed
-/// or speed is unknown.
-Eigen::VectorXd cusps(const Observation& observation, const Machine& machine) {
-  const Profile& profile = *observation.profile;
-  const Setup& setup = profile.setup;
-  if (!setup.feed_mm_per_min || !setup.spindle_rpm || !setup.nose_radius_mm) return {};
-  const double rim = setup.cut_radius_mm.value_or(HUGE_VAL);
-  const double feed = *setup.feed_mm_per_min / *setup.spindle_rpm;
-  const double depth = feed * feed / (8.0 * *setup.nose_radius_mm);
-  const Stations stations = profile.stations(machine);
-  Eigen::MatrixXd cusp = Eigen::MatrixXd::Zero(stations.size(), 1);
-  for (Eigen::Index i = 0; i < stations.size(); ++i)
-    if (stations.radius(i) <= feed || stations.radius(i) >= rim - feed) cusp(i, 0) = depth;
-  return observation.low_band.apply(cusp);
-}
-
 }  // namespace
 
 ValueIndices values_at_axis(const Observation& observation, const Machine& machine) {
@@ -90,17 +70,8 @@ ValueIndices undescribed_values(const Model& model, const Observation& observati
   const Setup& setup = observation.profile->setup;
   if (setup.kind != Kind::face) return {};
   const Radii radii(observation, model.machine);
-  const ValueIndices at_axis = radii.at_axis(
+  return radii.at_axis(
       std::max(radii.width, lost_radius(radii, observation, model.gates, curve, noise)));
-  const Eigen::VectorXd cusp = cusps(observation, model.machine);
-  ValueIndices under_cusps, out;
-  for (Eigen::Index i = 0; i < cusp.size(); ++i)
-    if (std::abs(cusp[i]) > kVisible * noise) under_cusps.push_back(i);
-  if (static_cast<double>(under_cusps.size()) >
-      model.gates.most_lost * static_cast<double>(cusp.size()))
-    under_cusps.clear();
-  std::ranges::set_union(at_axis, under_cusps, std::back_inserter(out));
-  return out;
 }
 
 ValueIndices values_beside_steps(const Model& model, const Estimate& estimate,

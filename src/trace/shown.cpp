@@ -5,7 +5,9 @@
 
 #include "dictionary.hpp"
 #include "search.hpp"
+#include "slideway/base/units.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/left_out.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
 
@@ -103,6 +105,37 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
   return out;
 }
 
+constexpr double kVisible = 0.25;  // of the noise of a value: several of them show together
+
+/// Leaves out the values into which the low band carries what the first and the last turn leave at
+/// the rim and at the axis: as much as the marks, within one feed, by more than kVisible of the
+/// noise. A wavelet of many taps carries it further than one value. @return true if there are any
+bool leave_out_ends(FittedModel& fitted, const ShownEffect& shown) {
+  Model& model = fitted.model;
+  const auto at = std::ranges::find_if(model.observations, [&](const Observation& each) {
+    return each.profile->name == shown.effect.options.profiles.front();
+  });
+  const Setup& setup = at->profile->setup;
+  const double feed = *setup.feed_mm_per_min / *setup.spindle_rpm;
+  double depth = 0.0;
+  for (const Prior& prior : shown.effect.priors) depth += kMicrometre * std::abs(prior.value);
+  const Stations stations = at->profile->stations(model.machine);
+  Eigen::MatrixXd ends = Eigen::MatrixXd::Zero(stations.size(), 1);
+  for (Eigen::Index i = 0; i < stations.size(); ++i)
+    if (const double r = stations.radius(i); r <= feed || r >= *setup.cut_radius_mm - feed)
+      ends(i, 0) = depth;
+  const Eigen::VectorXd carried = at->low_band.apply(ends);
+  const auto& fitted_profiles = fitted.fit.linear.observations;
+  const auto place = std::ranges::find(fitted_profiles, &*at) - fitted_profiles.begin();
+  const double noise = fitted.fit.noise[static_cast<std::size_t>(place)].standard_deviation();
+  ValueIndices out;
+  for (Eigen::Index i = 0; i < carried.size(); ++i)
+    if (std::abs(carried[i]) > kVisible * noise) out.push_back(i);
+  return static_cast<double>(out.size()) <
+             model.gates.most_lost * static_cast<double>(carried.size()) &&
+         leave_out(*at, out);
+}
+
 TraceRound round_of(const ShownEffect& shown, const FittedModel& without, const FittedModel& with) {
   const ModelResult before = summarise(without.model, without.fit),
                     after = summarise(with.model, with.fit);
@@ -141,6 +174,7 @@ ShownModel with_shown(const FittedModel& declared, const std::vector<ShownEffect
     Model model = without.model;
     append_term(model, each.effect, model.range);
     FittedModel with = fit_model(std::move(model));
+    if (leave_out_ends(with, each)) with = fit_model(std::move(with.model));
     rounds.push_back(round_of(each, without, with));
     last.emplace(std::move(with));
   }

@@ -16,9 +16,7 @@ ValueIndices values_at_axis(const Observation& observation, const Machine& machi
 
 /// These, and those further out where effects that are steep at the centre are steeper than the
 /// tool's nose follows: a nose of radius ρ cuts a slope z' lower by ρ z'²/2 (first order), and that
-/// is more than the noise. Those as well into which the low band carries the cusps of the first and
-/// the last turn, of the height of a groove f²/(8 ρ), where the nose ρ is declared, within one feed
-/// f of the rim and of the axis, by more than a quarter of the noise.
+/// is more than the noise.
 ///
 /// @param curve  low band of what is steep at the centre
 /// @param noise  standard deviation of a low-band value
