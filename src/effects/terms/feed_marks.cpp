@@ -95,7 +95,7 @@ class FeedMarks : public LinearEffect {
                                                        double significance) const override {
     const Setup& setup = stations.setup();
     const Eigen::Index all = stations.size(), count = std::min(all, kMostSamples);
-    if (!applies_to(setup) || !lacking(setup).empty() || count < kLeastSamples) return std::nullopt;
+    if (!applies_to(setup) || !has_grooves(setup) || count < kLeastSamples) return std::nullopt;
     const Eigen::Index first = (all - count) / 2;
     Eigen::VectorXd radii(count), phase(count), weights(count);
     const double ends = kEnds * *setup.feed_mm_per_min / *setup.spindle_rpm;
