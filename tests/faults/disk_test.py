@@ -24,7 +24,7 @@ from commands import (BAD_DATA, BAD_USAGE, COMMANDS, DONE, FAILED, LIBRARY, PROG
                       given_files, run)
 from server import Server  # noqa: E402
 
-PLACES = int(sys.argv[3]) if len(sys.argv) > 3 else 60
+PLACES = int(sys.argv[3]) if len(sys.argv) > 3 else 20
 LINE_OF_LOADER = 127
 OLD = b"what was there before\n"
 
