@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
@@ -46,6 +47,7 @@ std::string options_hash(const ManifestItem& item, const ItemOptions& options) {
   for (const Override& override : overrides) text += override.key + " = " + override.value + "\n";
   if (!options.closes_loop) text += "--no-trace\n";
   if (options.ignore_checksum) text += "--ignore-checksum\n";
+  if (options.is_whole) text += "--full\n";
   return sha256(text);
 }
 
@@ -64,18 +66,6 @@ Problem problem_of(const ManifestItem& item, const ItemOptions& options) {
   return problem;
 }
 
-/// Without curves, and without candidates that were tried and not taken: identify has them.
-void keep_what_a_table_shows(Analysis& analysis) {
-  Result& result = analysis.result;
-  for (std::optional<ModelResult>* model : {&result.declared, &result.final})
-    if (*model && (*model)->straightness) (*model)->straightness->curve = {};
-  for (Ranking& each : result.ranking.entries) each.running = {};
-  if (!analysis.trace) return;
-  analysis.trace->refused.clear();
-  for (TraceRound& round : analysis.trace->rounds) round.candidates.clear();
-  for (DetectionLimit& limit : analysis.trace->detection_limits) limit.by_shape.clear();
-}
-
 /// @param print  what is known of the item, for the line of one that fails
 std::string identified(const ManifestItem& item, const ItemOptions& options, Fingerprint& print) {
   const Problem problem = problem_of(item, options);
@@ -84,12 +74,15 @@ std::string identified(const ManifestItem& item, const ItemOptions& options, Fin
   std::string inputs;
   for (const Profile& profile : profiles) inputs += profile.sha256 + "\n";
   print.input_sha256 = sha256(inputs);
-  Analysis analysis =
-      analyse(problem, profiles, {.closes_loop = options.closes_loop, .with_evidence = true});
-  keep_what_a_table_shows(analysis);
+  Analysis analysis = analyse(problem, profiles,
+                              {.closes_loop = options.closes_loop,
+                               .with_details = options.is_whole,
+                               .with_curves = options.is_whole,
+                               .with_evidence = true});
+  const std::string evidence = evidence_text(*analysis.evidence);
   return head(item.id, status::kOk, "", print, item.machine, item.time) +
-         ",\"evidence\":" + evidence_text(*analysis.evidence) +
-         ",\"report\":" + json_line(analysis) + "}\n";
+         ",\"evidence\":" + evidence + ",\"report\":" +
+         (options.is_whole ? json_line(analysis) : json_brief(std::move(analysis))) + "}\n";
 }
 
 }  // namespace

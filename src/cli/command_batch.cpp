@@ -44,6 +44,8 @@ class BatchCommand : public ReportCommand {
     options("memory", po::value(&memory_)->value_name("MB"),
             "end an item that needs more (default: the machine's, divided by the jobs)");
     options("no-trace", po::bool_switch(&no_trace_), "stop before the closed loop");
+    options("full", po::bool_switch(&full_),
+            "whole reports in the results, with their curves: some hundred kilobytes an item");
     options("pool", po::value(&pool_)->value_name("machine"),
             "then fit all items of a machine (column 'machine') together, with their trend over "
             "the column 'time'");
@@ -126,7 +128,7 @@ class BatchCommand : public ReportCommand {
     keep(words_[0]);
     const Manifest manifest = read_manifest(words_[0]);
     if (!pool_.empty()) check_pool(manifest);
-    const ItemOptions item{data_directory(data_), !no_trace_, ignore_checksum_};
+    const ItemOptions item{data_directory(data_), !no_trace_, ignore_checksum_, full_};
     // Before MPI starts, which does not support processes that fork.
     ProcessPool local(
         jobs(), [&](const std::string& task) { return run_task(manifest, item, task); }, limits());
@@ -217,7 +219,7 @@ class BatchCommand : public ReportCommand {
   Shard checked_shard_;
   int jobs_ = 0;
   double timeout_ = 0.0, memory_ = 0.0;
-  bool resume_ = false, no_trace_ = false, ignore_checksum_ = false;
+  bool resume_ = false, no_trace_ = false, ignore_checksum_ = false, full_ = false;
 };
 
 }  // namespace

@@ -162,6 +162,20 @@ void explain_noise_of_causes(const Model& model, const Solution& fit, ModelResul
   }
 }
 
+void explain_left_out(const Model& model, ModelResult& out) {
+  std::vector<std::string> parts;
+  for (const Observation& observation : model.observations)
+    if (observation.left_out() > 0)
+      parts.push_back("'" + observation.profile->name + "' " +
+                      std::to_string(observation.left_out()) + " of " +
+                      std::to_string(observation.values.size()));
+  if (!parts.empty())
+    out.notes.push_back(
+        "low-band values are left out that lie in a gap, within a groove of the spindle axis, or "
+        "where a tool's nose cannot follow: " +
+        joined(parts));
+}
+
 }  // namespace
 
 void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
@@ -177,13 +191,8 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
       out.notes.push_back("profile '" + observation.profile->name +
                           "': positions are not uniform; brought to a uniform grid for the wavelet "
                           "by linear interpolation, the model's columns likewise");
-    if (observation.left_out() > 0)
-      out.notes.push_back(
-          "profile '" + observation.profile->name + "': " + std::to_string(observation.left_out()) +
-          " of " + std::to_string(observation.values.size()) +
-          " low-band values are left out: they lie in a gap, within a groove of the spindle axis, "
-          "or where a tool's nose cannot follow");
   }
+  explain_left_out(model, out);
 }
 
 }  // namespace slideway

@@ -15,6 +15,8 @@
 /// What the page is put together from.
 namespace slideway {
 
+class Node;
+
 Html bold(std::string_view text);
 Html small(const Html& content);
 /// A quantity's symbol: "b_2" with its index lowered.
@@ -83,6 +85,9 @@ using HtmlSections = std::vector<HtmlSection>;
 /// A page of the sections that have a body, with links to them.
 std::string page_of(const std::string& title, const std::string& subtitle, const Html& about,
                     const HtmlSections& sections);
+
+/// The page of a brief report. @throws DataError  what it says is of the wrong type
+std::string html_brief(const Node& report);
 
 /// Who measured what, with which instrument: [about] on a line.
 Html html_about(const Result& result);

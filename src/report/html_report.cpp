@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "brief.hpp"
 #include "html_page.hpp"
 #include "html_parts.hpp"
 #include "json_reader.hpp"
@@ -114,12 +115,16 @@ std::string html_report(const Analysis& analysis) {
 }
 
 std::string html_report(std::string_view json, const std::string& name) {
-  return read_document(json, name, {kReportSchema, kColumnsSchema}, [](const Node& document) {
-    if (document["schema"].verbatim() == kColumnsSchema) return columns_page(document);
-    Analysis analysis;
-    read(document, analysis);
-    return html_report(analysis);
-  });
+  return read_document(json, name, {kReportSchema, kBriefSchema, kColumnsSchema},
+                       [](const Node& document) {
+                         if (document["schema"].verbatim() == kColumnsSchema)
+                           return columns_page(document);
+                         if (document["schema"].verbatim() == kBriefSchema)
+                           return html_brief(document);
+                         Analysis analysis;
+                         read(document, analysis);
+                         return html_report(analysis);
+                       });
 }
 
 }  // namespace slideway

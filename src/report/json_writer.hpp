@@ -10,25 +10,31 @@
 #include <utility>
 #include <vector>
 
+#include "brief.hpp"
 #include "slideway/base/record.hpp"
 
 namespace slideway {
 
 /// Writes records as JSON: keys in the order of the lists, doubles in their shortest form that
 /// reads back (with as many digits as the field says), numbers of a list on one line, null for what
-/// is absent or not finite. Bytes that are no UTF-8 are replaced.
+/// is absent or not finite. Bytes that are no UTF-8 are replaced. A brief one is on one line, has
+/// the members and digits of brief_digits(), and none that is absent, empty, false or a count of 0.
 class JsonWriter {
  public:
-  enum class Layout { one_line, indented };
-  explicit JsonWriter(Layout layout) : indented_(layout == Layout::indented) {}
+  enum class Layout { one_line, indented, brief };
+  explicit JsonWriter(Layout layout)
+      : indented_(layout == Layout::indented), brief_(layout == Layout::brief) {}
 
   template <Recorded T>
   void write(const T& object) {
     open('{');
     for_each_field<T>([&](const auto& field) {
+      const auto& value = std::invoke(field.access, object);
+      const int digits = brief_ ? brief_digits(kRecord<T>.name, field.key) : field.digits;
+      if (brief_ && (digits == 0 || is_nothing(value))) return;
       key(field.key);
-      digits_ = field.digits;
-      write(std::invoke(field.access, object));
+      digits_ = digits;
+      write(value);
     });
     close('}');
   }
@@ -93,6 +99,18 @@ class JsonWriter {
     indented_ = was_indented;
   }
 
+  template <typename T>
+  static bool is_nothing(const T& value) {
+    if constexpr (std::integral<T>)
+      return value == T{};
+    else if constexpr (requires { value.empty(); })
+      return value.empty();
+    else if constexpr (requires { value.has_value(); })
+      return !value.has_value();
+    else
+      return false;
+  }
+
   void open(char bracket);
   void close(char bracket);
   /// Goes on to the next value of what is open.
@@ -101,7 +119,7 @@ class JsonWriter {
   void quote(std::string_view text);
 
   std::string text_;
-  bool indented_, is_first_ = true;
+  bool indented_, brief_, is_first_ = true;
   std::size_t depth_ = 0;
   int digits_ = 0;
 };

@@ -1,3 +1,4 @@
+#include "brief.hpp"
 #include "contract_types.hpp"
 #include "json_parts.hpp"
 #include "slideway/report/contract.hpp"
@@ -58,14 +59,20 @@ Json schema_of(const ContractType& type) {
   return schema;
 }
 
+/// Whether a brief report may lack the member.
+bool may_be_absent(const ContractType& type) {
+  return type.or_null || (type.kind != Kind::number && type.kind != Kind::one_of &&
+                          type.kind != Kind::tuple && type.kind != Kind::record);
+}
+
 /// An object with the members of a record.
-Json schema_of(const ContractRecord& record) {
+Json schema_of(const ContractRecord& record, bool is_brief = false) {
   Json properties = Json::object(), required = Json::array();
   for (const ContractMember& member : record.members) {
     Json own = schema_of(member.type);
     if (!member.doc.empty()) own["description"] = member.doc;
     properties[std::string(member.key)] = std::move(own);
-    required.push_back(member.key);
+    if (!is_brief || !may_be_absent(member.type)) required.push_back(member.key);
   }
   Json schema = Json::object({{"type", "object"}, {"description", record.doc}});
   schema["properties"] = std::move(properties);
@@ -73,15 +80,27 @@ Json schema_of(const ContractRecord& record) {
   return schema;
 }
 
+/// What brief_digits() leaves of the records.
+std::vector<ContractRecord> brief_records() {
+  std::vector<ContractRecord> out = report_records();
+  for (ContractRecord& record : out)
+    std::erase_if(record.members, [&](const ContractMember& member) {
+      return brief_digits(record.name, member.key) == 0;
+    });
+  std::erase_if(out, [](const ContractRecord& record) { return record.members.empty(); });
+  return out;
+}
+
 std::string document_of(const std::vector<ContractRecord>& records, const char* id,
                         std::string_view name) {
+  const bool is_brief = name == kBriefSchema;
   Json schema = Json::object(
       {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"$id", id}, {"title", name}});
-  schema.update(schema_of(records.front()));
+  schema.update(schema_of(records.front(), is_brief));
   schema["properties"]["schema"] = Json::object({{"const", name}});
   Json& definitions = schema["$defs"] = Json::object();
   for (std::size_t i = 1; i < records.size(); ++i)
-    definitions[std::string(records[i].name)] = schema_of(records[i]);
+    definitions[std::string(records[i].name)] = schema_of(records[i], is_brief);
   return laid_out(schema) + "\n";
 }
 
@@ -89,6 +108,10 @@ std::string document_of(const std::vector<ContractRecord>& records, const char* 
 
 std::string report_schema() {
   return document_of(report_records(), "urn:slideway:report:2", kReportSchema);
+}
+
+std::string brief_schema() {
+  return document_of(brief_records(), "urn:slideway:brief:1", kBriefSchema);
 }
 
 std::string plan_schema() {

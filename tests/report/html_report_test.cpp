@@ -189,7 +189,7 @@ TEST(HtmlReport, RefusesWhatIsNoReportInOneLine) {
   EXPECT_EQ(refusal("[]"), "report: is array; accepted: an object");
   EXPECT_THAT(refusal(R"({"schema": "other/2"})"),
               HasSubstr("report: schema: is \"other/2\"; accepted: \"slideway.report/2\" or "
-                        "\"slideway.columns/1\""));
+                        "\"slideway.brief/1\" or \"slideway.columns/1\""));
   EXPECT_EQ(refusal(R"({"schema": "slideway.report/2"})"),
             "report: version: is missing; accepted: a text");
   EXPECT_THAT(refusal(std::string(1'000'000, '[')), HasSubstr("deep"));

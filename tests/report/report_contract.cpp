@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   int differing = 0;
   for (const auto& [name, text] :
        {std::pair("docs/report.schema.json", slideway::report_schema()),
+        std::pair("docs/brief.schema.json", slideway::brief_schema()),
         std::pair("docs/plan.schema.json", slideway::plan_schema()),
         std::pair("src/python/slideway/report.py", slideway::report_classes())}) {
     const std::filesystem::path file = source / name;

@@ -13,12 +13,13 @@ except ImportError:
     sys.exit(77)
 
 program, source = sys.argv[1], pathlib.Path(sys.argv[2])
-schema = json.loads((source / "docs/report.schema.json").read_text(encoding="utf-8"))
-jsonschema.Draft202012Validator.check_schema(schema)
-validator = jsonschema.Draft202012Validator(schema)
+schemas = {name: json.loads((source / f"docs/{name}.schema.json").read_text(encoding="utf-8"))
+           for name in ("report", "brief", "plan")}
+for each in schemas.values():
+    jsonschema.Draft202012Validator.check_schema(each)
 
 
-def undeclared(value, described, place=""):
+def undeclared(value, schema, described, place=""):
     """Keys of a document that its schema does not describe."""
     if "anyOf" in described:
         described = described["anyOf"][0]
@@ -26,19 +27,20 @@ def undeclared(value, described, place=""):
         described = schema["$defs"][described["$ref"].rsplit("/", 1)[1]]
     if isinstance(value, list) and "items" in described:
         for index, each in enumerate(value):
-            yield from undeclared(each, described["items"], f"{place}[{index}]")
+            yield from undeclared(each, schema, described["items"], f"{place}[{index}]")
     if isinstance(value, dict) and "properties" in described:
         for key, each in value.items():
             if key not in described["properties"]:
                 yield f"{place}.{key}"
             else:
-                yield from undeclared(each, described["properties"][key], f"{place}.{key}")
+                yield from undeclared(each, schema, described["properties"][key], f"{place}.{key}")
 
 
 def faults(report):
-    for error in validator.iter_errors(report):
+    schema = schemas[report["schema"].split(".")[1].split("/")[0]]
+    for error in jsonschema.Draft202012Validator(schema).iter_errors(report):
         yield f"{error.json_path}: {error.message}"
-    yield from undeclared(report, schema)
+    yield from undeclared(report, schema, schema)
 
 
 def reports():
@@ -57,13 +59,15 @@ def reports():
         manifest.write_text(f"id,problem\na,{problem}\n", encoding="utf-8")
         subprocess.run([program, "batch", manifest, "--out", results, "--quiet"], check=True)
         yield "batch", json.loads(results.read_text(encoding="utf-8"))["report"]
+        subprocess.run([program, "batch", manifest, "--out", f"{results}.full", "--full", "--quiet"],
+                       check=True)
+        yield "batch --full", json.loads(pathlib.Path(f"{results}.full").read_bytes())["report"]
 
 
 def plan_faults(problem):
     command = [program, "plan", source / "problems" / problem / "problem.toml", "--json", "-"]
     plan = json.loads(subprocess.run(command, capture_output=True, check=True).stdout)
-    described = json.loads((source / "docs/plan.schema.json").read_text(encoding="utf-8"))
-    for error in jsonschema.Draft202012Validator(described).iter_errors(plan):
+    for error in jsonschema.Draft202012Validator(schemas["plan"]).iter_errors(plan):
         yield f"{error.json_path}: {error.message}"
 
 

@@ -13,6 +13,7 @@ struct ItemOptions {
   std::optional<std::filesystem::path> data_dir;  // as read_problem() has it
   bool closes_loop = true;
   bool ignore_checksum = false;
+  bool is_whole = false;  // the line has the whole report, with its curves
 };
 
 /// How an item ended, in the words of its line: "ok", or the cause why it failed.

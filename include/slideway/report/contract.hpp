@@ -8,6 +8,9 @@ namespace slideway {
 /// JSON Schema 2020-12 of a report: docs/report.schema.json.
 std::string report_schema();
 
+/// The same of the brief report in a line of batch results: docs/brief.schema.json.
+std::string brief_schema();
+
 /// The same of a plan: docs/plan.schema.json.
 std::string plan_schema();
 

@@ -15,11 +15,16 @@ std::string json_report(const Analysis& analysis);
 /// The same on one line, without the final newline: part of a longer JSON text.
 std::string json_line(const Analysis& analysis);
 
+/// What a table of many reports shows, on one line: schema "slideway.brief/1"
+/// (docs/brief.schema.json). Keys and units are those of the report; a member that is null, empty,
+/// false or a count of 0 is absent.
+std::string json_brief(Analysis analysis);
+
 /// A report as one self-contained page; the same report always makes the same page. One without
 /// curves makes a page without pictures of them.
 std::string html_report(const Analysis& analysis);
 
-/// The same of what json_report() or `rank` on columns wrote.
+/// The same of what json_report(), json_brief() or `rank` on columns wrote.
 /// @param name  what the JSON goes by in messages
 /// @throws DataError  as read_report()
 std::string html_report(std::string_view json, const std::string& name);
