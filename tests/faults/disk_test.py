@@ -3,8 +3,8 @@ under their names whole or as they were, and nothing beside them.
 
 usage: disk_test.py SLIDEWAY LIBRARY [PLACES]
 
-PLACES is at how many bytes of its output the disk is full for each command, spread over it with the first and the
-last byte of every file; 0: at each byte.
+PLACES is at how many bytes of its output the disk is full for each command (3), spread over it with the first and
+the last byte of every file; 0: at each byte, and every number of descriptors from 3 to 20 for each command.
 """
 
 import itertools
@@ -24,7 +24,7 @@ from commands import (BAD_DATA, BAD_USAGE, COMMANDS, DONE, FAILED, LIBRARY, PROG
                       given_files, run)
 from server import Server  # noqa: E402
 
-PLACES = int(sys.argv[3]) if len(sys.argv) > 3 else 20
+PLACES = int(sys.argv[3]) if len(sys.argv) > 3 else 3
 LINE_OF_LOADER = 127
 OLD = b"what was there before\n"
 
@@ -46,7 +46,7 @@ def places(sizes):
     if PLACES == 0 or total <= PLACES:
         return range(1, total + 1)
     ends = {end + more for end in itertools.accumulate(sizes, initial=0) for more in (0, 1)}
-    spread = {1 + i * (total - 1) // (PLACES - 1) for i in range(PLACES)}
+    spread = {1 + (2 * i + 1) * (total - 1) // (2 * PLACES) for i in range(PLACES)}
     return sorted(at for at in ends | spread if 1 <= at <= total)
 
 
@@ -199,7 +199,7 @@ def limited(count):
 class NoDescriptors(Disk):
     """From none beyond the three standard ones on."""
 
-    COUNTS = range(3, 21)
+    COUNTS = (3, 4, 5, 6, 8, 11, 20) if PLACES else range(3, 21)
 
     def allowed(self, code, err):
         if code == LINE_OF_LOADER:  # it never came to main()

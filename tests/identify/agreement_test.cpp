@@ -11,7 +11,7 @@
 #include "slideway/identify/identify.hpp"
 #include "slideway/identify/noise_model.hpp"
 
-namespace slideway {
+namespace slideway::agreement_test {
 namespace {
 
 constexpr std::size_t kReadings = 200;
@@ -145,4 +145,4 @@ TEST(Repeats, WhatTheyShareAndTheModelLacksIsLackOfFit) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::agreement_test

@@ -12,7 +12,7 @@
 #include "slideway/base/random.hpp"
 #include "slideway/identify/noise_model.hpp"
 
-namespace slideway {
+namespace slideway::loss_test {
 namespace {
 
 constexpr std::size_t kValues = 2000;
@@ -96,4 +96,4 @@ TEST(Covariance, IsTheOneOfCeres) {
 }
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::loss_test
