@@ -121,6 +121,27 @@ Eigen::MatrixXd covariance_of(const Uncertainty& uncertainty) {
          uncertainty.basis.transpose();
 }
 
+/// Whether a solution has changed the residuals by what the columns of the model make, and by no
+/// more than has_settled() passes over. The restricted likelihood that the noise was found by does
+/// not see the former, unless there are priors.
+/// @param before     the estimate at the residuals the noise was found from
+bool is_changed_by_model_alone(const Linearisation& linear, const Estimate& after,
+                               const Estimate& before,
+                               const std::vector<Eigen::VectorXd>& residuals) {
+  if (linear.prior_rows.rows() > 0) return false;
+  Eigen::VectorXd change(after.amplitudes.size() + after.shapes.size());
+  change << after.amplitudes - before.amplitudes, after.shapes - before.shapes;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    Eigen::VectorXd other = linear.residuals[i] - residuals[i];
+    other.noalias() += linear.columns[i] * change;
+    if (after.nuisances[i].size() > 0)
+      other.noalias() +=
+          linear.observations[i]->nuisances * (after.nuisances[i] - before.nuisances[i]);
+    if (!(other.norm() <= kSettled * linear.residuals[i].norm())) return false;
+  }
+  return true;
+}
+
 /// The noise under the model, and under that noise the prior of its curve.
 /// @return whether both are what they were
 bool settle(const Model& model, Solution& fit, Estimate& estimate,
@@ -168,7 +189,10 @@ Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
   SolveSummary solved = solve(model, out.linear, out.noise, start);
   for (int round = 0; round < kMostRounds; ++round) {
     if (settle(model, out, solved.estimate, curve)) break;
-    solved = solve(model, out.linear, out.noise, solved.estimate);
+    const std::vector<Eigen::VectorXd> residuals = out.linear.residuals;
+    const Estimate before = std::move(solved.estimate);
+    solved = solve(model, out.linear, out.noise, before);
+    if (is_changed_by_model_alone(out.linear, solved.estimate, before, residuals)) break;
   }
   out.estimate = solved.estimate;
   out.converged = solved.converged;

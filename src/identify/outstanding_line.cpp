@@ -13,6 +13,7 @@ namespace slideway {
 namespace {
 
 constexpr Eigen::Index kNeighbours = 15;  // on either side, for the level of a spectrum
+constexpr double kNearly = 1.000001;      // beyond rounding
 
 Eigen::MatrixXd line(Eigen::Index n, double cycles_per_value) {
   Eigen::MatrixXd out(n, 2);
@@ -61,8 +62,10 @@ double outstanding_line(const Eigen::VectorXd& values, Eigen::Index middle, doub
   for (Eigen::Index k = 0; k < count; ++k) {
     const Eigen::Index first =
         std::clamp<Eigen::Index>(k - kNeighbours, 0, count - 2 * kNeighbours - 1);
-    std::vector<double> around(spectrum.data() + first,
-                               spectrum.data() + first + 2 * kNeighbours + 1);
+    const auto neighbours = spectrum.segment(first, 2 * kNeighbours + 1);
+    if ((neighbours.array() * best < kNearly * std::log(2.0) * spectrum[k]).count() <= kNeighbours)
+      continue;  // their median is larger
+    std::vector<double> around(neighbours.begin(), neighbours.end());
     std::nth_element(around.begin(), around.begin() + kNeighbours, around.end());
     const double level = around[kNeighbours] / std::log(2.0);
     if (spectrum[k] > best * level) best = spectrum[k] / level, peak = k;

@@ -1,6 +1,7 @@
 #include "residual.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 #include "slideway/identify/linear_algebra.hpp"
@@ -240,7 +241,7 @@ EliminatedResidual::EliminatedResidual(const Model& model, const Linearisation& 
     return rows;
   }));
   residual_ = outside(1, [&](std::size_t i) { return Eigen::MatrixXd(observations_[i]->values); });
-  set_num_residuals(static_cast<int>(rows_));
+  set_num_residuals(static_cast<int>(model.shapes()) + 1);
   mutable_parameter_block_sizes()->push_back(static_cast<int32_t>(model.shapes()));
 }
 
@@ -285,8 +286,10 @@ bool EliminatedResidual::Evaluate(const double* const* parameters, double* resid
     std::copy(own.begin(), own.end(), shapes.data() + term->first_shape);
   }
   const Moving at = project(shapes);
-  Eigen::Map<Eigen::VectorXd>(residuals, rows_) = at.residual;
-  if (!jacobians || !jacobians[0]) return at.residual.allFinite();
+  Eigen::Map<Eigen::VectorXd> out(residuals, num_residuals());
+  out.setZero();
+  out[0] = at.residual.norm();
+  if (!jacobians || !jacobians[0]) return std::isfinite(out[0]);
   const Eigen::MatrixXd basis = orthonormal(at.columns);
   Eigen::MatrixXd slopes(rows_, model_.shapes());
   Eigen::Index next = 0;
@@ -303,8 +306,14 @@ bool EliminatedResidual::Evaluate(const double* const* parameters, double* resid
     next += a;
   }
   slopes -= basis * (basis.transpose() * slopes).eval();
-  give(jacobians, 0, slopes);
-  return at.residual.allFinite();
+  // Their triangle has the same products as the rows.
+  Eigen::MatrixXd both(rows_, model_.shapes() + 1);
+  both << slopes, at.residual;
+  Eigen::MatrixXd upper = Eigen::MatrixXd::Zero(num_residuals(), both.cols());
+  upper.topRows(std::min<Eigen::Index>(rows_, both.cols())) = upper_triangle(both);
+  give(jacobians, 0, upper.leftCols(model_.shapes()));
+  out = upper.rightCols(1);
+  return out.allFinite();
 }
 
 double EliminatedResidual::cost(const Eigen::VectorXd& shapes) const {

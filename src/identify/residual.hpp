@@ -108,7 +108,8 @@ class CurveResidual final : public ceres::CostFunction {
 
 /// All profiles with the amplitudes and levelling eliminated: the residual of the best linear fit
 /// as a function of the shapes of all terms (variable projection, Kaufman's Jacobian), priors left
-/// aside. One parameter block of all shapes as the optimiser sees them.
+/// aside. One parameter block of all shapes as the optimiser sees them; the optimiser sees residual
+/// and Jacobian as their triangle, which has one row more than there are shapes.
 class EliminatedResidual final : public ceres::CostFunction {
  public:
   /// @param linear  columns of the terms without shapes are read

@@ -13,6 +13,7 @@ namespace {
 
 using Terms = ExponentialMixture::Terms;
 constexpr int kTerms = ExponentialMixture::kTerms;
+constexpr int kLong = kTerms - 1;  // terms of a long memory alone
 
 /// Covariance of block means, continued to the distance 0.
 Terms continued(const ExponentialMixture& noise) {
@@ -79,8 +80,18 @@ void MixtureFactor::factorise(const ExponentialMixture& noise, const std::vector
     rates[0] = rates[which];
     amplitudes[0] = amplitudes[which];
   }
+  const bool is_long_alone = terms == kLong && noise.variances[0] == 0.0;
+  if (is_long_alone) {
+    rates.head<kLong>() = rates.tail<kLong>().eval();
+    amplitudes.head<kLong>() = amplitudes.tail<kLong>().eval();
+  }
   set_decays(rates, steps);
-  terms == 1 ? factorise<1>(variance, amplitudes) : factorise<kTerms>(variance, amplitudes);
+  if (terms == 1)
+    factorise<1>(variance, amplitudes);
+  else if (is_long_alone)
+    factorise<kLong>(variance, amplitudes);
+  else
+    factorise<kTerms>(variance, amplitudes);
 }
 
 void MixtureFactor::set_decays(const Terms& rates, const std::vector<double>& steps) {
@@ -88,6 +99,10 @@ void MixtureFactor::set_decays(const Terms& rates, const std::vector<double>& st
   std::map<double, std::uint32_t> known;
   decay_of_.reserve(steps.size());
   for (const double step : steps) {
+    if (!decay_of_.empty() && step == steps[decay_of_.size() - 1]) {
+      decay_of_.push_back(decay_of_.back());
+      continue;
+    }
     const auto [found, is_new] =
         known.try_emplace(step, static_cast<std::uint32_t>(decays_.size()));
     if (is_new) decays_.emplace_back((-step * rates).exp());
@@ -104,7 +119,7 @@ void MixtureFactor::factorise(double variance, const Terms& all) {
   const Vector amplitudes = all.head<Count>();
   Square state = Square::Zero(), decays = Square::Zero();
   for (Eigen::Index row = 0; row < rows(); ++row) {
-    if (row == 0 || !decay_of_.empty()) {
+    if (row == 0 || (!decay_of_.empty() && &decay(row) != &decay(row - 1))) {
       const Vector once = decay(row).head<Count>();
       decays = once * once.transpose();
     }
@@ -166,6 +181,8 @@ template <MixtureFactor::Direction direction>
 void MixtureFactor::filter_all(Eigen::Ref<Eigen::MatrixXd> rows) const {
   if (count_ == 1)
     filter<1, direction>(rows);
+  else if (count_ == kLong)
+    filter<kLong, direction>(rows);
   else
     filter<kTerms, direction>(rows);
 }

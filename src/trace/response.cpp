@@ -38,8 +38,10 @@ ParameterResponse::ParameterResponse(const Solution& fit, Eigen::Index parameter
   const Eigen::MatrixXd design =
       design_of(fit, own_bases(fit.linear.observations, fit.noise, free));
   // The columns are beside the levelling, so their weights take it out of a signal as well.
-  weights_ = fit.parameters.jacobian.row(parameter) *
-             Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(design).pseudoInverse();
+  const Eigen::VectorXd row = fit.parameters.jacobian.row(parameter).transpose();
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition(design);
+  const Eigen::VectorXd weights = decomposition.transpose().solve(row);
+  weights_ = weights.transpose();
 }
 
 double ParameterResponse::to(Eigen::VectorXd signal) const {

@@ -82,13 +82,15 @@ double scaled_position(const Stations& stations, Eigen::Index i) {
   return high > low ? 2.0 * (stations.radius(i) - low) / (high - low) - 1.0 : 0.0;
 }
 
+using Legendre = std::array<double, kMostAngleDegree + 1>;
+
 /// P_0 to P_degree at τ, the time of a reading along the slide from -1 to 1.
 /// Recurrence of Abramowitz and Stegun, Table 22.7.
-std::array<double, kMostAngleDegree + 1> legendre(const Stations& stations, double position) {
+Legendre legendre(const Stations& stations, double position) {
   static constexpr double kRise[] = {1.0, 3.0 / 2.0, 5.0 / 3.0, 7.0 / 4.0, 9.0 / 5.0};
   static constexpr double kFall[] = {0.0, 1.0 / 2.0, 2.0 / 3.0, 3.0 / 4.0, 4.0 / 5.0};
   const bool back = stations.setup().cut_direction == CutDirection::inward;
-  std::array<double, kMostAngleDegree + 1> p{1.0, back ? -position : position};
+  Legendre p{1.0, back ? -position : position};
   for (int d = 1; d < kMostAngleDegree; ++d)
     p[d + 1] = kRise[d] * p[1] * p[d] - kFall[d] * p[d - 1];
   return p;
@@ -136,15 +138,15 @@ class SpindleRunout : public LinearEffect {
 
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
-    fill(stations, shape, out, [](Eigen::Index, double, int, double& /*c*/, double& /*s*/) {});
+    fill(stations, shape, out,
+         [](Eigen::Index, const Legendre&, int, double& /*c*/, double& /*s*/) {});
   }
 
   void derivatives(const Stations& stations, std::span<const double> shape, int which,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
-    const auto slope_of = [&](Eigen::Index i, double position, int h, double& cosine,
+    const auto slope_of = [&](Eigen::Index i, const Legendre& p, int h, double& cosine,
                               double& sine) {
-      const double turns =
-          which == 0 ? stations.time(i) / kMinute : legendre(stations, position)[which + 1];
+      const double turns = which == 0 ? stations.time(i) / kMinute : p[which + 1];
       const double angle = 2.0 * kPi * h * turns;
       const double slope = -angle * sine;
       sine = angle * cosine;
@@ -158,10 +160,13 @@ class SpindleRunout : public LinearEffect {
                                             std::span<const double> shape) const override {
     const VariableRange time = range_of(stations, time_of);
     double low = INFINITY, high = -INFINITY;
-    double before = turn(stations, shape, 0, scaled_position(stations, 0));
+    const auto turn_at = [&](Eigen::Index i) {
+      return turn(stations, shape, i, polynomials(stations, shape, scaled_position(stations, i)));
+    };
+    double before = turn_at(0);
     for (Eigen::Index i = 1; i < stations.size(); ++i) {
       const double passed = stations.time(i) - stations.time(i - 1);
-      const double now = turn(stations, shape, i, scaled_position(stations, i));
+      const double now = turn_at(i);
       const double rate = (now - before) / passed;
       before = now;
       low = std::min(low, rate * time.extent());
@@ -190,12 +195,16 @@ class SpindleRunout : public LinearEffect {
   }
 
  private:
+  // Of a drift; at a constant speed nothing asks for them.
+  static Legendre polynomials(const Stations& stations, std::span<const double> shape,
+                              double position) {
+    return shape.size() == 1 ? Legendre{} : legendre(stations, position);
+  }
+
   // κ: the angle of the spindle in turns.
   static double turn(const Stations& stations, std::span<const double> shape, Eigen::Index i,
-                     double position) {
+                     const Legendre& p) {
     double turns = stations.time(i) * shape[0] / kMinute;
-    if (shape.size() == 1) return turns;
-    const auto p = legendre(stations, position);
     for (std::size_t d = 1; d < shape.size(); ++d) turns += shape[d] * p[d + 1];
     return turns;
   }
@@ -207,12 +216,13 @@ class SpindleRunout : public LinearEffect {
     Phasor phasor;
     for (Eigen::Index i = 0; i < stations.size(); ++i) {
       const double position = scaled_position(stations, i);
-      phasor.turn_to(2.0 * kPi * turn(stations, shape, i, position));
+      const Legendre p = polynomials(stations, shape, position);
+      phasor.turn_to(2.0 * kPi * turn(stations, shape, i, p));
       const double c = phasor.cosine(), s = phasor.sine();
       const double cosines[] = {c, (c - s) * (c + s)}, sines[] = {s, 2.0 * s * c};
       for (int h = 1; h <= kHarmonics; ++h) {
         double cosine = cosines[h - 1], sine = sines[h - 1];
-        line(i, position, h, cosine, sine);
+        line(i, p, h, cosine, sine);
         out.row(i).segment<4>(4 * (h - 1)) << cosine, sine, position * cosine, position * sine;
       }
     }
