@@ -18,7 +18,8 @@ namespace slideway {
 /// Writes records as JSON: keys in the order of the lists, doubles in their shortest form that
 /// reads back (with as many digits as the field says), numbers of a list on one line, null for what
 /// is absent or not finite. Bytes that are no UTF-8 are replaced. A brief one is on one line, has
-/// the members and digits of brief_digits(), and none that is absent, empty, false or a count of 0.
+/// the members and digits of brief_digits(), and no number, text or truth that is null, empty, false
+/// or a count of 0.
 class JsonWriter {
  public:
   enum class Layout { one_line, indented, brief };
@@ -103,10 +104,10 @@ class JsonWriter {
   static bool is_nothing(const T& value) {
     if constexpr (std::integral<T>)
       return value == T{};
-    else if constexpr (requires { value.empty(); })
+    else if constexpr (std::convertible_to<T, std::string_view>)
       return value.empty();
     else if constexpr (requires { value.has_value(); })
-      return !value.has_value();
+      return !Recorded<typename T::value_type> && !value.has_value();
     else
       return false;
   }

@@ -61,8 +61,9 @@ Json schema_of(const ContractType& type) {
 
 /// Whether a brief report may lack the member.
 bool may_be_absent(const ContractType& type) {
-  return type.or_null || (type.kind != Kind::number && type.kind != Kind::one_of &&
-                          type.kind != Kind::tuple && type.kind != Kind::record);
+  const bool is_zero_absent = type.kind == Kind::boolean || type.kind == Kind::count ||
+                              type.kind == Kind::integer || type.kind == Kind::text;
+  return is_zero_absent || (type.or_null && type.kind != Kind::record);
 }
 
 /// An object with the members of a record.

@@ -16,8 +16,8 @@ std::string json_report(const Analysis& analysis);
 std::string json_line(const Analysis& analysis);
 
 /// What a table of many reports shows, on one line: schema "slideway.brief/1"
-/// (docs/brief.schema.json). Keys and units are those of the report; a member that is null, empty,
-/// false or a count of 0 is absent.
+/// (docs/brief.schema.json). Keys and units are those of the report; lists and objects are always
+/// there; a number, text or truth that is null, empty, false or a count of 0 is absent.
 std::string json_brief(Analysis analysis);
 
 /// A report as one self-contained page; the same report always makes the same page. One without
