@@ -18,8 +18,8 @@ namespace slideway {
 /// Writes records as JSON: keys in the order of the lists, doubles in their shortest form that
 /// reads back (with as many digits as the field says), numbers of a list on one line, null for what
 /// is absent or not finite. Bytes that are no UTF-8 are replaced. A brief one is on one line, has
-/// the members and digits of brief_digits(), and no number, text or truth that is null, empty, false
-/// or a count of 0.
+/// the members and digits of brief_digits(), and no number, text or truth that is null, empty,
+/// false or a count of 0.
 class JsonWriter {
  public:
   enum class Layout { one_line, indented, brief };
