@@ -21,6 +21,7 @@ set(NOT_AN_EFFECT
     include/slideway/identify/result_fields.hpp:squareness
     include/slideway/identify/result_fields.hpp:straightness
     src/report/html_pictures.cpp:straightness
+    src/report/html_brief.cpp:squareness src/report/html_brief.cpp:straightness
     src/serve/results_view.cpp:squareness src/serve/results_view.cpp:straightness
     # [tolerance], what is held against a limit
     src/identify/conformity.cpp:squareness src/identify/conformity.cpp:straightness

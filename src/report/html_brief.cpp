@@ -45,11 +45,9 @@ Html results(const Node& report) {
                    {"unit", HtmlColumn::text}});
   const Node model = report["final"];
   if (model.is_null()) return {};
-  if (model.has("straightness"))
-    table.add(
-        {"Straightness " + html_symbol("E_ZX") + ", end-point line",
-         html_value(quantity(model["straightness"], "end_point_um", "expanded_uncertainty_um")),
-         "µm"});
+  if (const Node form = model["straightness"]; !form.is_null())
+    table.add({"Straightness " + html_symbol("E_ZX") + ", end-point line",
+               html_value(quantity(form, "end_point_um", "expanded_uncertainty_um")), "µm"});
   if (const Node check = report["crosscheck"]["squareness"]; !check.is_null())
     table.add(
         {"Squareness", html_value(quantity(check, "fit_rad", "fit_U_rad"), kMicroradian), "µm/m"});
@@ -92,7 +90,7 @@ Html profiles(const Node& report) {
   };
   for (const Node& input : report["inputs"].entries()) {
     Html left = "–";
-    if (report.has("final"))
+    if (!report["final"].is_null())
       for (const Node& each : report["final"]["residuals"].entries())
         if (each["profile"].text() == input["name"].text()) left = size(each);
     table.add({input["name"].text(), input["file"].text(), size(input), left});
@@ -110,7 +108,7 @@ std::string html_brief(const Node& report) {
     for (const std::string& note : texts(trace["notes"])) notes.push_back(with_titles(note));
     found = accepted(trace) + limits(trace);
   }
-  if (report.has("final"))
+  if (!report["final"].is_null())
     for (const std::string& note : texts(report["final"]["notes"])) notes.push_back(note);
   const std::string title = report.has("title") ? report["title"].text() : "Carriage errors";
   return page_of(title, "brief report of a batch · slideway " + report["version"].text(),

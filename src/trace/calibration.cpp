@@ -1,6 +1,7 @@
 #include "calibration.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 
 #include "slideway/base/random.hpp"
@@ -10,6 +11,7 @@ namespace slideway {
 namespace {
 
 constexpr std::uint64_t kNullSeed = 20120712;
+constexpr double kEuler = 0.5772156649015329;
 
 /// Which of the noises the residual allows has this share of their probabilities below it.
 std::size_t drawn(const std::vector<Noise::Alternative>& alternatives, double share) {
@@ -37,14 +39,64 @@ void colour(const Noise& noise, const std::vector<double>& shares, const Eigen::
   }
 }
 
+/// Sample L-moments (Hosking 1990, J. R. Stat. Soc. B 52:105).
+struct LMoments {
+  double mean = 0.0, scale = 0.0, skewness = 0.0;
+
+  explicit LMoments(const std::vector<double>& sorted) {
+    const auto n = static_cast<double>(sorted.size());
+    double b0 = 0.0, b1 = 0.0, b2 = 0.0;
+    for (double i = 0.0; const double value : sorted) {
+      b0 += value / n;
+      b1 += value * i / (n * (n - 1.0));
+      b2 += value * i * (i - 1.0) / (n * (n - 1.0) * (n - 2.0));
+      i += 1.0;
+    }
+    mean = b0;
+    scale = 2.0 * b1 - b0;
+    skewness = (6.0 * b2 - 6.0 * b1 + b0) / scale;
+  }
+};
+
 }  // namespace
 
 double Calibration::p_value(double penalised_gain) const {
-  return -std::expm1(-std::exp(-(penalised_gain - location) / scale));
+  const double reduced = (penalised_gain - location) / scale;
+  const double beyond = shape == 0.0            ? std::exp(-reduced)
+                        : shape * reduced < 1.0 ? std::pow(1.0 - shape * reduced, 1.0 / shape)
+                                                : INFINITY;
+  return -std::expm1(-beyond);
 }
 
 double Calibration::threshold(double significance) const {
-  return location - scale * std::log(-std::log1p(-significance));
+  const double beyond = -std::log1p(-significance);
+  return location +
+         scale * (shape == 0.0 ? -std::log(beyond) : (1.0 - std::pow(beyond, shape)) / shape);
+}
+
+Calibration fit_extremes(std::vector<double> gains) {
+  // Hosking, Wallis and Wood (1985), Technometrics 27:251, Eqs. (14) to (16) and the test of k = 0.
+  constexpr double kVariance = 0.5633;  // of the estimate of k under Gumbel, times n
+  constexpr double kRefuted = -1.645;   // one-sided, 5 %
+  constexpr double kLeastScale = 1e-6;
+  std::ranges::sort(gains);
+  const auto n = static_cast<double>(gains.size());
+  const LMoments moments(gains);
+  const double c = 2.0 / (3.0 + moments.skewness) - std::log(2.0) / std::log(3.0);
+  const double k = c * (7.8590 + 2.9554 * c);
+  Calibration out;
+  if (k * std::sqrt(n / kVariance) < kRefuted) {
+    const double gamma = std::tgamma(1.0 + k);
+    out.shape = k;
+    out.scale = std::max(moments.scale * k / (gamma * (1.0 - std::exp2(-k))), kLeastScale);
+    out.location = moments.mean - out.scale * (1.0 - gamma) / k;
+    return out;
+  }
+  double squares = 0.0;
+  for (const double gain : gains) squares += (gain - moments.mean) * (gain - moments.mean);
+  out.scale = std::max(std::sqrt(6.0 * squares / (n - 1.0)) / kPi, kLeastScale);
+  out.location = moments.mean - kEuler * out.scale;
+  return out;
 }
 
 Eigen::MatrixXd null_residuals(const Whitened& data, const Gates& gates) {
@@ -66,17 +118,9 @@ Eigen::MatrixXd null_residuals(const Whitened& data, const Gates& gates) {
 
 Calibration calibrate(const Whitened& data, const Candidates& candidates, const Gates& gates,
                       const std::function<void(double)>& progress) {
-  const auto resamples = static_cast<Eigen::Index>(gates.resamples);
   const Eigen::VectorXd gains =
       largest_gains(data, candidates, null_residuals(data, gates), progress);
-  constexpr double kEuler = 0.5772156649015329;
-  const double mean = gains.mean();
-  const double variance =
-      (gains.array() - mean).square().sum() / static_cast<double>(resamples - 1);
-  Calibration out;
-  out.scale = std::max(std::sqrt(6.0 * variance) / kPi, 1e-6);
-  out.location = mean - kEuler * out.scale;
-  return out;
+  return fit_extremes({gains.begin(), gains.end()});
 }
 
 }  // namespace slideway

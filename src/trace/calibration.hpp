@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "search.hpp"
 #include "slideway/identify/gates.hpp"
 
@@ -7,13 +9,19 @@ namespace slideway {
 
 /// How large the best of all atoms gets where nothing is missing: the parametric bootstrap of the
 /// sup statistic (the largest penalised gain over all candidates and shapes), its tail a Gumbel
-/// distribution. A p-value from it knows the whole search.
+/// distribution, or an extreme-value distribution of heavier tail where the resamples refute that
+/// one: noise of a slope that is not known gives now and then far more than the rest. A p-value
+/// from it knows the whole search.
 struct Calibration {
   double location = 0.0, scale = 1.0;
+  double shape = 0.0;  // k of Hosking, Wallis and Wood (1985), not positive; 0: Gumbel
   [[nodiscard]] double p_value(double penalised_gain) const;
   /// Penalised gain that noise exceeds with this probability.
   [[nodiscard]] double threshold(double significance) const;
 };
+
+/// The distribution of largest gains, at least three of them.
+Calibration fit_extremes(std::vector<double> gains);
 
 /// White residuals of data in which nothing is missing, outside the model's span. The noise of each
 /// is drawn from what its estimate leaves open, and made white with the estimate itself.

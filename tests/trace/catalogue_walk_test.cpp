@@ -160,7 +160,7 @@ constexpr NumericKey kNumericKeys[] = {
     {"profile", "nose_radius_mm"}, {"profile", "standard_uncertainty"},
     {"machine", "span_mm"},        {"machine", "spindle_position_mm"},
     {"machine", "overhang_mm"},    {"profile", "overhang_mm"}};
-constexpr double kExtremes[] = {1e-300, 1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9, 1e18, 1e300};
+constexpr double kExtremes[] = {1e-300, 1e-9, 1e-3, 1e3, 1e9, 1e300};
 
 TEST_P(CatalogueLoop, EveryNumberAtItsExtremesGetsAnAnswer) {
   for (const auto& [table, key] : kNumericKeys)
