@@ -14,7 +14,7 @@ namespace slideway {
 namespace {
 
 constexpr double kPieces = 50.0;  // of the travel, where no step is asked for
-constexpr double kMost = 5000.0;
+constexpr double kMostPositions = 5000.0;
 
 /// The form of the report at any position of its travel: a cubic through the four points about it.
 class Form {
@@ -46,9 +46,9 @@ std::vector<double> evenly(const TravelSummary& travel, double step_mm) {
   if (!(step_mm >= 0.0) || std::isinf(step_mm))
     throw UsageError("step: must be above 0 mm; 0 is a fiftieth of the travel");
   const double pieces = step_mm > 0.0 ? std::ceil(length / step_mm * (1.0 - 1e-12)) : kPieces;
-  if (!(pieces < kMost))
+  if (!(pieces < kMostPositions))
     throw UsageError("step: " + significant(step_mm, 3) + " mm makes more than " +
-                     significant(kMost, 4) + " positions of " + significant(length, 6) +
+                     significant(kMostPositions, 4) + " positions of " + significant(length, 6) +
                      " mm of travel");
   std::vector<double> positions;
   for (double i = 0.0; i <= pieces; i += 1.0)

@@ -14,7 +14,7 @@
 namespace slideway {
 namespace {
 
-using Kind = ContractType::Kind;
+using Described = ContractType::Kind;
 
 template <typename T>
 constexpr bool kIsOptional = false;
@@ -34,7 +34,7 @@ constexpr bool kIsMap<std::map<std::string, T>> = true;
 template <typename T>
 constexpr bool kIsMap<std::vector<std::pair<std::string, T>>> = true;
 
-ContractType made_of(Kind kind, std::vector<ContractType> of) {
+ContractType made_of(Described kind, std::vector<ContractType> of) {
   return {.kind = kind, .of = std::move(of)};
 }
 
@@ -74,24 +74,24 @@ class RecordList {
     if constexpr (kIsOptional<T>) {
       return nullable(type_of<typename T::value_type>());
     } else if constexpr (std::is_same_v<T, bool>) {
-      return {.kind = Kind::boolean};
+      return {.kind = Described::boolean};
     } else if constexpr (std::is_floating_point_v<T>) {
-      return {.kind = Kind::number};
+      return {.kind = Described::number};
     } else if constexpr (std::is_unsigned_v<T>) {
-      return {.kind = Kind::count};
+      return {.kind = Described::count};
     } else if constexpr (std::is_integral_v<T>) {
-      return {.kind = Kind::integer};
+      return {.kind = Described::integer};
     } else if constexpr (Named<T>) {
-      return {.kind = Kind::one_of, .texts = {kTexts<T>.begin(), kTexts<T>.end()}};
+      return {.kind = Described::one_of, .texts = {kTexts<T>.begin(), kTexts<T>.end()}};
     } else if constexpr (kIsMap<T>) {
-      return made_of(Kind::map, {type_of<typename T::value_type::second_type>()});
+      return made_of(Described::map, {type_of<typename T::value_type::second_type>()});
     } else if constexpr (kIsList<T>) {
-      return made_of(Kind::list, {type_of<typename T::value_type>()});
+      return made_of(Described::list, {type_of<typename T::value_type>()});
     } else if constexpr (Recorded<T>) {
       add<T>();
-      return {.kind = Kind::record, .record = kRecord<T>.name};
+      return {.kind = Described::record, .record = kRecord<T>.name};
     } else if constexpr (std::is_same_v<T, std::string>) {
-      return {.kind = Kind::text};
+      return {.kind = Described::text};
     } else {
       return tuple(static_cast<T*>(nullptr));
     }
@@ -99,7 +99,7 @@ class RecordList {
 
   template <typename... T>
   ContractType tuple(const std::tuple<T...>* /*type*/) {
-    return made_of(Kind::tuple, {type_of<T>()...});
+    return made_of(Described::tuple, {type_of<T>()...});
   }
 
   std::vector<ContractRecord> records_;

@@ -198,14 +198,14 @@ struct Plot::Legend {
 };
 
 Plot::Legend Plot::legend() const {
-  constexpr double kSample = 26.0, kGap = 18.0, kLetter = 6.3;
+  constexpr double kSample = 26.0, kSpace = 18.0, kLetter = 6.3;
   Legend out;
   double at = kLeft, row = 12.0;
   const auto add = [&](const Line& line) {
     if (line.name.empty()) return;
     const double length =
-        kSample + 6.0 + kLetter * static_cast<double>(code_points(line.name)) + kGap;
-    if (!out.entries.empty() && at + length - kGap > width_ - kRight) {
+        kSample + 6.0 + kLetter * static_cast<double>(code_points(line.name)) + kSpace;
+    if (!out.entries.empty() && at + length - kSpace > width_ - kRight) {
       at = kLeft;
       row += kLegendRow;
     }

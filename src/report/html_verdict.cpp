@@ -36,7 +36,7 @@ Html squareness_card(const FittedParameter& p) {
          small("± U, " + coverage_factor_of(p) + "; positive: the face falls from centre to rim");
 }
 
-Html unseen_line(const Summary& summary) {
+Html unseen_paragraph(const Summary& summary) {
   if (summary.unseen.empty()) return {};
   return element("br") + small("what these data do not show may move it " + Html(summary.unseen));
 }
@@ -77,7 +77,7 @@ Html all_cards(const Analysis& analysis, const Summary& summary) {
     for (const FittedParameter& p : result.final->parameters)
       if (is_squareness(p))
         facts.emplace_back("Squareness " + html_symbol(p.symbol),
-                           squareness_card(p) + unseen_line(summary));
+                           squareness_card(p) + unseen_paragraph(summary));
     if (result.final->straightness)
       facts.emplace_back("Straightness error " + html_symbol("E_ZX"),
                          straightness_card(*result.final->straightness));

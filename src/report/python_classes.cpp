@@ -2,12 +2,13 @@
 #include <set>
 
 #include "contract_types.hpp"
+#include "slideway/base/text.hpp"
 #include "slideway/report/contract.hpp"
 
 namespace slideway {
 namespace {
 
-using Kind = ContractType::Kind;
+using Described = ContractType::Kind;
 
 constexpr std::string_view kHead =
     R"py("""The report as dataclasses, key for key as the program's ``--json`` has it.
@@ -49,12 +50,6 @@ std::string folded(const std::string& type, std::size_t columns) {
          "\n    " + type.substr(close);
 }
 
-std::string joined(const std::vector<std::string>& parts) {
-  std::string text;
-  for (const std::string& part : parts) text.append(text.empty() ? "" : ", ").append(part);
-  return text;
-}
-
 /// Classes, each behind those it is made of.
 class ClassMaker {
  public:
@@ -89,26 +84,26 @@ class ClassMaker {
 
   std::string type_unless_none(const ContractType& type) {
     switch (type.kind) {
-      case Kind::any:
+      case Described::any:
         return "Any";
-      case Kind::boolean:
+      case Described::boolean:
         return "bool";
-      case Kind::number:
+      case Described::number:
         return "float";
-      case Kind::count:
-      case Kind::integer:
+      case Described::count:
+      case Described::integer:
         return "int";
-      case Kind::text:
+      case Described::text:
         return "str";
-      case Kind::one_of:
+      case Described::one_of:
         return "Literal[" + quoted(type.texts) + "]";
-      case Kind::list:
+      case Described::list:
         return list_of(type.of[0]);
-      case Kind::map:
+      case Described::map:
         return "dict[str, " + type_of(type.of[0]) + "]";
-      case Kind::tuple:
+      case Described::tuple:
         return "tuple[" + types_of(type.of) + "]";
-      case Kind::record:
+      case Described::record:
         break;
     }
     add(*std::ranges::find(records_, type.record, &ContractRecord::name));
@@ -116,8 +111,8 @@ class ClassMaker {
   }
 
   std::string list_of(const ContractType& type) {
-    if (type.kind == Kind::number && !type.or_null) return "NDArray[np.float64]";
-    if (type.kind == Kind::count && !type.or_null) return "NDArray[np.int64]";
+    if (type.kind == Described::number && !type.or_null) return "NDArray[np.float64]";
+    if (type.kind == Described::count && !type.or_null) return "NDArray[np.int64]";
     return "list[" + type_of(type) + "]";
   }
 

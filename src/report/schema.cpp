@@ -8,7 +8,7 @@
 namespace slideway {
 namespace {
 
-using Kind = ContractType::Kind;
+using Described = ContractType::Kind;
 
 Json schema_of(const ContractType& type);
 
@@ -18,30 +18,30 @@ Json all_of(const std::vector<ContractType>& types) {
 
 Json schema_unless_null(const ContractType& type) {
   switch (type.kind) {
-    case Kind::boolean:
+    case Described::boolean:
       return Json::object({{"type", "boolean"}});
-    case Kind::number:  // null: not finite
+    case Described::number:  // null: not finite
       return Json::object({{"type", {"number", "null"}}});
-    case Kind::count:
+    case Described::count:
       return Json::object({{"type", "integer"}, {"minimum", 0}});
-    case Kind::integer:
+    case Described::integer:
       return Json::object({{"type", "integer"}});
-    case Kind::text:
+    case Described::text:
       return Json::object({{"type", "string"}});
-    case Kind::one_of:
+    case Described::one_of:
       return Json::object({{"enum", type.texts}});
-    case Kind::list:
+    case Described::list:
       return Json::object({{"type", "array"}, {"items", schema_of(type.of[0])}});
-    case Kind::map:
+    case Described::map:
       return Json::object({{"type", "object"}, {"additionalProperties", schema_of(type.of[0])}});
-    case Kind::tuple:
+    case Described::tuple:
       return Json::object({{"type", "array"},
                            {"prefixItems", all_of(type.of)},
                            {"minItems", type.of.size()},
                            {"maxItems", type.of.size()}});
-    case Kind::record:
+    case Described::record:
       return Json::object({{"$ref", "#/$defs/" + std::string(type.record)}});
-    case Kind::any:
+    case Described::any:
       break;
   }
   return Json::object();
@@ -50,9 +50,9 @@ Json schema_unless_null(const ContractType& type) {
 Json schema_of(const ContractType& type) {
   Json schema = schema_unless_null(type);
   if (!type.or_null) return schema;
-  if (type.kind == Kind::one_of)
+  if (type.kind == Described::one_of)
     schema["enum"].push_back(nullptr);
-  else if (type.kind == Kind::record)
+  else if (type.kind == Described::record)
     return Json::object({{"anyOf", Json::array({schema, Json::object({{"type", "null"}})})}});
   else if (!schema["type"].is_array())
     schema["type"] = Json::array({schema["type"], "null"});
@@ -61,9 +61,9 @@ Json schema_of(const ContractType& type) {
 
 /// Whether a brief report may lack the member.
 bool may_be_absent(const ContractType& type) {
-  const bool is_zero_absent = type.kind == Kind::boolean || type.kind == Kind::count ||
-                              type.kind == Kind::integer || type.kind == Kind::text;
-  return is_zero_absent || (type.or_null && type.kind != Kind::record);
+  const bool is_zero_absent = type.kind == Described::boolean || type.kind == Described::count ||
+                              type.kind == Described::integer || type.kind == Described::text;
+  return is_zero_absent || (type.or_null && type.kind != Described::record);
 }
 
 /// An object with the members of a record.

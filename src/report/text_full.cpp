@@ -14,8 +14,8 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kLargest = 3;  // correlations listed
-constexpr double kBetter = 0.05;     // a coefficient at a lag worth telling
+constexpr std::size_t kCorrelationsListed = 3;  // correlations listed
+constexpr double kBetter = 0.05;                // a coefficient at a lag worth telling
 
 std::string text(auto value) { return std::string(text_of(value)); }
 
@@ -75,7 +75,7 @@ std::string candidate_correlations(std::vector<CandidateCorrelation> pairs) {
   if (pairs.empty()) return "";
   TextTable table({"effect", "effect", "profile", "r"},
                   {TextColumn::effect, TextColumn::effect, TextColumn::name, TextColumn::number});
-  for (std::size_t i = 0; i < std::min(kLargest, pairs.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kCorrelationsListed, pairs.size()); ++i)
     table.add({effect_title(pairs[i].a), effect_title(pairs[i].b), pairs[i].profile,
                coefficient(pairs[i].coefficient)});
   return item("Largest correlations of the candidates among themselves:") + table.text();
@@ -143,7 +143,7 @@ std::string parameter_correlations(const ModelResult& model) {
     return std::abs(std::get<2>(a)) > std::abs(std::get<2>(b));
   });
   std::vector<std::string> out;
-  for (std::size_t i = 0; i < std::min(kLargest, pairs.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kCorrelationsListed, pairs.size()); ++i)
     out.push_back(std::get<0>(pairs[i]) + " and " + std::get<1>(pairs[i]) + " " +
                   coefficient(std::get<2>(pairs[i])));
   return out.empty() ? "" : item("Largest correlations of the estimates: " + joined(out) + ".");
