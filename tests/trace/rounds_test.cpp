@@ -7,7 +7,7 @@
 #include "slideway/base/random.hpp"
 #include "slideway/trace/analysis.hpp"
 
-namespace slideway {
+namespace slideway::rounds_test {
 namespace {
 
 constexpr std::size_t kValues = 300;
@@ -81,4 +81,4 @@ INSTANTIATE_TEST_SUITE_P(Noise, Rounds,
                                            NoiseKind::steps));
 
 }  // namespace
-}  // namespace slideway
+}  // namespace slideway::rounds_test
