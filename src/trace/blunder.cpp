@@ -237,6 +237,21 @@ class Finder {
             static_cast<double>(observation.values.size() - observation.left_out())};
   }
 
+  /// The priors but those of effects of one profile: what its own samples say of them is wrong with
+  /// its values.
+  [[nodiscard]] Linearisation priors_beside(const std::string& profile) const {
+    std::vector<Eigen::Index> kept;
+    Eigen::Index row = 0;
+    for (const ModelTerm& term : model_.terms)
+      for (std::size_t k = 0; k < term.priors.size(); ++k, ++row)
+        if (term.profiles != std::vector<std::string>{profile}) kept.push_back(row);
+    for (; row < fit_.linear.prior_rows.rows(); ++row) kept.push_back(row);
+    Linearisation out;
+    out.prior_rows = fit_.linear.prior_rows(kept, Eigen::all);
+    out.prior_residuals = fit_.linear.prior_residuals(kept);
+    return out;
+  }
+
   void try_profile(std::size_t i, std::vector<Blunder>& out) const {
     const Gates& gates = model_.gates;
     const Noise* const of_sister = sister(i);
@@ -245,8 +260,9 @@ class Finder {
     std::vector<std::size_t> all_but_it;
     for (std::size_t j = 0; j < noise_.size(); ++j)
       if (j != i) all_but_it.push_back(j);
-    const SubsetEstimate others(fit_.linear, compressed_, all_but_it, gates.rank_tolerance);
     const Profile& profile = *fit_.linear.observations[i]->profile;
+    const SubsetEstimate others(priors_beside(profile.name), compressed_, all_but_it,
+                                gates.rank_tolerance);
     const std::vector<Hypothesis> list = hypotheses(profile, other_lengths(i));
     Observation observation = recorded(i, list);
     const Prediction as_it_is = prediction(observation, others, noise);

@@ -89,5 +89,21 @@ TEST(FeedMarks, OfAnOrdinaryFeedAreTakenFromTheSamples) {
   }
 }
 
+// What the samples of a cut say of its marks is in its unit, too.
+TEST(FeedMarks, DoNotHideThatACutIsInAnotherUnit) {
+  for (const double factor : {1e-3, 1e3}) {
+    Problem problem = problem_of();
+    problem.low_band.level = 2;
+    std::vector<Profile> profiles = read(kOrdinary, 0.8, 1);
+    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    for (double& value : profiles[1].values) value *= factor;
+    const Closed result = closed(problem, profiles);
+    SCOPED_TRACE(story(result));
+    ASSERT_THAT(result.blunders, SizeIs(1));
+    EXPECT_EQ(result.blunders[0].profile, "cut2");
+    EXPECT_EQ(result.blunders[0].what, factor < 1.0 ? BlunderKind::metre : BlunderKind::per_metre);
+  }
+}
+
 }  // namespace
 }  // namespace slideway
