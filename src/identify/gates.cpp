@@ -95,6 +95,10 @@ std::span<const Gate> gate_table() {
       Gate{"longest_memory", &Gates::longest_memory, "trace lengths", 1.0, 100.0,
            "Longest memory of the noise.",
            "at 4 a slope is within 5 % of its uncertainty under a random walk"},
+      Gate{"longest_texture", &Gates::longest_texture, "trace lengths", 0.01, 0.5,
+           "Longest correlation of the texture. Longer ones are memory; what repeats in repeated "
+           "traces and is longer is form.",
+           "a trace then holds eight lengths of it, enough to tell it from form"},
       Gate{"noise_likeness", &Gates::noise_likeness, "", 0.05, 5.0,
            "Standard deviation of ln(size of the noise) between profiles that share its memory.",
            "cuts by one tool differ by a factor of 1.6; a hundred values outweigh it"},

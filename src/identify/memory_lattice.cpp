@@ -10,15 +10,14 @@ namespace slideway {
 namespace {
 
 // Finest steps: an eighth of a decade of g and h, a quarter of an octave of L, an eighth of α.
-constexpr int kSizes = 37;                 // 10^-2.5 ... 100
-constexpr int kLengths = 25;               // 1 ... 64 values
-constexpr int kSlopes = 17;                // 1 (1/f noise) ... 3 (more than a random walk, 2)
-constexpr double kLongestTexture = 0.125;  // of a trace
-constexpr int kSteepestAlone = 4;          // 1.5: alone, no profile goes to the unit root
-constexpr int kCoarse = 4;                 // finest steps of the first search
-constexpr double kPlausible = 6.0;         // of -2 ln probability: 5 % of the best
-constexpr double kAllowed = 14.0;          // of the same: 0.1 % of the best
-constexpr double kWorthNeighbours = 2.5;   // of the same: 30 % of the best
+constexpr int kSizes = 37;                // 10^-2.5 ... 100
+constexpr int kLengths = 25;              // 1 ... 64 values
+constexpr int kSlopes = 17;               // 1 (1/f noise) ... 3 (more than a random walk, 2)
+constexpr int kSteepestAlone = 4;         // 1.5: alone, no profile goes to the unit root
+constexpr int kCoarse = 4;                // finest steps of the first search
+constexpr double kPlausible = 6.0;        // of -2 ln probability: 5 % of the best
+constexpr double kAllowed = 14.0;         // of the same: 0.1 % of the best
+constexpr double kWorthNeighbours = 2.5;  // of the same: 30 % of the best
 
 double size_at(int index) { return std::pow(10.0, 0.125 * (index - 1) - 2.5); }
 double length_at(int index) { return std::exp2(0.25 * index); }
@@ -153,7 +152,7 @@ void PoolMemory::visit(const std::vector<MemoryPlace>& places, const Eigen::Vect
 
 bool PoolMemory::fits(const MemoryPlace& place) const {
   if (profiles_.size() == 1 && place.slope > kSteepestAlone) return false;
-  return place.texture == 0 || length_at(place.length) <= kLongestTexture * values_;
+  return place.texture == 0 || length_at(place.length) <= gates_.longest_texture * values_;
 }
 
 MemoryPlace PoolMemory::most_probable() const {

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "slideway/base/units.hpp"
 #include "slideway/identify/agreement.hpp"
@@ -81,43 +82,51 @@ struct StationSums {
 };
 
 /// Mean of a group's residuals at the stations of its first profile, a trace of its own.
-struct CommonTrace {
-  Observation observation;
-  Linearisation linear;
+Linearisation common_trace(const Linearisation& all, const std::vector<std::size_t>& group,
+                           const Gates& gates) {
+  const Observation& first = *all.observations[group.front()];
+  Linearisation out;
+  out.observations = {&first};
+  out.columns = {all.columns[group.front()]};
+  out.residuals = {StationSums(all, group, first, gates).mean()};
+  out.prior_rows.resize(0, all.prior_rows.cols());
+  out.prior_residuals.resize(0);
+  return out;
+}
 
-  CommonTrace(const Linearisation& all, const std::vector<std::size_t>& group, const Gates& gates)
-      : observation(*all.observations[group.front()]) {
-    linear.observations = {&observation};
-    linear.columns = {all.columns[group.front()]};
-    linear.residuals = {StationSums(all, group, observation, gates).mean()};
-    linear.prior_rows.resize(0, all.prior_rows.cols());
-    linear.prior_residuals.resize(0);
+/// Noise of the mean of each group: see check_repeats().
+std::vector<Noise> noises_of_means(const Linearisation& all,
+                                   const std::vector<std::vector<std::size_t>>& groups,
+                                   const std::vector<Linearisation>& common, const Gates& gates) {
+  Linearisation together = common.front();
+  for (const Linearisation& each : std::span(common).subspan(1)) {
+    together.observations.push_back(each.observations.front());
+    together.columns.push_back(each.columns.front());
+    together.residuals.push_back(each.residuals.front());
   }
-  CommonTrace(const CommonTrace&) = delete;
-  CommonTrace& operator=(const CommonTrace&) = delete;
-};
-
-/// Noise of the mean of a group: see check_repeats().
-Noise noise_of_mean(const Linearisation& all, const std::vector<std::size_t>& group,
-                    const CommonTrace& common, const Gates& gates) {
-  Noise out = noise_beside(common.linear, gates).front();
-  for (const std::size_t i : group) {
-    const auto deviation = deviation_from_repeats(all, i, gates);
-    if (!deviation) continue;
-    Noise noise = estimate_noise({&*deviation, 1}, Eigen::MatrixXd(0, 0), gates).front();
-    noise = noise.scaled(1.0 / static_cast<double>(group.size()));
-    if (noise.long_run_deviation() > out.long_run_deviation()) out = std::move(noise);
+  std::vector<Noise> out = noise_beside(together, gates);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto allow_for = [&](Noise noise) {
+      if (noise.long_run_deviation() > out[g].long_run_deviation()) out[g] = std::move(noise);
+    };
+    allow_for(noise_beside(common[g], gates).front());
+    for (const std::size_t i : groups[g])
+      if (const auto deviation = deviation_from_repeats(all, i, gates))
+        allow_for(estimate_noise({&*deviation, 1}, Eigen::MatrixXd(0, 0), gates)
+                      .front()
+                      .scaled(1.0 / static_cast<double>(groups[g].size())));
   }
   return out;
 }
 
-void set_common(const CommonTrace& common, const Gates& gates, PureErrorCheck& out) {
-  const Eigen::VectorXd& mean = common.linear.residuals.front();
+void set_common(const Linearisation& common, const Gates& gates, PureErrorCheck& out) {
+  const Eigen::VectorXd& mean = common.residuals.front();
+  const Observation& observation = *common.observations.front();
   const Eigen::MatrixXd slow =
       orthonormal(slow_cosines(mean.size(), slow_cosine_count(mean.size(), gates)));
   const double rms = (slow.transpose() * mean).norm() /
-                     std::sqrt(static_cast<double>(common.observation.low_band.samples()));
-  const bool height = common.observation.profile->setup.quantity == Quantity::height;
+                     std::sqrt(static_cast<double>(observation.low_band.samples()));
+  const bool height = observation.profile->setup.quantity == Quantity::height;
   (height ? out.common_um : out.common_urad) = rms / (height ? kMicrometre : kMicroradian);
 }
 
@@ -195,19 +204,24 @@ std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear,
 std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gates& gates) {
   Gates finer = gates;
   finer.values_per_cosine = gates.values_per_repeated_cosine;
-  finer.memory_odds = 0.0;  // what is slow and repeats is no noise, but for texture
+  finer.longest_memory = gates.longest_texture;  // texture of several lengths, no memory,
+  finer.memory_odds = 1.0;                       // where the fine band asks for it
+  const std::vector<std::vector<std::size_t>> groups = repeat_groups(linear, gates);
   std::vector<PureErrorCheck> out;
-  for (const std::vector<std::size_t>& group : repeat_groups(linear, gates)) {
-    const CommonTrace common(linear, group, gates);
-    const LackOfFit found =
-        lack_of_fit(common.linear, {noise_of_mean(linear, group, common, finer)}, finer);
+  if (groups.empty()) return out;
+  std::vector<Linearisation> common;
+  for (const std::vector<std::size_t>& group : groups)
+    common.push_back(common_trace(linear, group, gates));
+  const std::vector<Noise> noises = noises_of_means(linear, groups, common, finer);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const LackOfFit found = lack_of_fit(common[g], {noises[g]}, finer);
     PureErrorCheck check;
-    for (const std::size_t i : group)
+    for (const std::size_t i : groups[g])
       check.profiles.push_back(linear.observations[i]->profile->name);
     check.F = found.ratio;
     check.p_value = found.p_value;
     if (found.significant(gates)) check.verdict = RepeatFit::lack_of_fit;
-    set_common(common, finer, check);
+    set_common(common[g], finer, check);
     out.push_back(std::move(check));
   }
   return out;

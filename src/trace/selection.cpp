@@ -16,19 +16,11 @@ namespace {
 
 using Effects = std::vector<AcceptedEffect>;
 
-/// "" if the residuals, in the units of the report, fall; else why the effect does not help. Where
-/// there are heights and slopes, the mean of their relative squares counts.
+/// Why an effect does not help profiles that are held out; "": it does, or there are none.
 std::string worsens(const ModelResult& without, const ModelResult& with) {
-  double rise = 0.0;
-  const auto add = [&](const std::optional<double>& before, const std::optional<double>& after) {
-    if (before && after && *before > 0.0) rise += *after * *after / (*before * *before) - 1.0;
-  };
-  add(without.rms_um, with.rms_um);
-  add(without.rms_urad, with.rms_urad);
-  if (const auto before = holdout_rms_um(without); before && !(*holdout_rms_um(with) < *before))
-    return "it predicts the held-out profiles worse";
-  if (rise > 0.0) return "the residual rises with it";
-  return "";
+  const std::optional<double> before = holdout_rms_um(without);
+  return before && !(*holdout_rms_um(with) < *before) ? "it predicts the held-out profiles worse"
+                                                      : "";
 }
 
 class Selector {
@@ -154,11 +146,14 @@ class Selector {
 
   /// Why an effect of a set does not help beside the others; "": it does. A carriage's polynomial
   /// comes near everything smooth: it must outdo a process without a name.
-  /// It is asked in the low band of the search; in the declared one of what is there in the end.
+  /// It is asked in the low band of the search; of what is there in the end, profiles that are
+  /// held out are asked in the declared one.
   std::string reason_against(const Effects& effects, std::size_t which) {
     const Effects others = all_but(effects, which);
     std::string why =
         worsens(extender_.summary_of_search(others), extender_.summary_of_search(effects));
+    if (why.empty() && !statistics_.lowers_residual(effects, which))
+      why = "the residual rises with it";
     if (!why.empty() || !effects[which].candidate->term.effect->is_carriage()) return why;
     const double margin = statistics_.over_process(effects, which);
     if (margin < gates_.process_margin)

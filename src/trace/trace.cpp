@@ -187,6 +187,10 @@ class Loop {
       if (effect.candidate->raises_degree)
         out.notes.push_back(effect.name() + ": raised to degree " +
                             std::to_string(*effect.candidate->options.degree));
+      if (effect.round.after_rms_um > effect.round.before_rms_um)
+        out.notes.push_back(effect.name() +
+                            ": with it the noise has a longer memory, and the fit follows less of "
+                            "what is slow: the residual is larger");
       advise(selection, i, out);
     }
     if (const double radius = left_out_radius(extender_.extended(selection.effects).model);

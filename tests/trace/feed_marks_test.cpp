@@ -22,7 +22,9 @@ using Designs = std::array<Design, 3>;
 
 /// Radii of three cuts read at one place in 44 µm, noise of 20 nm. Where each cut began is not
 /// known to a groove.
-std::vector<Profile> read(const Designs& designs, double nose_mm, std::uint64_t seed) {
+/// `walk`: standard deviation of the steps of a random walk of the instrument, mm.
+std::vector<Profile> read(const Designs& designs, double nose_mm, std::uint64_t seed,
+                          double walk = 0.0) {
   const turning::Carriage carriage{{0.0, 0.0, 2e-7, -6e-9}, {}, turning::kFaceSquareness};
   std::vector<Profile> out;
   for (const Design& design : designs) {
@@ -42,6 +44,8 @@ std::vector<Profile> read(const Designs& designs, double nose_mm, std::uint64_t 
     for (int i = 0; i < 450; ++i) profile.positions.push_back(0.1 + 0.0437 * i);
     RandomStream random(seed, profile.name);
     profile.values = turning::trace(face, profile.positions, stylus, random);
+    double drift = 0.0;
+    for (double& value : profile.values) value += drift += walk * random.normal();
     Setup& setup = profile.setup;
     setup.feed_mm_per_min = design.feed;
     setup.spindle_rpm = cut.spindle_rpm;
@@ -86,6 +90,20 @@ TEST(FeedMarks, OfAnOrdinaryFeedAreTakenFromTheSamples) {
     EXPECT_EQ(result.verdict, TraceVerdict::explained);
     EXPECT_EQ(named(result), std::vector<std::string>());
     expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
+  }
+}
+
+// Under a random walk the model follows less of what is slow once the marks are in it.
+TEST(FeedMarks, AreTakenFromTheSamplesBesideARandomWalk) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    Problem problem = problem_of();
+    problem.low_band.level = 2;
+    std::vector<Profile> profiles = read(kOrdinary, 0.8, seed, 1e-5);
+    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    const Closed result = closed(problem, profiles);
+    SCOPED_TRACE(story(result));
+    EXPECT_EQ(result.verdict, TraceVerdict::explained);
+    EXPECT_EQ(named(result), std::vector<std::string>());
   }
 }
 

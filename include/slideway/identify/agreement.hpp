@@ -26,8 +26,9 @@ Eigen::MatrixXd scatter_of_profiles(const Solution& fit, const Gates& gates);
 
 /// What the repeats of each group have in common and the model lacks.
 ///
-/// The mean residual of a group has the noise of its own fine band, texture that repeats included,
-/// or that of the deviations from it if it is larger in the long run; its slow band is tested
+/// Texture repeats; it may have several lengths, up to Gates::longest_texture. The mean residual of
+/// a group has the largest, in the long run, of three noises: that of its own fine band, that of
+/// the fine bands of all groups, and that of the deviations from it. Its slow band is tested
 /// against that as lack_of_fit() does. F is the square found over the square expected.
 std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gates& gates);
 

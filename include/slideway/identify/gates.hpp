@@ -43,6 +43,7 @@ struct Gates {
   double values_for_memory = 40.0;
   double memory_odds = 4.0;
   double longest_memory = 4.0;
+  double longest_texture = 0.125;
   double noise_likeness = 0.5;
   double unlike_noise = 4.0;
   double declared_noise_bic = 10.0;
