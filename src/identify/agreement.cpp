@@ -39,6 +39,12 @@ struct Alone : SubsetEstimate {
       freedom = std::max(1.0, std::min(freedom, known - static_cast<double>(basis.cols())));
   }
 
+  /// Lets columns take what they can of the rows: they say nothing of another side.
+  void leave_free(const std::vector<Eigen::Index>& columns) {
+    const Eigen::MatrixXd taken = orthonormal(rows(Eigen::all, columns));
+    rows -= taken * (taken.transpose() * rows).eval();
+  }
+
   [[nodiscard]] bool determines(const Eigen::MatrixXd& curve) const {
     const Eigen::MatrixXd open = curve * null_space;
     for (Eigen::Index d = 0; d < open.cols(); ++d)
@@ -101,6 +107,7 @@ std::vector<Curve> curves(const Model& model, const Solution& fit, std::size_t a
   std::vector<Curve> out;
   const auto& observations = fit.linear.observations;
   for (const ModelTerm& term : model.terms) {
+    if (term.effect->description().kinematic) continue;
     const bool of_slide = term.effect->description().motion == MotionError::straightness;
     const Eigen::MatrixXd own =
         of_slide ? straightness_curve(
@@ -204,8 +211,14 @@ class ProfileComparison {
     const Compressed compressed = compress(fit.linear, noise);
     const std::size_t count = fit.linear.observations.size();
     const bool pairwise = count <= kMostPairwise;
+    std::vector<Eigen::Index> of_each_cut;
+    for (const ModelTerm& term : model.terms)
+      for (int a = 0; term.effect->description().kinematic && a < term.effect->amplitudes(); ++a)
+        of_each_cut.push_back(term.first_amplitude + a);
     const auto side = [&](const Profiles& which) {
-      return Alone(fit.linear, noise, compressed, which, model.gates.rank_tolerance);
+      Alone out(fit.linear, noise, compressed, which, model.gates.rank_tolerance);
+      out.leave_free(of_each_cut);
+      return out;
     };
     for (std::size_t i = 0; i < count; ++i) alone_.push_back(side({i}));
     if (!pairwise) others_.reserve(count);

@@ -166,7 +166,9 @@ class Finder {
 
   [[nodiscard]] std::vector<Blunder> find() const {
     std::vector<Blunder> out;
-    for (std::size_t i = 0; i < noise_.size(); ++i) try_profile(i, out);
+    for (std::size_t i = 0; i < noise_.size(); ++i)
+      try_profile(i, hypotheses_of(i),
+                  [&](const Blunder& each, const Hypothesis&) { out.push_back(each); });
     std::ranges::stable_sort(out, {}, &Blunder::delta_bic);
     if (noise_.size() > 2)  // two that disagree do not say which of them is wrong
       std::erase_if(out, [&](const Blunder& each) {
@@ -175,7 +177,26 @@ class Finder {
     return out;
   }
 
+  [[nodiscard]] std::vector<CorrectedBlunder> find_of_time(const std::string& profile) const {
+    std::vector<CorrectedBlunder> out;
+    for (std::size_t i = 0; i < noise_.size(); ++i) {
+      if (fit_.linear.observations[i]->profile->name != profile) continue;
+      std::vector<Hypothesis> list = hypotheses_of(i);
+      std::erase_if(list, [](const Hypothesis& each) {
+        return each.kind != BlunderKind::cut_direction && each.kind != BlunderKind::clock;
+      });
+      try_profile(i, list, [&](const Blunder& each, const Hypothesis& by) {
+        out.push_back({each, *by.profile});
+      });
+    }
+    return out;
+  }
+
  private:
+  [[nodiscard]] std::vector<Hypothesis> hypotheses_of(std::size_t i) const {
+    return hypotheses(*fit_.linear.observations[i]->profile, other_lengths(i));
+  }
+
   /// The noise of the profile most like this one: of its sisters the middle one in the long run.
   [[nodiscard]] const Noise* sister(std::size_t i) const {
     const auto key = [&](std::size_t j) {
@@ -252,7 +273,8 @@ class Finder {
     return out;
   }
 
-  void try_profile(std::size_t i, std::vector<Blunder>& out) const {
+  template <typename Told>
+  void try_profile(std::size_t i, const std::vector<Hypothesis>& list, const Told& tell) const {
     const Gates& gates = model_.gates;
     const Noise* const of_sister = sister(i);
     const Noise& noise = of_sister ? *of_sister : noise_[i];
@@ -263,7 +285,6 @@ class Finder {
     const Profile& profile = *fit_.linear.observations[i]->profile;
     const SubsetEstimate others(priors_beside(profile.name), compressed_, all_but_it,
                                 gates.rank_tolerance);
-    const std::vector<Hypothesis> list = hypotheses(profile, other_lengths(i));
     Observation observation = recorded(i, list);
     const Prediction as_it_is = prediction(observation, others, noise);
     if (as_it_is.directions() == 0) return;
@@ -276,7 +297,7 @@ class Finder {
       const double left = meant.disagreement(each.factor) / square;
       if (left > gates.blunder_left) continue;
       if (std::abs(std::log(size)) > 2.0 * std::log(factor)) continue;
-      out.push_back({profile.name, each.kind, after - before, left});
+      tell({profile.name, each.kind, after - before, left}, each);
     }
   }
 
@@ -294,6 +315,11 @@ std::vector<Blunder> find_blunders(const FittedModel& fitted) {
   if (fitted.fit.linear.observations.size() < 2 || fitted.fit.linear.prior_rows.cols() == 0)
     return {};
   return Finder(fitted).find();
+}
+
+std::vector<CorrectedBlunder> find_blunders_of_time(const FittedModel& fitted,
+                                                    const std::string& profile) {
+  return Finder(fitted).find_of_time(profile);
 }
 
 std::string blunder_advice(const std::vector<Blunder>& blunders) {

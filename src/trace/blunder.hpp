@@ -21,6 +21,16 @@ namespace slideway {
 /// disagreement, not only some of it.
 std::vector<Blunder> find_blunders(const FittedModel& fitted);
 
+/// A blunder, and the profile as it was meant.
+struct CorrectedBlunder {
+  Blunder blunder;
+  Profile meant;
+};
+
+/// Of one profile, those of the time of its cut: another direction or start.
+std::vector<CorrectedBlunder> find_blunders_of_time(const FittedModel& fitted,
+                                                    const std::string& profile);
+
 /// What to do about them, in a sentence. REQUIRES one.
 std::string blunder_advice(const std::vector<Blunder>& blunders);
 

@@ -11,11 +11,13 @@ bool lies_beside(const LineBand& line, const LineBand& other, const Gates& gates
   return distance <= std::min(gates.modulation_widths, gates.modulation_share * line.low);
 }
 
+/// @param order  of the harmonic of the others' rates
 bool lie_beside(const std::vector<LineBand>& lines, const std::vector<LineBand>& others,
-                const Gates& gates) {
+                double order, const Gates& gates) {
   return std::ranges::all_of(lines, [&](const LineBand& line) {
-    return std::ranges::any_of(
-        others, [&](const LineBand& other) { return lies_beside(line, other, gates); });
+    return std::ranges::any_of(others, [&](const LineBand& other) {
+      return lies_beside(line, {order * other.low, order * other.high}, gates);
+    });
   });
 }
 
@@ -49,10 +51,10 @@ bool lie_on_feed_marks(const Profile& profile, const Effect& effect,
 
 }  // namespace
 
-std::string modulated_effect(const Model& model, const Eigen::VectorXd& shapes,
-                             const Refined& refined) {
+std::string part_of_a_line(const Model& model, const Eigen::VectorXd& shapes,
+                           const Refined& refined) {
   const ModelTerm& own = refined.candidate->term;
-  const auto is_modulated = [&](const ModelTerm& term) {
+  const auto is_of = [&](const ModelTerm& term, double order) {
     bool shown = false;
     for (const Observation* observation : fitted_observations(model)) {
       const Profile& profile = *observation->profile;
@@ -60,15 +62,18 @@ std::string modulated_effect(const Model& model, const Eigen::VectorXd& shapes,
       if (!term.effect->applies_to(profile.setup)) return false;
       const Stations stations = profile.stations(model.machine);
       const auto lines = own.effect->lines(stations, refined.shape);
-      if (lines.empty() ||
-          !lie_beside(lines, term.effect->lines(stations, shapes_of(term, shapes)), model.gates))
+      if (lines.empty() || !lie_beside(lines, term.effect->lines(stations, shapes_of(term, shapes)),
+                                       order, model.gates))
         return false;
       shown = true;
     }
     return shown && term.name != own.name;
   };
-  const auto found = std::ranges::find_if(model.terms, is_modulated);
-  return found == model.terms.end() ? "" : found->name;
+  for (const double order : {1.0, 2.0, 3.0, 1.0 / 2.0, 1.0 / 3.0})
+    for (const ModelTerm& term : model.terms)
+      if ((order == 1.0 || !term.effect->description().kinematic) && is_of(term, order))
+        return (order == 1.0 ? "a modulation of " : "a harmonic of ") + term.name;
+  return "";
 }
 
 bool is_of_feed_marks(const Model& model, const Whitened& data, const Refined& refined,

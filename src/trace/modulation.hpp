@@ -4,12 +4,14 @@
 
 namespace slideway {
 
-/// The effect of the model whose line an effect only modulates: in every fitted profile all of its
-/// lines lie beside those of that effect, nearer than the gates modulation_widths (in resolutions
-/// of the profile's spectrum, one cycle a profile) and modulation_share (of the line's own rate).
-/// Empty: none.
-std::string modulated_effect(const Model& model, const Eigen::VectorXd& shapes,
-                             const Refined& refined);
+/// What the line of an effect is of a line in the model instead of one of its own: "a modulation
+/// of" it, where in every fitted profile all of its lines lie beside those of that effect, nearer
+/// than the gates modulation_widths (in resolutions of the profile's spectrum, one cycle a profile)
+/// and modulation_share (of the line's own rate); "a harmonic of" it, where it lies so beside
+/// twice, three times, a half or a third of their rate: a wave that is no sine has them. Empty:
+/// neither.
+std::string part_of_a_line(const Model& model, const Eigen::VectorXd& shapes,
+                           const Refined& refined);
 
 /// Whether sampling folds harmonics of the feed marks to where the lines of an effect of faces are:
 /// in all of them but those that together do not show it for certain (Gates::size).

@@ -15,20 +15,27 @@ using Effects = std::vector<AcceptedEffect>;
 
 constexpr std::size_t kAllSubsets = 3;  // of a larger set those that lack one name or all
 
-/// Members of a set that a subset lacks, for every subset but the set itself.
-std::vector<std::vector<std::size_t>> absences(std::size_t members) {
+/// The effects of a set that may not be there.
+std::vector<std::size_t> questionable(const Effects& effects) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    if (!effects[i].candidate->term.effect->description().kinematic) out.push_back(i);
+  return out;
+}
+
+/// What a subset lacks of the members of a set, for every subset but the set itself.
+std::vector<std::vector<std::size_t>> absences(const std::vector<std::size_t>& members) {
   std::vector<std::vector<std::size_t>> out;
-  if (members <= kAllSubsets) {
-    for (std::uint32_t bits = 1; bits < (1u << members); ++bits) {
+  if (members.size() <= kAllSubsets) {
+    for (std::uint32_t bits = 1; bits < (1u << members.size()); ++bits) {
       std::vector<std::size_t>& absent = out.emplace_back();
-      for (std::size_t i = 0; i < members; ++i)
-        if (bits & (1u << i)) absent.push_back(i);
+      for (std::size_t i = 0; i < members.size(); ++i)
+        if (bits & (1u << i)) absent.push_back(members[i]);
     }
     return out;
   }
-  for (std::size_t i = 0; i < members; ++i) out.push_back({i});
-  std::vector<std::size_t>& all = out.emplace_back();
-  for (std::size_t i = 0; i < members; ++i) all.push_back(i);
+  for (const std::size_t i : members) out.push_back({i});
+  out.push_back(members);
   return out;
 }
 
@@ -53,7 +60,8 @@ std::vector<UnnamedRival> unnamed_rivals(ModelExtender& extender, const Effects&
   const FittedModel& with = extender.extended(effects);
   const std::vector<ProcessVariable> variables = process_variables(with.model, with.fit.linear);
   std::vector<UnnamedRival> out;
-  for (const std::vector<std::size_t>& absent : absences(effects.size())) {
+  const std::vector<std::size_t> members = questionable(effects);
+  for (const std::vector<std::size_t>& absent : absences(members)) {
     const FittedModel& fitted = extender.extended(all_but(effects, absent));
     const Linearisation& linear = fitted.fit.linear;
     const Whitened data(linear, named.noise(), named.undescribed());
@@ -69,7 +77,7 @@ std::vector<UnnamedRival> unnamed_rivals(ModelExtender& extender, const Effects&
                      0.5 * gain - best_process(data, variable).log_evidence});
     }
     if (is_way && shows_slide_only(linear)) continue;
-    if (absent.size() == 1 || absent.size() == effects.size())
+    if (absent.size() == 1 || absent.size() == members.size())
       out.push_back(
           {"a local form", absent, false, 0.5 * gain - local_forms(fitted.model, data, linear)});
   }

@@ -82,7 +82,7 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     if (tested.refined.candidate->term.profiles.empty())  // else the others lack their own share
       tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
     tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
-    tested.modulates = modulated_effect(model, fit.estimate.shapes, tested.refined);
+    tested.part_of = part_of_a_line(model, fit.estimate.shapes, tested.refined);
     if (is_of_feed_marks(model, data, tested.refined, tested.fitted))
       tested.folded = "its line is that of the feed marks, folded by sampling";
     else if (!samples.have(tested.refined))
@@ -138,7 +138,7 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
 
 std::string TestedCandidate::refused(const Gates& gates) const {
   if (refined.projection.rank == 0) return "the model makes the same columns";
-  if (!modulates.empty()) return "its line is a modulation of " + modulates;
+  if (!part_of.empty()) return "its line is " + part_of;
   if (!folded.empty()) return folded;
   if (refined.delta_bic > -gates.delta_bic)
     return "gains too little: difference in BIC " + significant(refined.delta_bic, 3);

@@ -13,7 +13,7 @@ struct TestedCandidate {
   double p_value = 1.0;
   std::optional<HeldOut> held_out;
   Eigen::VectorXd fitted;  // what it takes of the white residual
-  std::string modulates;   // the effect of the model whose line it modulates; empty: none
+  std::string part_of;     // part_of_a_line()
   /// What has folded another line to where its own is: feed_marks_at(), SampleResiduals::have();
   /// empty: nothing.
   std::string folded;

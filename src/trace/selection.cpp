@@ -16,11 +16,19 @@ namespace {
 
 using Effects = std::vector<AcceptedEffect>;
 
-/// Why an effect does not help profiles that are held out; "": it does, or there are none.
+/// "" if the residuals, in the units of the report, fall; else why the effect does not help. Where
+/// there are heights and slopes, the mean of their relative squares counts.
 std::string worsens(const ModelResult& without, const ModelResult& with) {
-  const std::optional<double> before = holdout_rms_um(without);
-  return before && !(*holdout_rms_um(with) < *before) ? "it predicts the held-out profiles worse"
-                                                      : "";
+  double rise = 0.0;
+  const auto add = [&](const std::optional<double>& before, const std::optional<double>& after) {
+    if (before && after && *before > 0.0) rise += *after * *after / (*before * *before) - 1.0;
+  };
+  add(without.rms_um, with.rms_um);
+  add(without.rms_urad, with.rms_urad);
+  if (const auto before = holdout_rms_um(without); before && !(*holdout_rms_um(with) < *before))
+    return "it predicts the held-out profiles worse";
+  if (rise > 0.0) return "the residual rises with it";
+  return "";
 }
 
 class Selector {
@@ -107,6 +115,17 @@ class Selector {
            });
   }
 
+  /// Whether an effect of all profiles would shrink to a part of itself after it has made several
+  /// such parts superfluous: none of the others can come back.
+  [[nodiscard]] bool narrows_to_one_of_several(const AcceptedEffect& effect,
+                                               const TestedCandidate& part) const {
+    const std::string& name = effect.round.accepted;
+    return effect.candidate->term.profiles.empty() &&
+           part.refined.candidate->effect_name() == name &&
+           std::ranges::count_if(
+               ruled_out_, [&](const std::string& out) { return out.starts_with(name + "["); }) > 1;
+  }
+
   /// An effect of all profiles beside the same effect in some of them is confined to the rest,
   /// where that explains as much.
   void confine_last(const SearchRound& round, const TestedCandidate& last) {
@@ -137,7 +156,7 @@ class Selector {
     return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
       const bool in_all = has_several && each.refined.candidate->term.profiles.empty() &&
                           std::ranges::count(ruled_out_, each.name()) == 0;
-      return each.refined.projection.rank > 0 && each.modulates.empty() && each.folded.empty() &&
+      return each.refined.projection.rank > 0 && each.part_of.empty() && each.folded.empty() &&
              each.p_value <= (in_all ? gates_.significance : gates_.lack_of_fit_p) &&
              !(each.held_out && !each.held_out->helps) &&
              each.refined.delta_bic <= -(in_all ? gates_.delta_bic : gates_.left_over_bic);
@@ -146,14 +165,11 @@ class Selector {
 
   /// Why an effect of a set does not help beside the others; "": it does. A carriage's polynomial
   /// comes near everything smooth: it must outdo a process without a name.
-  /// It is asked in the low band of the search; of what is there in the end, profiles that are
-  /// held out are asked in the declared one.
+  /// It is asked in the low band of the search; in the declared one of what is there in the end.
   std::string reason_against(const Effects& effects, std::size_t which) {
     const Effects others = all_but(effects, which);
     std::string why =
         worsens(extender_.summary_of_search(others), extender_.summary_of_search(effects));
-    if (why.empty() && !statistics_.lowers_residual(effects, which))
-      why = "the residual rises with it";
     if (!why.empty() || !effects[which].candidate->term.effect->is_carriage()) return why;
     const double margin = statistics_.over_process(effects, which);
     if (margin < gates_.process_margin)
@@ -208,7 +224,8 @@ class Selector {
       if (own && own->refined.delta_bic <= best->refined.delta_bic + gates_.exchange_bic)
         best = own;
       if (best->refined.candidate == out_.effects[i].candidate ||
-          (own && has_part_in(all_but(out_.effects, i), *best)))
+          (own && has_part_in(all_but(out_.effects, i), *best)) ||
+          narrows_to_one_of_several(out_.effects[i], *best))
         continue;
       Effects changed = out_.effects;
       changed[i] = accepted(round, *best);

@@ -29,24 +29,6 @@ double SetStatistics::gain_beside(const Effects& effects, std::size_t which) {
   });
 }
 
-bool SetStatistics::lowers_residual(const Effects& effects, std::size_t which) {
-  return kept_or_made(lowers_, {candidates_of(effects), which, effects[which].shape}, [&] {
-    extender_.limit().check();
-    const FittedModel& with = extender_.extended(effects);
-    const Linearisation& without = extender_.extended(all_but(effects, which)).fit.linear;
-    std::vector<Noise> sizes;
-    for (std::size_t i = 0; i < with.fit.noise.size(); ++i)
-      sizes.push_back(Noise::white(with.fit.noise[i].standard_deviation(),
-                                   without.observations[i]->values.size()));
-    const Whitened data(without, std::move(sizes));
-    const auto left = [&](const Linearisation& linear) {
-      return data.outside(stack(without, 1, [&](std::size_t i) { return linear.residuals[i]; }))
-          .squaredNorm();
-    };
-    return left(with.fit.linear) < left(without);
-  });
-}
-
 double SetStatistics::over_process(const Effects& effects, std::size_t which) {
   return kept_or_made(over_process_, {candidates_of(effects), which, {}}, [&] {
     extender_.limit().check();

@@ -28,15 +28,6 @@ class SetStatistics {
   /// -ΔBIC of an effect beside the others of the set.
   double gain_beside(const Effects& effects, std::size_t which);
 
-  /// Whether an effect of its estimated size lowers the residual in the units of the report,
-  ///
-  ///     |M (y - C a)| < |M y|,
-  ///
-  /// M leaving free by ordinary least squares, each profile weighted by its noise, what the model
-  /// has without it. Under a long memory, that is what the eye sees: generalised least squares does
-  /// not follow what is slow, and how little depends on the noise, which is another with the effect.
-  bool lowers_residual(const Effects& effects, std::size_t which);
-
   /// gain_over_process()
   double over_process(const Effects& effects, std::size_t which);
 
@@ -51,7 +42,6 @@ class SetStatistics {
   ModelExtender& extender_;
   std::map<Key, std::vector<UnnamedRival>> rivals_;
   std::map<One, double> gains_, over_process_;
-  std::map<One, bool> lowers_;
 };
 
 }  // namespace slideway

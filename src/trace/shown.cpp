@@ -32,10 +32,11 @@ Eigen::MatrixXd images(const Model& model, const ModelTerm& term, const std::vec
 
 /// What the low band of a profile shows beside the model.
 struct Beside {
-  Eigen::MatrixXd images, whole;
-  Eigen::VectorXd values;
-  double degrees = 0.0;              // of freedom of the values
-  double before = 0.0, after = 0.0;  // square of what is faster than slow cosines, without and with
+  Eigen::MatrixXd images;
+  // Of what is faster than slow cosines: the square without and with the images, what the columns
+  // of the effect without options take of it, and their number.
+  double before = 0.0, after = 0.0, taken_by_whole = 0.0, columns_of_whole = 0.0;
+  double degrees = 0.0;  // of freedom of what is fast
 
   Beside(const Model& model, const Estimate& estimate, const Observation& observation,
          const Eigen::MatrixXd& of_parts, const Eigen::MatrixXd& of_whole) {
@@ -47,33 +48,31 @@ struct Beside {
     const Eigen::MatrixXd form = orthonormal(all.rightCols(linear.cols()));
     all -= form * (form.transpose() * all).eval();
     images = all.leftCols(parts);
-    whole = all.middleCols(parts, of_whole.cols());
-    values = all.col(parts + of_whole.cols());
     const Eigen::MatrixXd slow =
         orthonormal(levelled(observation, slow_cosines(n, slow_cosine_count(n, model.gates))));
-    const auto fast_square = [&](Eigen::VectorXd of) {
-      of -= slow * (slow.transpose() * of).eval();
-      return of.squaredNorm();
-    };
-    before = fast_square(values);
-    after = fast_square(values - images.rowwise().sum());
-    degrees = static_cast<double>(n - observation.left_out() - form.cols() -
+    all -= slow * (slow.transpose() * all).eval();
+    const Eigen::VectorXd values = all.col(parts + of_whole.cols());
+    const Eigen::MatrixXd whole = orthonormal(all.middleCols(parts, of_whole.cols()));
+    before = values.squaredNorm();
+    after = (values - all.leftCols(parts).rowwise().sum()).squaredNorm();
+    taken_by_whole = (whole.transpose() * values).squaredNorm();
+    columns_of_whole = static_cast<double>(whole.cols());
+    degrees = static_cast<double>(n - observation.left_out() - form.cols() - slow.cols() -
                                   std::ssize(observation.nuisance_names));
   }
 };
 
-/// The harmonics whose image in the low band is not below its noise; none where they are the lesser
-/// part of what is fast there, or the effect without options takes as much.
+/// Whether the effect without options takes as much of what is fast.
+bool whole_takes_as_much(const Beside& beside) {
+  const double noise = beside.after / beside.degrees;
+  return beside.before - beside.after <
+         beside.taken_by_whole - noise * beside.columns_of_whole * std::log(beside.degrees);
+}
+
+/// The harmonics whose image in the low band is not below its noise.
 std::vector<std::size_t> seen_in(const Beside& beside) {
   std::vector<std::size_t> out;
-  if (beside.degrees < 1.0) return out;
-  const double before = beside.values.squaredNorm(),
-               after = (beside.values - beside.images.rowwise().sum()).squaredNorm(),
-               noise = after / beside.degrees;
-  const double by_whole =
-      (orthonormal(beside.whole).transpose() * beside.values).squaredNorm() -
-      noise * static_cast<double>(beside.whole.cols()) * std::log(beside.degrees);
-  if (beside.after > 0.5 * beside.before || before - after < by_whole) return out;
+  const double noise = beside.after / beside.degrees;
   for (Eigen::Index h = 0; 2 * h < beside.images.cols(); ++h)
     if (beside.images.middleCols(2 * h, 2).squaredNorm() >= noise)
       out.push_back(static_cast<std::size_t>(h));
@@ -95,45 +94,56 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
   const Beside beside(model, declared.fit.estimate, observation,
                       images(model, term_of(model, name, options), seen->values, observation),
                       low_band_columns(model, term_of(model, name, whole), observation, {}));
-  ShownEffect out{{name, whole, {}}, seen->p_value};
+  if (beside.degrees < 1.0) return std::nullopt;
+  ShownEffect out{{name, whole, {}}, seen->p_value, 0.0};
+  for (const Prior& value : seen->values) out.depth += kMicrometre * std::abs(value.value);
+  if (whole_takes_as_much(beside)) return out;
+  if (beside.after > 0.5 * beside.before) return std::nullopt;
   for (const std::size_t h : seen_in(beside)) {
     out.effect.options.harmonics.push_back(options.harmonics[h]);
     out.effect.priors.push_back(seen->values[2 * h]);
     out.effect.priors.push_back(seen->values[2 * h + 1]);
   }
-  if (out.effect.priors.empty()) return std::nullopt;
+  if (!out.is_settled()) return std::nullopt;
   return out;
 }
 
 constexpr double kVisible = 0.25;  // of the noise of a value: several of them show together
 
-/// Leaves out the values into which the low band carries what the first and the last turn leave at
-/// the rim and at the axis: as much as the marks, within one feed, by more than kVisible of the
-/// noise. A wavelet of many taps carries it further than one value. @return true if there are any
-bool leave_out_ends(FittedModel& fitted, const ShownEffect& shown) {
-  Model& model = fitted.model;
-  const auto at = std::ranges::find_if(model.observations, [&](const Observation& each) {
-    return each.profile->name == shown.effect.options.profiles.front();
-  });
-  const Setup& setup = at->profile->setup;
+/// The values into which the low band carries what the first and the last turn leave at the rim and
+/// at the axis: as much as the marks, within one feed, by more than kVisible of the noise. A
+/// wavelet of many taps carries it further than one value. None where they are most of the profile.
+ValueIndices ends_of(const Observation& observation, const ShownEffect& shown,
+                     const Machine& machine, const Gates& gates, double noise) {
+  const Setup& setup = observation.profile->setup;
   const double feed = *setup.feed_mm_per_min / *setup.spindle_rpm;
-  double depth = 0.0;
-  for (const Prior& prior : shown.effect.priors) depth += kMicrometre * std::abs(prior.value);
-  const Stations stations = at->profile->stations(model.machine);
+  const Stations stations = observation.profile->stations(machine);
   Eigen::MatrixXd ends = Eigen::MatrixXd::Zero(stations.size(), 1);
   for (Eigen::Index i = 0; i < stations.size(); ++i)
     if (const double r = stations.radius(i); r <= feed || r >= *setup.cut_radius_mm - feed)
-      ends(i, 0) = depth;
-  const Eigen::VectorXd carried = at->low_band.apply(ends);
-  const auto& fitted_profiles = fitted.fit.linear.observations;
-  const auto place = std::ranges::find(fitted_profiles, &*at) - fitted_profiles.begin();
-  const double noise = fitted.fit.noise[static_cast<std::size_t>(place)].standard_deviation();
+      ends(i, 0) = shown.depth;
+  const Eigen::VectorXd carried = observation.low_band.apply(ends);
   ValueIndices out;
   for (Eigen::Index i = 0; i < carried.size(); ++i)
     if (std::abs(carried[i]) > kVisible * noise) out.push_back(i);
-  return static_cast<double>(out.size()) <
-             model.gates.most_lost * static_cast<double>(carried.size()) &&
-         leave_out(*at, out);
+  if (static_cast<double>(out.size()) >= gates.most_lost * static_cast<double>(carried.size()))
+    out.clear();
+  return out;
+}
+
+Observation& observation_of(Model& model, const ShownEffect& shown) {
+  return *std::ranges::find_if(model.observations, [&](const Observation& each) {
+    return each.profile->name == shown.effect.options.profiles.front();
+  });
+}
+
+/// Of a profile that is fitted, by the noise beside the effect.
+ValueIndices ends_beside(FittedModel& with, const ShownEffect& shown) {
+  const Observation& observation = observation_of(with.model, shown);
+  const auto& fitted = with.fit.linear.observations;
+  const auto place = std::ranges::find(fitted, &observation) - fitted.begin();
+  return ends_of(observation, shown, with.model.machine, with.model.gates,
+                 with.fit.noise[static_cast<std::size_t>(place)].standard_deviation());
 }
 
 TraceRound round_of(const ShownEffect& shown, const FittedModel& without, const FittedModel& with) {
@@ -174,9 +184,16 @@ ShownModel with_shown(const FittedModel& declared, const std::vector<ShownEffect
     Model model = without.model;
     append_term(model, each.effect, model.range);
     FittedModel with = fit_model(std::move(model));
-    if (leave_out_ends(with, each)) with = fit_model(std::move(with.model));
-    rounds.push_back(round_of(each, without, with));
-    last.emplace(std::move(with));
+    const ValueIndices ends = ends_beside(with, each);
+    Model rest = each.is_settled() ? with.model : without.model;
+    const bool fewer = leave_out(observation_of(rest, each), ends);
+    if (each.is_settled()) {
+      if (fewer) with = fit_model(std::move(rest));
+      rounds.push_back(round_of(each, without, with));
+      last.emplace(std::move(with));
+    } else if (fewer || !last) {
+      last.emplace(fit_model(std::move(rest)));
+    }
   }
   return {*std::move(last), std::move(rounds)};
 }

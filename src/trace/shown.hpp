@@ -10,8 +10,13 @@ namespace slideway {
 /// An effect of one profile that its samples show for certain (Effect::shown_by()), and its low
 /// band, too.
 struct ShownEffect {
-  DeclaredEffect effect;
-  double p_value = 1.0;  // of the samples
+  DeclaredEffect effect;  // with the values of the samples as priors, if it is settled
+  double p_value = 1.0;   // of the samples
+  double depth = 0.0;     // sum of its amplitudes, mm
+
+  /// Whether the samples say what the low band has of it. Where the effect without options explains
+  /// as much, its form is a matter of the search.
+  [[nodiscard]] bool is_settled() const { return !effect.priors.empty(); }
 };
 
 /// Those of the candidates. Feed marks that samples resolve and the low band folds would else be a
@@ -20,11 +25,12 @@ struct ShownEffect {
 /// Its parameters have the values of the samples as priors: the low band, which folds and damps
 /// them, knows them less. Those whose image in the low band is below its noise are left out. None
 /// is taken where they are less than half of what the low band has faster than slow cosines, which
-/// is a matter of the search, or where the effect without options explains as much.
+/// is a matter of the search.
 std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedModel& declared);
 
-/// The model with these effects, fitted, and a round for each of them as if they had been added one
-/// after the other. REQUIRES one of them.
+/// The model with those of these effects that are settled, fitted, and a round for each of them as
+/// if they had been added one after the other. The ends of the cuts, of those that are not as well,
+/// are left out. REQUIRES one of them.
 struct ShownModel {
   FittedModel fitted;
   std::vector<TraceRound> rounds;

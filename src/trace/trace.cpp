@@ -7,6 +7,7 @@
 #include "blunder.hpp"
 #include "cross_validation.hpp"
 #include "detection.hpp"
+#include "disagreement.hpp"
 #include "fit_numbers.hpp"
 #include "forms.hpp"
 #include "instrument.hpp"
@@ -20,6 +21,7 @@
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/left_out.hpp"
 #include "slideway/trace/analysis.hpp"
+#include "time_blunder.hpp"
 #include "widening.hpp"
 
 namespace slideway {
@@ -33,6 +35,7 @@ class Loop {
       : problem_(problem),
         progress_(progress),
         limit_(problem.trace.time_limit_s),
+        shown_(shown),
         extender_(problem, profiles, declared, shown, limit_, progress),
         statistics_(extender_) {}
 
@@ -42,7 +45,7 @@ class Loop {
     TraceResult& out = closed.trace;
     for (const Gate& gate : gate_table()) out.gates.emplace_back(gate.name, gates.*gate.value);
     Selection selection;
-    if (limit_.allows([&] { selection = selected(out.blunders); }))
+    if (limit_.allows([&] { selection = selected(out); }))
       report(selection, closed);
     else
       report_unfinished(closed);
@@ -51,15 +54,29 @@ class Loop {
   }
 
  private:
-  Selection selected(std::vector<Blunder>& found) {
+  Selection selected(TraceResult& out) {
     const Gates& gates = problem_.trace.gates;
     std::vector<Blunder> blunders = find_blunders(extender_.base());
     if (!blunders.empty() && explained_by_an_effect(blunders)) blunders.clear();
     Selection selection = blunders.empty() ? select_effects(problem_, statistics_, gates, progress_)
                                            : nothing_selected(extender_, gates);
+    among_ = disagreement(extender_.extended(selection.effects));
+    if (blunders.empty() && something_is_wrong(selection) &&
+        !limit_.allows([&] { blunders = find_time_blunders(problem_, extender_, shown_); }))
+      out.not_looked_at.emplace_back("another direction or start of one cut");
+    if (!blunders.empty()) selection = nothing_selected(extender_, gates);
     tell_rounds(selection.effects);
-    found = std::move(blunders);
+    out.blunders = std::move(blunders);
     return selection;
+  }
+
+  [[nodiscard]] bool profiles_differ() const {
+    return among_.p_value < problem_.trace.gates.disagreement_p;
+  }
+
+  [[nodiscard]] bool something_is_wrong(const Selection& selection) const {
+    return selection.withheld || selection.lack_of_fit.significant(problem_.trace.gates) ||
+           profiles_differ();
   }
 
   void report(const Selection& selection, ClosedLoop& closed) {
@@ -187,10 +204,6 @@ class Loop {
       if (effect.candidate->raises_degree)
         out.notes.push_back(effect.name() + ": raised to degree " +
                             std::to_string(*effect.candidate->options.degree));
-      if (effect.round.after_rms_um > effect.round.before_rms_um)
-        out.notes.push_back(effect.name() +
-                            ": with it the noise has a longer memory, and the fit follows less of "
-                            "what is slow: the residual is larger");
       advise(selection, i, out);
     }
     if (const double radius = left_out_radius(extender_.extended(selection.effects).model);
@@ -240,11 +253,12 @@ class Loop {
     double repeated_p = 1.0;  // of what repeats have in common
     for (const PureErrorCheck& each : check_repeats(fitted.fit.linear, gates))
       if (each.verdict == RepeatFit::lack_of_fit) repeated_p = std::min(repeated_p, each.p_value);
-    if (out.blunders.empty() && !selection.lack_of_fit.significant(gates) && !selection.withheld &&
-        repeated_p == 1.0)
-      return;
-    report_unnamed(fitted, last.data, std::min(selection.lack_of_fit.p_value, repeated_p),
+    if (out.blunders.empty() && !something_is_wrong(selection) && repeated_p == 1.0) return;
+    report_unnamed(fitted, last.data,
+                   std::min({selection.lack_of_fit.p_value, repeated_p, among_.p_value}),
                    last.tested, closed);
+    if (profiles_differ() && out.blunders.empty())
+      out.advice.push_back(disagreement_advice(among_));
     if (!limit_.allows([&] {
           out.unnamed->forms = describe_in_forms(extender_, selection.effects, *out.unnamed);
         }))
@@ -302,8 +316,10 @@ class Loop {
   const Problem& problem_;
   const Progress& progress_;
   TimeLimit limit_;
+  const std::vector<ShownEffect>& shown_;
   ModelExtender extender_;
   SetStatistics statistics_;
+  Disagreement among_;  // of the profiles, beside what was selected
 };
 
 }  // namespace
@@ -321,6 +337,7 @@ ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profil
   ClosedLoop out = Loop(problem, profiles, known.fitted, shown, progress).run();
   std::vector<TraceRound>& rounds = out.trace.rounds;
   rounds.insert(rounds.begin(), known.rounds.begin(), known.rounds.end());
+  if (known.rounds.empty()) return out;
   if (out.trace.verdict == TraceVerdict::nothing_missing)
     out.trace.verdict = TraceVerdict::explained;
   if (!out.extended) out.extended = std::move(known.fitted);

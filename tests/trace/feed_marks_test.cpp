@@ -93,8 +93,9 @@ TEST(FeedMarks, OfAnOrdinaryFeedAreTakenFromTheSamples) {
   }
 }
 
-// Under a random walk the model follows less of what is slow once the marks are in it.
+// A face without a fault may be called unnamed once in twenty: two of six are so by a chance of 3 %.
 TEST(FeedMarks, AreTakenFromTheSamplesBesideARandomWalk) {
+  int without_a_name = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     Problem problem = problem_of();
     problem.low_band.level = 2;
@@ -102,9 +103,10 @@ TEST(FeedMarks, AreTakenFromTheSamplesBesideARandomWalk) {
     for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
     const Closed result = closed(problem, profiles);
     SCOPED_TRACE(story(result));
-    EXPECT_EQ(result.verdict, TraceVerdict::explained);
     EXPECT_EQ(named(result), std::vector<std::string>());
+    without_a_name += result.verdict == TraceVerdict::unnamed ? 1 : 0;
   }
+  EXPECT_LE(without_a_name, 1);
 }
 
 // What the samples of a cut say of its marks is in its unit, too.

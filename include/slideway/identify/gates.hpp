@@ -54,6 +54,7 @@ struct Gates {
   double en_limit = 1.0;
   double false_disagreement = 0.0455;
   double held_out_p = 0.01;
+  double disagreement_p = 1e-4;
   double same_place = 0.25;
   double values_per_repeated_cosine = 3.0;
   double blunder_bic = 20.0;

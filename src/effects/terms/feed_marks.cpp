@@ -38,7 +38,8 @@ Description describe_feed_marks() {
               "cut to cut",
           .separated_by =
               "its period is exactly the feed per turn and its height goes "
-              "with the square of the feed"};
+              "with the square of the feed",
+          .kinematic = true};
 }
 
 // Parabola of the tool nose in each groove, mean zero.

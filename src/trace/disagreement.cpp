@@ -1,0 +1,43 @@
+#include "disagreement.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "slideway/identify/agreement.hpp"
+#include "slideway/identify/noise_model.hpp"
+
+namespace slideway {
+
+Disagreement disagreement(const FittedModel& fitted) {
+  Disagreement out;
+  const auto& [model, fit] = fitted;
+  if (fit.linear.observations.size() < 2) return out;
+  std::map<std::vector<std::string>, double> pairs;  // p-value of each, one for all its effects
+  for (const ProfileCheck& check :
+       check_profiles(model, fit, noise_of_each(fit.linear, fit.noise, model.gates)))
+    if (check.p_value) pairs[check.profiles] = *check.p_value;
+  const auto count = static_cast<double>(pairs.size());
+  std::vector<std::string> common;
+  bool is_first = true;
+  for (const auto& [names, p] : pairs) {
+    out.p_value = std::min(out.p_value, count * p);
+    if (count * p > model.gates.disagreement_p) continue;
+    if (is_first) common = names;
+    is_first = false;
+    std::erase_if(common,
+                  [&](const std::string& each) { return std::ranges::count(names, each) == 0; });
+  }
+  if (pairs.size() > 1 && common.size() == 1) out.odd_one = common.front();
+  return out;
+}
+
+std::string disagreement_advice(const Disagreement& found) {
+  const std::string who = found.odd_one.empty()
+                              ? "the profiles disagree beyond their noise"
+                              : "profile " + found.odd_one + " disagrees with the others";
+  return who +
+         ": check how each was cut and read (direction and start of the cut, centre, units); one "
+         "that is wrong has role = \"holdout\"";
+}
+
+}  // namespace slideway

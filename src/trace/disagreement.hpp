@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "slideway/identify/fit.hpp"
+
+namespace slideway {
+
+/// Whether the fitted profiles are of one machine, by check_profiles().
+struct Disagreement {
+  /// Probability that noise makes any pair differ as much as that which differs most: Bonferroni's
+  /// bound, of the χ² of each pair over all effects.
+  double p_value = 1.0;
+  std::string odd_one;  // the one profile that every pair which differs has; "": none
+};
+
+/// A pair differs where noise explains it with a probability below Gates::disagreement_p.
+Disagreement disagreement(const FittedModel& fitted);
+
+/// What to do about it.
+std::string disagreement_advice(const Disagreement& found);
+
+}  // namespace slideway

@@ -1,0 +1,153 @@
+#include "time_blunder.hpp"
+
+#include <algorithm>
+
+#include "slideway/identify/noise_model.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::size_t kEffectsTried = 3;  // best first, each of a name of its own
+constexpr std::size_t kMostProfiles = 8;  // each takes a search
+
+bool is_of_time(const Candidate& candidate) {
+  const IndependentVariable variable = candidate.term.effect->description().variable;
+  return (variable == IndependentVariable::time || variable == IndependentVariable::distance) &&
+         candidate.term.profiles.empty();
+}
+
+/// The declared model of the profiles that are not held out.
+FittedModel fitted_to(const Problem& problem, const std::vector<Profile>& profiles,
+                      const std::vector<ShownEffect>& shown) {
+  const auto most = static_cast<std::size_t>(problem.trace.gates.search_values);
+  Model model = build_model(problem, profiles, most);
+  for (const ShownEffect& each : shown)
+    if (each.is_settled()) append_term(model, each.effect, model.range);
+  return fit_model(std::move(model));
+}
+
+/// The best effects of time that profiles show.
+std::vector<AcceptedEffect> shown_effects(const Problem& problem, const FittedModel& fitted,
+                                          const Dictionary& dictionary) {
+  const Gates& gates = problem.trace.gates;
+  Candidates candidates;
+  for (const Candidate& each : dictionary.candidates)
+    if (is_of_time(each)) candidates.push_back(&each);
+  std::vector<AcceptedEffect> out;
+  if (candidates.empty()) return out;
+  const Whitened data(fitted.fit.linear, noise_beside(fitted.fit.linear, gates));
+  std::vector<Finding> findings = search(data, candidates);
+  std::ranges::stable_sort(findings, {}, &Finding::delta_bic);
+  for (const Finding& each : findings) {
+    const auto has_name = [&](const AcceptedEffect& known) {
+      return known.name() == each.candidate->name();
+    };
+    if (out.size() == kEffectsTried || each.delta_bic > -gates.delta_bic) break;
+    if (each.rank > 0 && std::ranges::none_of(out, has_name))
+      out.push_back({each.candidate, refine(fitted.model, data, each).shape, {}});
+  }
+  return out;
+}
+
+Model with(const Model& model, const AcceptedEffect& effect) {
+  Model out = model;
+  append_term(out, {effect.candidate->effect_name(), effect.candidate->options, {}}, out.range);
+  return out;
+}
+
+/// The shapes of a model, those of an effect behind them.
+Eigen::VectorXd shapes_with(const Eigen::VectorXd& shapes, const std::vector<double>& more) {
+  Eigen::VectorXd out(shapes.size() + std::ssize(more));
+  out << shapes, Eigen::Map<const Eigen::VectorXd>(more.data(), std::ssize(more));
+  return out;
+}
+
+/// The model of all profiles with an effect as those but one show it.
+FittedModel as_the_others_show(const FittedModel& all, const FittedModel& others,
+                               const AcceptedEffect& effect) {
+  const FittedModel shown =
+      fit_model(with(others.model, effect), shapes_with(others.fit.estimate.shapes, effect.shape));
+  FittedModel out(with(all.model, effect), all.fit);
+  out.fit.estimate = shown.fit.estimate;
+  out.fit.estimate.nuisances = all.fit.estimate.nuisances;
+  out.fit.linear = linearise(out.model, out.fit.estimate);
+  return out;
+}
+
+class TimeFinder {
+ public:
+  TimeFinder(const Problem& problem, ModelExtender& extender, const std::vector<ShownEffect>& shown)
+      : problem_(problem),
+        extender_(extender),
+        shown_(shown),
+        noise_(noise_beside(extender.base().fit.linear, problem.trace.gates)) {}
+
+  void try_profile(const std::string& odd) {
+    std::vector<Profile> profiles = extender_.profiles();
+    std::ranges::find(profiles, odd, &Profile::name)->role = Role::holdout;
+    const FittedModel others = fitted_to(problem_, profiles, shown_);
+    const Dictionary dictionary =
+        make_dictionary(others.model, problem_, others.fit.linear.prior_rows.rows());
+    for (const AcceptedEffect& effect : shown_effects(problem_, others, dictionary))
+      for (const CorrectedBlunder& each :
+           find_blunders_of_time(as_the_others_show(extender_.base(), others, effect), odd))
+        if (const auto left = left_by(each, effect)) found_.emplace_back(*left, each.blunder);
+  }
+
+  /// Those that leave the least, one of a kind in each profile. A start may be any: where one
+  /// leaves the least, all that leave no more than noise are told.
+  [[nodiscard]] std::vector<Blunder> best() {
+    std::ranges::stable_sort(found_, {}, [](const auto& each) { return each.first; });
+    std::vector<Blunder> out;
+    for (const auto& [left, blunder] : found_) {
+      const auto is_known = [&](const Blunder& known) {
+        return known.profile == blunder.profile && known.what == blunder.what;
+      };
+      if (!out.empty() && out.front().what != BlunderKind::clock &&
+          left > found_.front().first + problem_.trace.gates.tie_bic)
+        break;
+      if (std::ranges::none_of(out, is_known)) out.push_back(blunder);
+    }
+    return out;
+  }
+
+ private:
+  /// Square of the white residual of all profiles, one of them corrected, with the effect and its
+  /// price; nothing where that is still more than noise.
+  [[nodiscard]] std::optional<double> left_by(const CorrectedBlunder& corrected,
+                                              const AcceptedEffect& effect) const {
+    extender_.limit().check();
+    std::vector<Profile> profiles = extender_.profiles();
+    *std::ranges::find(profiles, corrected.meant.name, &Profile::name) = corrected.meant;
+    const FittedModel declared = fitted_to(problem_, profiles, shown_);
+    const FittedModel fitted = fit_model(with(declared.model, effect),
+                                         shapes_with(declared.fit.estimate.shapes, effect.shape));
+    const Gates& gates = problem_.trace.gates;
+    if (lack_of_fit(fitted.fit.linear, noise_, gates).significant(gates)) return std::nullopt;
+    const Whitened data(fitted.fit.linear, noise_);
+    return data.residual().squaredNorm() +
+           penalty(data, *effect.candidate, effect.candidate->amplitudes());
+  }
+
+  const Problem& problem_;
+  ModelExtender& extender_;
+  const std::vector<ShownEffect>& shown_;
+  std::vector<Noise> noise_;
+  std::vector<std::pair<double, Blunder>> found_;
+};
+
+}  // namespace
+
+std::vector<Blunder> find_time_blunders(const Problem& problem, ModelExtender& extender,
+                                        const std::vector<ShownEffect>& shown) {
+  const std::vector<const Observation*> fitted = fitted_observations(extender.base().model);
+  if (fitted.size() < 3 || fitted.size() > kMostProfiles) return {};
+  TimeFinder finder(problem, extender, shown);
+  for (const Observation* const observation : fitted) {
+    extender.limit().check();
+    if (observation->profile->setup.cut_direction) finder.try_profile(observation->profile->name);
+  }
+  return finder.best();
+}
+
+}  // namespace slideway

@@ -1,0 +1,102 @@
+// Profiles that should agree and do not: something is missing, whatever the residual of all says.
+
+#include <random>
+
+#include "identify/cases.hpp"
+#include "slideway/effects/catalogue.hpp"
+#include "trace/faces.hpp"
+
+namespace slideway::disagreement_test {
+namespace {
+
+using namespace faces;  // NOLINT(google-build-using-namespace)
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+constexpr double kLength = 1500.0;  // mm
+constexpr double kNoise = 3e-6;     // rad
+
+/// Readings of a level along a bed: slopes of a bow of 30 µm, and `more` rad more at the far end,
+/// all of it from the middle on, growing as the square.
+Profile run(const std::string& name, double more, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> noise(0.0, kNoise);
+  const std::vector<double> x = cases::spaced(0.0, kLength, 61);
+  std::vector<double> slope;
+  for (const double at : x)
+    slope.push_back(8e-5 * (2.0 * at / kLength - 1.0) + more * std::pow(at / kLength, 2) +
+                    noise(engine));
+  Profile out = cases::profile(name, Kind::slide, x, slope);
+  out.setup.quantity = Quantity::slope;
+  return out;
+}
+
+Closed of_runs(const std::vector<Profile>& runs) {
+  Problem problem = cases::problem(Lever::paper, 0, {cases::effect("straightness", 4)});
+  problem.trace.candidates = effect_names();
+  return closed(problem, runs);
+}
+
+// Nothing is claimed to be complete beside runs that disagree, and the one that does is told. Each
+// of the runs has a smooth form of its own, which no noise of its own explains.
+TEST(Disagreement, OneRunUnlikeItsSistersIsNotNothing) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const Closed result = of_runs({run("a", 0.0, 10 * seed), run("b", 0.0, 10 * seed + 1),
+                                   run("c", 6e-5, 10 * seed + 2), run("d", 0.0, 10 * seed + 3)});
+    SCOPED_TRACE(story(result));
+    EXPECT_NE(result.verdict, TraceVerdict::nothing_missing);
+    if (result.verdict == TraceVerdict::unnamed)
+      EXPECT_THAT(result.advice, Contains(HasSubstr("profile c disagrees")));
+    else
+      EXPECT_THAT(named(result), Contains(HasSubstr("[c]")));
+  }
+}
+
+// At disagreement_p = 1e-4 a false alarm among ten problems has a chance of one in a thousand.
+TEST(Disagreement, RunsOfOneBedAgree) {
+  for (unsigned seed = 100; seed < 110; ++seed) {
+    const Closed result = of_runs(
+        {run("a", 0.0, 10 * seed), run("b", 0.0, 10 * seed + 1), run("c", 0.0, 10 * seed + 2)});
+    EXPECT_EQ(result.verdict, TraceVerdict::nothing_missing) << story(result);
+  }
+}
+
+/// A face cut in one direction only, its noise of 10 nm, with what a saw-toothed temperature does.
+std::vector<Profile> saw_toothed(double size, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  std::vector<Profile> out;
+  for (const double feed : {2.0, 5.0, 3.0}) {
+    const std::vector<double> x = cases::spaced(0.0, 40.0, 600);
+    std::vector<double> z;
+    for (const double at : x) {
+      const double minutes = (40.0 - at) / feed, teeth = minutes / 1.9;
+      z.push_back(2e-5 * at + size * (teeth - std::floor(teeth)) + noise(engine));
+    }
+    Profile& face =
+        out.emplace_back(cases::profile("cut" + std::to_string(out.size() + 1), Kind::face, x, z));
+    face.setup.feed_mm_per_min = feed;
+    face.setup.spindle_rpm = 400.0;
+    face.setup.cut_direction = CutDirection::inward;
+    face.setup.cut_radius_mm = 40.0;
+  }
+  return out;
+}
+
+// The harmonics of a wave that is no sine are not effects beside it: time and turns are one
+// variable at one speed, and "spindle" and "temperature" would be two names of one thing.
+TEST(Harmonic, OfAWaveIsNoSecondEffect) {
+  for (const unsigned seed : {1U, 2U}) {
+    Problem problem = cases::problem(
+        Lever::paper, 1, {cases::effect("squareness"), cases::effect("straightness", 3)});
+    problem.trace.candidates = effect_names();
+    const Closed result = closed(problem, saw_toothed(2e-4, seed));
+    SCOPED_TRACE(story(result));
+    EXPECT_NE(result.verdict, TraceVerdict::nothing_missing);
+    EXPECT_NE(result.verdict, TraceVerdict::explained);
+    EXPECT_LE(named(result).size(), 1U);
+  }
+}
+
+}  // namespace
+}  // namespace slideway::disagreement_test
