@@ -190,6 +190,15 @@ FileBytes FileBytes::of_regular_file(const fs::path& path) {
   return FileBytes(path);
 }
 
+FileBytes FileBytes::of_file_or_stdin(const fs::path& path) {
+  const std::string whole = fs::absolute(path).lexically_normal().string();
+  const bool is_open =
+      whole == "/dev/stdin" || whole.starts_with("/dev/fd/") || whole.starts_with("/proc/self/fd/");
+  std::error_code ignored;
+  const bool is_device = fs::is_character_file(path, ignored) && ::isatty(STDIN_FILENO) == 0;
+  return is_open && !is_device ? FileBytes(path) : of_regular_file(path);
+}
+
 FileBytes::~FileBytes() {
   if (mapped_) ::munmap(const_cast<char*>(data_), size_);
 }

@@ -43,7 +43,7 @@ std::string options_hash(const ManifestItem& item, const ItemOptions& options) {
   std::vector<Override> overrides = item.overrides;
   std::sort(overrides.begin(), overrides.end(),
             [](const Override& a, const Override& b) { return a.key < b.key; });
-  std::string text = sha256(FileBytes(item.problem).text()) + "\n";
+  std::string text = sha256(FileBytes::of_regular_file(item.problem).text()) + "\n";
   for (const Override& override : overrides) text += override.key + " = " + override.value + "\n";
   if (!options.closes_loop) text += "--no-trace\n";
   if (options.ignore_checksum) text += "--ignore-checksum\n";
@@ -92,7 +92,7 @@ std::string results_version() { return SLIDEWAY_VERSION; }
 Fingerprint fingerprint(const ManifestItem& item, const ItemOptions& options) {
   std::string inputs;
   for (const ProfileEntry& entry : problem_of(item, options).profiles)
-    inputs += sha256(FileBytes(entry.source.path)) + "\n";
+    inputs += sha256(FileBytes::of_regular_file(entry.source.path)) + "\n";
   return {sha256(inputs), options_hash(item, options)};
 }
 

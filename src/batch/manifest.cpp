@@ -89,7 +89,7 @@ Manifest parse_manifest(std::string_view bytes, const std::filesystem::path& pat
 }
 
 Manifest read_manifest(const std::filesystem::path& path) {
-  const FileBytes bytes(path);
+  const FileBytes bytes = FileBytes::of_file_or_stdin(path);
   try {
     return parse_manifest(bytes.text(), path);
   } catch (const DataError& error) {

@@ -75,7 +75,7 @@ std::optional<ResultHead> parse_head(std::string_view line) {
 }
 
 std::size_t read_results(const fs::path& path, const EachLine& each) {
-  return each_line(FileBytes(path).text(), each);
+  return each_line(FileBytes::of_file_or_stdin(path).text(), each);
 }
 
 ResultsFile::ResultsFile(fs::path path) : path_(std::move(path)) { open(); }
@@ -127,7 +127,7 @@ MergeSummary merge_results(const fs::path& out, const std::vector<fs::path>& in)
     bool is_ok = false;
   };
   std::vector<FileBytes> bytes;
-  for (const fs::path& path : in) bytes.emplace_back(path);
+  for (const fs::path& path : in) bytes.push_back(FileBytes::of_file_or_stdin(path));
   MergeSummary summary;
   std::map<std::string, Place> places;
   for (std::size_t file = 0; file < in.size(); ++file)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "environment.hpp"
@@ -127,6 +128,7 @@ class BatchCommand : public ReportCommand {
     keep_input(words_[0], out_);
     keep(words_[0]);
     const Manifest manifest = read_manifest(words_[0]);
+    keep_items(manifest);
     if (!pool_.empty()) check_pool(manifest);
     const ItemOptions item{data_directory(data_), !no_trace_, ignore_checksum_, full_};
     // Before MPI starts, which does not support processes that fork.
@@ -153,6 +155,23 @@ class BatchCommand : public ReportCommand {
     report([&] { return text(summary) + pooled_text(machines, are_dates); },
            [&] { return json(summary, pooled_json(machines, are_dates)); });
     return failed_of(summary.counts) > 0 ? kFailedItems : kDone;
+  }
+
+  void keep_items(const Manifest& manifest) const {
+    keep_apart(out_);
+    std::set<std::filesystem::path> files;
+    for (const ManifestItem& item : manifest.items) {
+      if (!files.contains(item.problem))
+        for (std::filesystem::path& file : files_of(item.problem, data_directory(data_)))
+          files.insert(std::move(file));
+      for (const Override& override : item.overrides)
+        if (override.key.ends_with(".file"))
+          files.insert(item.problem.parent_path() / override.value);
+    }
+    for (const std::filesystem::path& file : files) {
+      keep_input(file, out_);
+      keep(file);
+    }
   }
 
   /// Checks the columns for --pool before the items are run.

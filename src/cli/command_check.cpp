@@ -20,7 +20,7 @@ class CheckCommand : public ReportCommand {
   }
 
   int run() override {
-    keep(input_);
+    for (const std::filesystem::path& file : files_of(input_, data_directory(data_))) keep(file);
     require_problem(input_);
     const ProblemCheck check = check_problem(input_, data_directory(data_));
     report([&] { return check_text(check); }, [&] { return check_json(check); });

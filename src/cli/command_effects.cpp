@@ -192,6 +192,10 @@ class EffectsCommand : public ReportCommand {
   }
 
   void choose() {
+    if (effect_ == "formula" || effect_ == "channel")
+      fail("'" + effect_ +
+           "' is no effect of the catalogue but makes one in a problem file: see "
+           "[[effect]] in slideway help problem-file");
     std::vector<std::string> names;
     for (const Listed& each : listed_) names.push_back(each.name());
     std::erase_if(listed_, [&](const Listed& each) { return each.name() != effect_; });

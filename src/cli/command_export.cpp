@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 
 #include "command.hpp"
@@ -60,19 +61,18 @@ class ExportCommand : public Command {
   }
 
  private:
+  static std::string accepted() {
+    return joined(compensation_formats()) + ", " + kResidual + ", " + kCertificate;
+  }
+
   void check(const po::variables_map& given) override {
-    if (format_.empty())
-      fail("--to FORMAT is missing; accepted: " + joined(compensation_formats()) + ", " +
-           kResidual + ", " + kCertificate);
+    if (format_.empty()) fail("--to FORMAT is missing; accepted: " + accepted());
     const bool is_table = format_ != kResidual && format_ != kCertificate;
     if (!is_table && given.count("step") != 0)
       fail("--step: goes with a compensation table, not with --to " + format_);
     if (!is_table) return;
-    try {
-      check_compensation_format(format_);
-    } catch (const UsageError& error) {
-      fail(std::string("--to: ") + error.what());
-    }
+    if (std::ranges::count(compensation_formats(), format_) == 0)
+      fail("--to: '" + printable(format_) + "' is not accepted; accepted: " + accepted());
     if (given.count("step") != 0 && !(step_mm_ > 0.0)) fail("--step: must be above 0 mm");
   }
 

@@ -66,7 +66,8 @@ class PlanCommand : public ReportCommand {
       const std::filesystem::path file =
           std::filesystem::path(out_) / (std::to_string(design->cuts.size()) +
                                          (design->cuts.size() == 1 ? "-cut" : "-cuts") + ".toml");
-      keep_input(problem.path, file);
+      for (const std::filesystem::path& input : files_of(problem)) keep_input(input, file);
+      keep_apart(file);
       std::vector<CutToCome> chosen;
       for (const CutToCome& cut : cuts)
         if (std::ranges::count(design->cuts, cut.profile.name) > 0) chosen.push_back(cut);

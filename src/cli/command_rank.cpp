@@ -66,9 +66,9 @@ class RankCommand : public ProblemCommand {
     for (const ColumnRanking& row : ranking) {
       std::vector<std::string> cells{row.candidate, fixed_point(row.raw, 3)};
       if (filtered) cells.push_back(fixed_point(row.low_band, 3));
-      cells.insert(cells.end(),
-                   {std::to_string(row.lag), fixed_point(row.lag_coefficient, 3),
-                    fixed_point(row.effective_observations, 0), significant(row.p_value, 2)});
+      cells.insert(cells.end(), {std::to_string(row.lag), fixed_point(row.lag_coefficient, 3),
+                                 fixed_point(row.effective_observations, 0),
+                                 row.p_value < 1e-300 ? "< 1e-300" : significant(row.p_value, 2)});
       table.add(std::move(cells));
     }
     return "Correlation with column '" + signal_ + "' of " + input() + "\nLow band: " +

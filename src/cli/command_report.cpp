@@ -22,9 +22,11 @@ class ReportAgainCommand : public Command {
 
   int run() override {
     if (html_.empty() && svg_.empty()) fail("--html FILE is missing, or --svg FILE");
+    if (!html_.empty() && !svg_.empty() && is_one_file(html_, svg_))
+      fail("--html and --svg name one file, " + html_ + "; accepted: two");
     keep_input(input_, html_);
     keep_input(input_, svg_);
-    const FileBytes json(input_);
+    const FileBytes json = FileBytes::of_file_or_stdin(input_);
     if (!html_.empty()) write_output(html_, html_report(json.text(), input_));
     if (!svg_.empty()) write_output(svg_, svg_report(json.text(), input_));
     return kDone;

@@ -49,6 +49,15 @@ void require_writable(const std::filesystem::path& output) {
   if (!is_special && access(folder.c_str(), W_OK) != 0) refuse(errno);
 }
 
+/// Where a file is, or will be, behind all links.
+std::filesystem::path place_of(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;
+  std::error_code ignored;
+  for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(path, ignored); ++i)
+    path = path.parent_path() / std::filesystem::read_symlink(path, ignored);
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(path), ignored);
+}
+
 }  // namespace
 
 std::string as_typed(const std::string& name) {
@@ -57,6 +66,11 @@ std::string as_typed(const std::string& name) {
   std::string quoted = "'";
   for (const char c : name) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
+}
+
+bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  return std::filesystem::equivalent(a, b, ignored) || place_of(a) == place_of(b);
 }
 
 void keep_input(const std::filesystem::path& input, const std::filesystem::path& output) {

@@ -20,6 +20,9 @@ void write_output(const std::string& path, std::string_view text);
 /// @throws std::runtime_error  it cannot be written: its folder is missing, it is a folder
 void keep_input(const std::filesystem::path& input, const std::filesystem::path& output);
 
+/// Whether two names are of one file, which need not be there yet.
+bool is_one_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
 /// A file's name as it is typed: in quotes where a shell would take it apart.
 std::string as_typed(const std::string& name);
 

@@ -10,6 +10,7 @@
 #include "slideway/base/file.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/format/format.hpp"
+#include "slideway/identify/problem_tree.hpp"
 #include "slideway/report/report.hpp"
 #include "slideway/trace/analysis.hpp"
 
@@ -31,6 +32,27 @@ void require_simulated(const Problem& problem) {
 
 }  // namespace
 
+std::vector<std::filesystem::path> files_of(const Problem& problem) {
+  std::vector<std::filesystem::path> files{problem.path};
+  for (const ProfileEntry& entry : problem.profiles) files.push_back(entry.source.path);
+  files.insert(files.end(), problem.beside.begin(), problem.beside.end());
+  return files;
+}
+
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& problem,
+                                            const std::optional<std::filesystem::path>& data_dir) {
+  constexpr std::string_view kVariable = "${SLIDEWAY_DATA}";
+  std::vector<std::filesystem::path> files{problem};
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(problem, ignored)) return files;
+  for (std::string file : files_named(problem)) {
+    if (const std::size_t at = file.find(kVariable); at != std::string::npos && data_dir)
+      file.replace(at, kVariable.size(), std::filesystem::absolute(*data_dir).string());
+    files.push_back(problem.parent_path() / file);
+  }
+  return files;
+}
+
 ReportCommand::ReportCommand(std::string name, std::string arguments, std::string summary)
     : Command(std::move(name), std::move(arguments), std::move(summary)) {
   add_options()("json", po::value(&json_)->value_name("FILE"),
@@ -43,10 +65,16 @@ void ReportCommand::add_html() {
 }
 
 void ReportCommand::keep(const std::filesystem::path& input) const {
-  if (!json_.empty() && json_ == html_)
-    fail("--json and --html name one file, " + json_ + "; accepted: two");
+  if (!json_.empty() && !html_.empty() && is_one_file(json_, html_))
+    fail("--json and --html name one file, " + html_ + "; accepted: two");
   keep_input(input, json_);
   keep_input(input, html_);
+}
+
+void ReportCommand::keep_apart(const std::filesystem::path& output) const {
+  for (const std::string& name : {json_, html_})
+    if (!name.empty() && is_one_file(name, output))
+      fail(name + ": two results would go there; accepted: another name");
 }
 
 void ReportCommand::require_problem(const std::filesystem::path& input) {
@@ -69,10 +97,9 @@ void ReportCommand::report(const Make& text, const Make& json, const Make& html)
 
 std::vector<Profile> ReportCommand::profiles_of(Problem problem, bool ignore_checksum,
                                                 StageLine& line) const {
-  for (ProfileEntry& entry : problem.profiles) {
-    keep(entry.source.path);
+  for (const std::filesystem::path& file : files_of(problem)) keep(file);
+  for (ProfileEntry& entry : problem.profiles)
     entry.source.request.ignore_checksum = ignore_checksum;
-  }
   require_simulated(problem);
   const auto reading = [&](double done) { line.show("reading", done); };
   reading(0.0);
@@ -129,8 +156,12 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop,
                      line.show("closing the loop: " + stage, done);
                    });
   }();
-  report([&] { return text_report(analysis, {.full = full_, .page = page()}); },
-         [&] { return json_report(analysis); }, [&] { return html_report(analysis); });
+  report(
+      [&] {
+        return text_report(
+            analysis, {.full = full_, .whole_box = !obeys_escapes(Stream::out), .page = page()});
+      },
+      [&] { return json_report(analysis); }, [&] { return html_report(analysis); });
   return strict_ && is_negative(analysis) ? kNegativeVerdict : kDone;
 }
 

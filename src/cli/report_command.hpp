@@ -13,6 +13,12 @@
 
 namespace slideway {
 
+/// The problem file and all that it names.
+std::vector<std::filesystem::path> files_of(const Problem& problem);
+/// The same of a file that may have faults; of one that is no regular file, the file alone.
+std::vector<std::filesystem::path> files_of(const std::filesystem::path& problem,
+                                            const std::optional<std::filesystem::path>& data_dir);
+
 /// A command whose result is a text and, with --json, a JSON document; with --html a page made from
 /// the JSON.
 class ReportCommand : public Command {
@@ -30,10 +36,13 @@ class ReportCommand : public Command {
   /// @throws UsageError  an output would replace the input
   void keep(const std::filesystem::path& input) const;
 
+  /// @throws UsageError  the JSON or the page would replace another output
+  void keep_apart(const std::filesystem::path& output) const;
+
   /// @throws UsageError  the file is one of data, not a problem
   static void require_problem(const std::filesystem::path& input);
 
-  /// Reads the profiles of a problem, after a check that no output replaces one.
+  /// Reads the profiles of a problem, after a check that no output replaces one of its files.
   [[nodiscard]] std::vector<Profile> profiles_of(Problem problem, bool ignore_checksum,
                                                  StageLine& line) const;
 

@@ -171,7 +171,8 @@ void require_enough_data(const Model& model) {
   if (values < unknowns)
     throw DataError("the profiles have " + std::to_string(values) + " low-band values for " +
                     std::to_string(unknowns) +
-                    " parameters; lower the degree or the level of the low band");
+                    " parameters; accepted: more readings, fewer parameters (a lower degree) or a "
+                    "lower level of the low band");
 }
 
 Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {

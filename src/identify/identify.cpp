@@ -38,6 +38,7 @@ std::vector<OutlierSummary> largest_outliers(const Profile& profile) {
 InputSummary summarise_input(const Profile& profile) {
   InputSummary out{profile.name,       profile.file,           profile.format, profile.sha256,
                    profile.setup.kind, profile.setup.quantity, profile.role};
+  if (profile.loss != Loss::none) out.loss = profile.loss;
   if (profile.setup.kind == Kind::face) out.azimuth_deg = profile.setup.azimuth_deg;
   out.surface = profile.surface;
   out.instrument = profile.instrument;

@@ -93,18 +93,31 @@ LowBandOptions read_low_band(const Section& root) {
   return read_low_band(*section, {});
 }
 
-void read_profile_entries(const Section& root, const ProfileDefaults& defaults,
-                          const ProblemRules& rules, Problem& problem) {
+/// @return those that nothing is wrong with
+std::vector<ProfileEntry> read_profile_entries(const Section& root, const ProfileDefaults& defaults,
+                                               const ProblemRules& rules, Problem& problem) {
   std::set<std::string> names;
+  std::vector<ProfileEntry> sound;
   const std::vector<Section> sections = root.tables("profile");
-  for (const Section& section : sections)
-    section.attempt([&] {
+  for (const Section& section : sections) {
+    const bool is_sound = section.attempt([&] {
       problem.profiles.push_back(read_profile_entry(section, defaults, rules));
       const std::string& name = problem.profiles.back().profile.name;
       if (!name.empty() && !names.insert(name).second)
         section.refuse("name", "'" + name + "' is used twice; accepted: a name of its own");
     });
+    if (is_sound) sound.push_back(problem.profiles.back());
+  }
   if (sections.empty()) root.refuse("profile", "missing; accepted: at least one [[profile]]");
+  return sound;
+}
+
+/// Adds what reading these profiles refuses.
+void read_for_faults(const Problem& problem, std::vector<ProfileEntry> profiles, Faults& faults) {
+  Problem part;
+  part.path = problem.path;
+  part.profiles = std::move(profiles);
+  static_cast<void>(read_profiles(part, faults));
 }
 
 std::optional<Runout> read_runout(const Section& root) {
@@ -164,14 +177,12 @@ TraceOptions read_trace_options(const Section& root, const std::vector<Channel>&
   return options;
 }
 
-/// Effects, and what names them. A file, a log or an effect that was refused has no name: what
-/// would name it is not read then.
+/// Effects, and what names them. A file or an effect that was refused has no name: what would name
+/// it is not read then.
 void read_model(const Section& root, const ProblemRules& rules, Problem& problem) {
   std::vector<Channel> channels;
-  const bool known = root.attempt([&] {
-    read_effect_files(root, rules, problem);
-    channels = read_channels(root, rules, problem);
-  });
+  const bool known = root.attempt([&] { read_effect_files(root, rules, problem); });
+  root.attempt([&] { channels = read_channels(root, rules, problem); });
   if (!known) return;
   const bool declared = root.attempt([&] {
     read_effects(root, channels, problem);
@@ -198,14 +209,18 @@ Problem problem_of(const TomlValue& tree, const std::filesystem::path& path,
   ProfileDefaults defaults;
   root.attempt([&] { defaults = read_machine(root, problem); });
   root.attempt([&] { defaults.low_band = problem.low_band = read_low_band(root); });
-  root.attempt([&] { read_profile_entries(root, defaults, rules, problem); });
+  std::vector<ProfileEntry> sound;
+  root.attempt([&] { sound = read_profile_entries(root, defaults, rules, problem); });
   std::vector<PlannedCut> cuts;
   root.attempt([&] { cuts = planned_cuts_of(file, tree, defaults, rules, problem.profiles); });
   root.attempt([&] { check_lever_is_given(root, problem, cuts); });
   if (planned) *planned = cuts;
   read_model(root, rules, problem);
   root.attempt([&] { problem.runout = read_runout(root); });
-  if (faults == nullptr || faults->empty()) problem.assumed = assumed_by(root, problem);
+  if (faults == nullptr || faults->empty())
+    problem.assumed = assumed_by(root, problem);
+  else
+    read_for_faults(problem, std::move(sound), *faults);
   return problem;
 }
 

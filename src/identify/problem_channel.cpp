@@ -49,14 +49,34 @@ void take(const TraceFile& file, double scale, Channel& channel) {
   }
 }
 
+std::string name_of_channel(const Section& section) {
+  std::string name = section.required("name", section.text("name"), "a name of its own");
+  if (!is_identifier(name))
+    section.fail("name", "'" + name + "' is no name; accepted: a letter, then letters, digits, _");
+  return name;
+}
+
+/// In the place of a log that was refused, so that what names it is read.
+Channel stand_in(const Section& section) {
+  Channel channel;
+  channel.name = name_of_channel(section);
+  channel.at = channel.values = {0.0, 1.0, 2.0};
+  return channel;
+}
+
+TraceFile read_log(const std::string& name, const std::filesystem::path& path,
+                   const TraceRequest& request) {
+  try {
+    return read_trace(path, request);
+  } catch (const DataError& error) {
+    throw DataError("channel '" + name + "': " + error.what());
+  }
+}
+
 Channel read_channel(const Section& section, const ProblemRules& rules, Problem& problem) {
   section.accept("name file time_column time_unit value_column value_unit clock");
   Channel channel;
-  channel.name = section.required("name", section.text("name"), "a name of its own");
-  if (!is_identifier(channel.name))
-    section.fail("name", "'" + channel.name +
-                             "' is no name; accepted: a letter, then letters, "
-                             "digits, _");
+  channel.name = name_of_channel(section);
   const std::string clock = section.one_of("clock", "t m t_read x").value_or("t");
   for (const IndependentVariable each :
        {IndependentVariable::slide, IndependentVariable::measuring_time,
@@ -68,9 +88,9 @@ Channel read_channel(const Section& section, const ProblemRules& rules, Problem&
   request.value_column = section.column("value_column").value_or(request.value_column);
   const std::filesystem::path path =
       resolved(section, "file", section.required("file", section.text("file"), "a path"), rules);
-  const TraceFile file = read_trace(path, request);
-  take(file, scale_of_places(section, channel, file), channel);
   problem.beside.push_back(path);
+  const TraceFile file = read_log(channel.name, path, request);
+  take(file, scale_of_places(section, channel, file), channel);
   return channel;
 }
 
@@ -91,12 +111,14 @@ DeclaredEffect follower_of(const Section& section, const Channel& channel, const
 std::vector<Channel> read_channels(const Section& root, const ProblemRules& rules,
                                    Problem& problem) {
   std::vector<Channel> out;
-  for (const Section& section : root.tables("channel"))
-    section.attempt([&] {
-      Channel channel = read_channel(section, rules, problem);
+  for (const Section& section : root.tables("channel")) {
+    const auto take_in = [&](Channel channel) {
       problem.own_effects.push_back(follower_of(section, channel, problem));
       out.push_back(std::move(channel));
-    });
+    };
+    if (!section.attempt([&] { take_in(read_channel(section, rules, problem)); }))
+      section.attempt([&] { take_in(stand_in(section)); });
+  }
   return out;
 }
 

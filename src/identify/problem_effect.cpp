@@ -13,7 +13,7 @@
 namespace slideway {
 namespace {
 
-constexpr int kHighestDegree = 99;
+constexpr int kHighestDegree = 20;
 constexpr std::size_t kMostHarmonic = 1000;
 constexpr int kHighestSeed = std::numeric_limits<int>::max();
 

@@ -21,6 +21,15 @@ std::optional<double> as_number(const TomlValue& value) {
   return std::nullopt;
 }
 
+/// Nothing but blanks, those that have no width among them.
+bool is_blank(std::string text) {
+  for (const std::string_view blank :
+       {"\u00a0", "\u200b", "\u200c", "\u200d", "\u200e", "\u200f", "\u2060", "\ufeff"})
+    for (std::size_t at = 0; (at = text.find(blank)) != std::string::npos;)
+      text.erase(at, blank.size());
+  return trimmed(text).empty();
+}
+
 }  // namespace
 
 std::vector<std::string> words(std::string_view list) {
@@ -128,9 +137,9 @@ std::optional<std::string> Section::text(std::string_view key) const {
   const TomlEntry* entry = find(key);
   if (entry == nullptr) return std::nullopt;
   const auto* value = std::get_if<std::string>(&entry->value.data);
-  if (value != nullptr && !trimmed(*value).empty() && printable(*value, value->size()) == *value)
+  if (value != nullptr && !is_blank(*value) && printable(*value, value->size()) == *value)
     return *value;
-  refuse(key, "must be a text on one line, \"...\"");
+  refuse(key, "must be a text on one line that is not empty, \"...\"");
   return std::nullopt;
 }
 
@@ -210,7 +219,7 @@ bool Section::check_word(std::string_view key, const std::string& word,
                          const std::string& meant) const {
   if (std::find(accepted.begin(), accepted.end(), word) != accepted.end()) return true;
   refuse(key, "\"" + word + "\" is not accepted" + std::string(where) + meant +
-                  "; accepted: " + joined(accepted, " "));
+                  (accepted.empty() ? "; there is none" : "; accepted: " + joined(accepted, " ")));
   return false;
 }
 
@@ -321,6 +330,13 @@ Fault Section::fault(std::string_view key, const std::string& what) const {
           .file = *file_,
           .line = line,
           .key = entry != nullptr ? std::string(key) : ""};
+}
+
+void Section::keep_data(const DataError& error) const {
+  Fault of_data = fault("file", "");
+  of_data.message = error.what();
+  of_data.is_of_data = true;
+  keep(of_data);
 }
 
 void Section::keep(const Fault& fault) const {

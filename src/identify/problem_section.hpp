@@ -49,7 +49,7 @@ class Section {
     } catch (const UsageError& error) {
       keep({.message = error.what()});
     } catch (const DataError& error) {
-      keep({.message = error.what(), .is_of_data = true});
+      keep_data(error);
     }
     return faults_->size() == before;
   }
@@ -122,6 +122,7 @@ class Section {
   void refuse_key(std::string_view key, const std::string& what) const;
   [[nodiscard]] Fault fault(std::string_view key, const std::string& what) const;
   void keep(const Fault& fault) const;
+  void keep_data(const DataError& error) const;  // at the key `file`, if there is one
   [[nodiscard]] const TomlEntry* find(std::string_view key) const;
   [[nodiscard]] std::string called(std::string_view key) const;
   [[nodiscard]] bool check_word(std::string_view key, const std::string& word,

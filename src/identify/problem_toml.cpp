@@ -44,7 +44,7 @@ TomlValue converted(const toml::node& node) {
 
 toml::table parsed(const std::filesystem::path& path) {
   try {
-    const FileBytes bytes(path);
+    const FileBytes bytes = FileBytes::of_file_or_stdin(path);
     return toml::parse(bytes.text(), path.string());
   } catch (const DataError& error) {
     throw FaultError({.message = error.what()});
@@ -150,7 +150,7 @@ std::string simulated_problem_text(const Problem& problem, const std::vector<std
 
 std::vector<std::string> files_named(const std::filesystem::path& problem) {
   std::vector<std::string> files;
-  const FileBytes bytes(problem);
+  const FileBytes bytes = FileBytes::of_file_or_stdin(problem);
   try {
     const toml::table root = toml::parse(bytes.text());
     add_files(root, files);

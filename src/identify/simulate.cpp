@@ -116,21 +116,24 @@ std::map<std::string, double> parameters_of(const Truth& truth, const std::strin
   return out;
 }
 
-/// A directory with the problem or its measured profiles in it is none to simulate into.
+/// A directory with the problem or a file it names in it is none to simulate into.
 void keep_inputs(const Problem& problem, const std::filesystem::path& directory) {
-  const auto refuse_if_same = [](const std::filesystem::path& in,
-                                 const std::filesystem::path& out) {
-    std::error_code ignored;
-    if (std::filesystem::equivalent(in, out, ignored))
-      throw UsageError(out.string() +
-                       ": is an input, which would be lost; accepted: another directory");
-  };
-  refuse_if_same(problem.path, directory / "problem.toml");
-  for (const ProfileEntry& entry : problem.profiles)
-    for (const ProfileEntry& written : problem.profiles)
-      refuse_if_same(entry.source.path, directory / (written.profile.name + ".csv"));
-  for (const std::filesystem::path& path : problem.beside)
-    refuse_if_same(path, directory / path.filename());
+  std::vector<std::filesystem::path> inputs{problem.path}, outputs{"problem.toml"};
+  for (const ProfileEntry& entry : problem.profiles) {
+    inputs.push_back(entry.source.path);
+    outputs.emplace_back(entry.profile.name + ".csv");
+  }
+  for (const std::filesystem::path& path : problem.beside) {
+    inputs.push_back(path);
+    outputs.push_back(path.filename());
+  }
+  for (const std::filesystem::path& name : outputs)
+    for (const std::filesystem::path& input : inputs) {
+      std::error_code ignored;
+      if (std::filesystem::equivalent(input, directory / name, ignored))
+        throw UsageError((directory / name).string() +
+                         ": is an input, which would be lost; accepted: another directory");
+    }
 }
 
 std::string table_of(const Profile& profile) {
@@ -160,7 +163,7 @@ void copy_beside(const Problem& problem, const std::filesystem::path& directory)
                        ": another file that is written has its name; accepted: "
                        "files with names of their own");
     taken.push_back(name);
-    write_file(directory / name, std::string(FileBytes(path).text()));
+    write_file(directory / name, std::string(FileBytes::of_regular_file(path).text()));
   }
 }
 

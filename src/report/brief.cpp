@@ -20,7 +20,7 @@ constexpr std::pair<std::string_view, std::string_view> kKept[] = {
      "schema version title about inputs closure travel dominant final crosscheck "
      "conformity trace notes"},
     {"Input",
-     "name file kind quantity role samples missing left_out outlier_count rms_um:4 "
+     "name file kind quantity role loss samples missing left_out outlier_count rms_um:4 "
      "rms_urad:4"},
     {"Closure", "verdict suspects"},
     {"Travel", "slide_min_mm slide_max_mm"},

@@ -12,6 +12,7 @@
 #include "slideway/identify/result_fields.hpp"
 #include "slideway/report/number.hpp"
 #include "summary.hpp"
+#include "text_parts.hpp"
 
 /// Order and names of the elements are those of dcc.xsd 3.2.0 and SI_Format.xsd 2.1.0.
 namespace slideway {
@@ -144,7 +145,7 @@ class Certificate {
     XmlNode statement = list.append_child("dcc:statement");
     say(statement, "dcc:name", "Conformity of " + each.what);
     add(statement, "dcc:norm", "ISO 14253-1");
-    say(statement, "dcc:declaration", each.what + " " + std::string(text_of(each.verdict)));
+    say(statement, "dcc:declaration", each.what + " " + verdict_text(each.verdict));
     const double value = (each.value_um ? each.value_um : each.value_um_per_m).value_or(INFINITY);
     const double limit = (each.limit_um ? each.limit_um : each.limit_um_per_m).value_or(0.0);
     add(statement, "dcc:conformity",

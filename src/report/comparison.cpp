@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "json_parts.hpp"
+#include "json_writer.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "slideway/trace/analysis_fields.hpp"
+#include "summary.hpp"
 #include "text_parts.hpp"
 
 namespace slideway {
@@ -88,24 +91,80 @@ std::string in_words(const LowBandSummary& band) {
          std::string(text_of(band.boundary));
 }
 
-std::string in_words(const InputSummary& in) {
-  return std::string(text_of(in.kind)) + " " + std::string(text_of(in.quantity)) + ", " +
-         std::string(text_of(in.role));
+/// Members of a record that are there, but for some.
+template <Recorded T>
+void add_members(const std::string& what, const T& object, std::span<const std::string_view> others,
+                 Facts& facts) {
+  JsonWriter writer(JsonWriter::Layout::one_line);
+  writer.write(object);
+  const Json members = Json::parse(writer.take());
+  for (const auto& [key, value] : members.items())
+    if (!value.is_null() && std::ranges::count(others, key) == 0)
+      facts.emplace_back(what + ", " + key,
+                         value.is_string() ? value.template get<std::string>() : value.dump());
+}
+
+void add_inputs(const Analysis& analysis, Facts& facts) {
+  constexpr std::string_view kNotInput[] = {"name",  "file",  "sha256",   "outliers", "rms_um",
+                                            "pv_um", "notes", "rms_urad", "pv_urad",  "format"};
+  constexpr std::string_view kName[] = {"profile"};
+  const Result& result = analysis.result;
+  for (const InputSummary& in : result.inputs) {
+    facts.emplace_back("input " + in.name + ", sha256", in.sha256.substr(0, 16));
+    add_members("input " + in.name, in, kNotInput, facts);
+  }
+  for (const LowBandSummary& band : result.low_band)
+    facts.emplace_back("low band of " + band.profile, in_words(band));
+  if (result.travel) facts.emplace_back("lever", text_of(result.travel->lever));
+  for (const ProfileSetup& each : analysis.details.setups)
+    add_members("setup of " + each.profile, each, kName, facts);
+  if (analysis.details.options) add_members("options", *analysis.details.options, {}, facts);
+  for (const Assumption& each : result.assumed)
+    facts.emplace_back("assumed " + each.key, value_of(each));
+  if (!result.final || !result.declared) return;
+  std::vector<std::string> free;
+  for (const FittedParameter& p : result.final->nuisances) free.push_back(p.name);
+  facts.emplace_back("levelling", joined(free));
+  facts.emplace_back("declared effects", joined(result.declared->effects));
+  for (const NoiseSummary& each : result.final->noise)
+    facts.emplace_back("uncertainty of " + each.profile, text_of(each.scaling));
+}
+
+void add_checks(const Result& result, Facts& facts) {
+  for (const Conformity& each : result.conformity) {
+    facts.emplace_back("tolerance of " + each.what,
+                       in_short(each.limit_um ? each.limit_um : each.limit_um_per_m));
+    facts.emplace_back("conformity of " + each.what, verdict_text(each.verdict));
+  }
+  if (result.closure) facts.emplace_back("closure between lines", text_of(result.closure->verdict));
+  const Crosscheck& checks = result.crosscheck;
+  if (checks.squareness)
+    facts.emplace_back("cross-check of squareness", text_of(checks.squareness->verdict));
+  for (const ProfileCheck& each : checks.profiles)
+    facts.emplace_back(each.what + " of " + joined(each.profiles, " and "), text_of(each.verdict));
+  for (const HeldOutCheck& each : checks.held_out)
+    facts.emplace_back(each.profile + ", held out", text_of(each.verdict));
+  for (const PureErrorCheck& each : checks.repeats)
+    facts.emplace_back("repeats " + joined(each.profiles, " and "), text_of(each.verdict));
+}
+
+void add_loop(const TraceResult& trace, Facts& facts) {
+  facts.emplace_back("closed loop", text_of(trace.verdict));
+  if (trace.unfinished) facts.emplace_back("closed loop, ended by", "the time limit");
+  for (const Blunder& each : trace.blunders)
+    facts.emplace_back("blunder of " + each.profile, text_of(each.what));
+  std::vector<std::string> accepted;
+  for (const TraceRound& round : trace.rounds)
+    accepted.push_back(term_name(round.accepted, round.profiles));
+  facts.emplace_back("effects found", accepted.empty() ? "none" : joined(accepted));
+  for (const auto& [gate, value] : trace.gates) facts.emplace_back("gate " + gate, in_short(value));
 }
 
 Facts facts_of(const Analysis& analysis) {
   const Result& result = analysis.result;
   Facts facts{{"title", result.title}, {"version", result.version}};
-  for (const InputSummary& in : result.inputs) {
-    const std::string input = "input " + in.name;
-    facts.emplace_back(input + ", sha256", in.sha256.substr(0, 16));
-    facts.emplace_back(input + ", kind", in_words(in));
-    facts.emplace_back(input + ", samples", std::to_string(in.samples));
-    facts.emplace_back(input + ", left out", std::to_string(in.left_out));
-  }
-  for (const LowBandSummary& band : result.low_band)
-    facts.emplace_back("low band of " + band.profile, in_words(band));
-  if (result.travel) facts.emplace_back("lever", text_of(result.travel->lever));
+  for (const auto& [key, value] : result.about) facts.emplace_back("about, " + key, value);
+  add_inputs(analysis, facts);
   facts.emplace_back("dominant by correlation", result.dominant.by_correlation.value_or("none"));
   facts.emplace_back("dominant by fit", result.dominant.by_fit.value_or("none"));
   if (result.declared)
@@ -114,14 +173,8 @@ Facts facts_of(const Analysis& analysis) {
     facts.emplace_back("fit", result.final->converged ? "converged" : "not converged");
     facts.emplace_back("residual rms of the final model, um", in_short(result.final->rms_um));
   }
-  if (result.crosscheck.squareness)
-    facts.emplace_back("cross-check of squareness", text_of(result.crosscheck.squareness->verdict));
-  if (!analysis.trace) return facts;
-  facts.emplace_back("closed loop", text_of(analysis.trace->verdict));
-  std::vector<std::string> accepted;
-  for (const TraceRound& round : analysis.trace->rounds)
-    accepted.push_back(term_name(round.accepted, round.profiles));
-  facts.emplace_back("effects found", accepted.empty() ? "none" : joined(accepted));
+  add_checks(result, facts);
+  if (analysis.trace) add_loop(*analysis.trace, facts);
   return facts;
 }
 
@@ -149,8 +202,8 @@ std::string parameter_text(const std::vector<Pair>& pairs) {
     return value ? number(*value, count) : "-";
   };
   for (const Pair& p : pairs) {
-    table.add(
-        {p.name, p.in_a, p.in_b, digits(p.difference, 2), digits(p.En, 2), unit_text(p.unit)});
+    table.add({p.name, p.in_a, p.in_b, digits(p.difference, 2), p.En ? En_text(*p.En) : "-",
+               unit_text(p.unit)});
     if (p.En && *p.En > 1.0) changed.push_back(p.name);
   }
   return heading("Final parameters; E_n = |B - A| / U of the difference") + table.text() +

@@ -48,7 +48,7 @@ Analysis parse_report(std::string_view text, const std::string& name) {
 }
 
 Analysis read_report(const std::filesystem::path& path) {
-  return parse_report(FileBytes(path).text(), path.string());
+  return parse_report(FileBytes::of_file_or_stdin(path).text(), path.string());
 }
 
 }  // namespace slideway

@@ -13,7 +13,8 @@ constexpr std::string_view kGreen = "\033[32m", kYellow = "\033[33m", kRed = "\0
 constexpr std::pair<std::string_view, std::string_view> kVerdicts[] = {
     {"Nothing missing:", kGreen}, {"Explained:", kGreen},   {"Ambiguous:", kYellow},
     {"Not identifiable:", kRed},  {"Not converged:", kRed}, {"Unnamed:", kRed},
-    {"INCONSISTENT", kRed},       {"DOES NOT FIT", kRed},   {"NOT CONVERGED", kRed},
+    {"Inconsistent:", kRed},      {"INCONSISTENT", kRed},   {"DOES NOT FIT", kRed},
+    {"NOT CONVERGED", kRed},
 };
 
 std::string coloured(std::string_view line) {

@@ -63,10 +63,12 @@ Html accepted(const Node& trace) {
                                                      {"ΔBIC", HtmlColumn::number},
                                                      {"p", HtmlColumn::number},
                                                      {"not told apart from", HtmlColumn::text}});
-  for (const Node& round : trace["rounds"].entries())
+  for (const Node& round : trace["rounds"].entries()) {
+    const std::optional<double> p = round["p_value"].number_or_null();
     table.add({term(round, "accepted"), html_number(round["delta_bic"].number_or_null(), 3),
-               html_number(round["p_value"].number_or_null(), 2),
+               p ? html_probability(*p) : Html("–"),
                effect_titles(texts(round["ambiguous_with"]), ", ")});
+  }
   return table.html();
 }
 

@@ -53,6 +53,10 @@ Html html_value(const QuantityValue& result, double unit) {
   return is_number ? typeset(text) : Html(text);
 }
 
+Html html_En(const std::optional<double>& En) {
+  return En && std::isfinite(*En) ? typeset(En_text(*En)) : "–";
+}
+
 Html html_probability(double p) {
   return p < 1e-4 ? Html("<\u00a010") + element("sup", "−4") : html_number(p, 2);
 }

@@ -74,8 +74,10 @@ Html html_closure(const Result& result) {
 
 Html input_notes(const Result& result) {
   std::vector<std::string> remarks;
-  for (const InputSummary& in : result.inputs)
+  for (const InputSummary& in : result.inputs) {
     for (const std::string& note : in.notes) remarks.push_back(in.name + ": " + note);
+    if (in.loss) remarks.push_back(in.name + ": loss " + std::string(text_of(*in.loss)));
+  }
   return html_list(remarks);
 }
 

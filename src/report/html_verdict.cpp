@@ -101,13 +101,15 @@ Html named(const FittedParameter& p) {
 Html parameters(const Analysis& analysis) {
   const Result& result = analysis.result;
   if (!result.final) return {};
-  const bool extended = was_extended(analysis);
+  const bool differs = std::ranges::any_of(result.final->parameters, [&](const FittedParameter& p) {
+    return !declared_value(result, p).empty();
+  });
   std::vector<std::pair<Html, HtmlColumn>> columns{{"parameter", HtmlColumn::text},
                                                    {"value ± U", HtmlColumn::number},
                                                    {"unit", HtmlColumn::text},
                                                    {"k", HtmlColumn::number},
                                                    {"u", HtmlColumn::number}};
-  if (extended) {
+  if (differs) {
     columns.emplace_back("declared model", HtmlColumn::number);
     columns.emplace_back("shift / U", HtmlColumn::number);
   }
@@ -118,7 +120,7 @@ Html parameters(const Analysis& analysis) {
         named(p), html_value(p) + (p.at_bound ? ", at the end of its range" : ""),
         html_unit(p.unit), is_known(p) ? html_number(p.coverage_factor, 3) : Html(),
         is_known(p) ? html_number(p.standard_uncertainty, 2) : Html()};
-    if (extended) {
+    if (differs) {
       const FittedParameter* const before = result.declared->find(p.name);
       cells.push_back(before != nullptr ? html_value(*before) : Html());
       Html shift;
@@ -139,12 +141,11 @@ std::vector<Html> warnings(const Analysis& analysis) {
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::inconsistent)
     out.push_back("The squareness of the fit and that of the run-out disagree, " +
-                  html_symbol("E_n") + " = " + html_number(angle->En, 2) +
-                  " > 1: " + angle->reason + ".");
+                  html_symbol("E_n") + " = " + html_En(angle->En) + " > 1: " + angle->reason + ".");
   for (const ProfileCheck& check : result.crosscheck.profiles)
     if (check.verdict == Consistency::inconsistent)
       out.push_back(effect_title(check.what) + " of " + joined(check.profiles, " and ") +
-                    " disagree, " + html_symbol("E_n") + " = " + html_number(check.En, 2) + ".");
+                    " disagree, " + html_symbol("E_n") + " = " + html_En(check.En) + ".");
   for (const HeldOutCheck& check : result.crosscheck.held_out)
     if (check.verdict == HeldOutVerdict::does_not_fit)
       out.push_back(check.profile + ", held out, does not fit: off by " +
@@ -214,9 +215,9 @@ Html html_conformity(const Result& result) {
     QuantityValue value;
     value.value = angle ? each.value_um_per_m : each.value_um;
     value.expanded_uncertainty = angle ? each.U_um_per_m : each.U_um;
-    table.add({each.what, html_value(value),
+    table.add({toleranced(each.what), html_value(value),
                html_number(angle ? each.limit_um_per_m : each.limit_um), angle ? "µm/m" : "µm",
-               bold(text_of(each.verdict))});
+               bold(verdict_text(each.verdict))});
   }
   return table.html();
 }

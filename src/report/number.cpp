@@ -11,7 +11,7 @@
 namespace slideway {
 namespace {
 
-constexpr int kDoubleDigits = 15;  // decimal digits every double carries
+constexpr int kMostDigits = 12;  // of a value; a double carries 15, arithmetic loses some
 
 std::string in_format(double value, std::chars_format format, int precision) {
   std::array<char, 800> buffer{};  // the longest double in fixed form has 309 + 1 + 326 characters
@@ -53,12 +53,13 @@ RoundedPair rounded(double value, double uncertainty) {
   if (!std::isfinite(value) || !std::isfinite(uncertainty) || uncertainty < 0.0)
     throw std::logic_error(
         "rounded: value and uncertainty must be finite, uncertainty not below 0");
-  if (uncertainty == 0.0) return {shortest(value), "0"};
+  if (uncertainty == 0.0) return {significant(value + 0.0, kMostDigits), "0"};
   const int place = exponent_of(uncertainty, 1) - 1;
   const int leading = value == 0.0 ? place : exponent_of(value, 0);
-  if (std::abs(leading - place) > kDoubleDigits)
-    return {in_format(value, std::chars_format::scientific, kDoubleDigits - 1),
+  if (leading - place >= kMostDigits)
+    return {significant(value, kMostDigits),
             in_format(uncertainty, std::chars_format::scientific, 1)};
+  if (leading < place - 1) value = 0.0;
   return {at_place(value, place), at_place(uncertainty, place)};
 }
 
@@ -90,7 +91,7 @@ std::string with_uncertainty(double value, double uncertainty) {
   const double magnitude = std::max(std::abs(value), uncertainty);
   if (magnitude == 0.0 || uncertainty == 0.0 || (magnitude >= 1e-3 && magnitude <= 1e5))
     return joined_pair(plain);
-  if (plain.value.find('e') != std::string::npos) return joined_pair(plain);
+  if (plain.uncertainty.find('e') != std::string::npos) return joined_pair(plain);
 
   const int place = exponent_of(uncertainty, 1) - 1;
   const int exponent = exponent_of(magnitude, std::max(1, exponent_of(magnitude, 0) - place));

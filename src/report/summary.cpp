@@ -16,19 +16,6 @@ namespace {
 constexpr std::size_t kFewLetters = 38;            // names that leave room for a sentence
 constexpr std::size_t kShortNames = 30;            // and for its end
 constexpr std::size_t kBoxText = kLineWidth - 11;  // beside the label
-constexpr const char* kNothingToDo = "none is needed for these numbers";
-
-/// Of the declared numbers, in U: what is no alarm.
-double harmless_shift(const TraceResult& trace) {
-  for (const auto& [name, value] : trace.gates)
-    if (name == "harmless_shift") return value;
-  return Gates{}.harmless_shift;
-}
-
-bool is_harmless(const Analysis& analysis) {
-  const std::optional<Shift> shift = largest_shift(analysis.result);
-  return shift && std::abs(shift->in_expanded_uncertainties) <= harmless_shift(*analysis.trace);
-}
 
 std::string in_expanded_uncertainties(double shift) {
   return number(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " U";  // no -0
@@ -110,21 +97,21 @@ std::string what_was_missing(const Analysis& analysis) {
   const TraceResult& trace = *analysis.trace;
   const std::size_t count = found_effects(trace).size();
   const std::string names = found(trace);
-  const std::string were = (names.size() <= kFewLetters ? names : counted(count, "effect")) +
-                           (count > 1 ? " were missing" : " was missing");
+  const std::string lacked =
+      "the model lacked " + (names.size() <= kFewLetters ? names : counted(count, "effect"));
   const std::optional<Shift> shift = largest_shift(analysis.result);
-  if (!shift) return were + (count > 1 ? " and are" : " and is") + " in the model now";
-  if (is_harmless(analysis)) return were + ", which changes none of these numbers";
-  return were + " and had moved " + moved_by(*shift);
+  if (!shift) return lacked + ", now in it";
+  if (is_harmless(analysis)) return lacked + ", which changes none of these numbers";
+  return lacked + ", which had moved " + moved_by(*shift);
 }
 
 std::string what_may_be_missing(const Analysis& analysis) {
   const std::string names = found(*analysis.trace);
   const std::string open =
       names.size() <= kFewLetters
-          ? names + " is missing" +
+          ? "the model lacks " + names +
                 (names.size() < kShortNames ? ": the data cannot tell which" : "")
-          : "the data cannot tell which effect is missing";
+          : "the data cannot tell which effect the model lacks";
   const std::optional<Shift> shift = largest_shift(analysis.result);
   return shift ? open + ", and it moves " + moved_by(*shift) : open;
 }
@@ -178,12 +165,6 @@ std::string straightness_of(const Result& result) {
   return "E_ZX is not determined" + (form.reason.empty() ? "" : ": " + form.reason);
 }
 
-const FittedParameter* squareness_parameter(const Result& result) {
-  if (!result.final) return nullptr;
-  const auto found = std::ranges::find_if(result.final->parameters, is_squareness);
-  return found == result.final->parameters.end() ? nullptr : &*found;
-}
-
 std::string squareness_of(const Result& result) {
   if (const FittedParameter* const p = squareness_parameter(result))
     return is_known(*p) ? value_text(*p, kMicroradian) + " µm/m" : "not determined by these data";
@@ -216,6 +197,13 @@ std::string lead_of(const Result& result) {
   return effect_title(*leader) + " dominates";
 }
 
+/// Whether the run-out, two profiles or one that was held out speak against the model.
+bool is_contradicted(const Crosscheck& checks) {
+  const auto does = [](const auto& check) { return contradicts(check); };
+  return (checks.squareness && checks.squareness->verdict == Consistency::inconsistent) ||
+         std::ranges::any_of(checks.profiles, does) || std::ranges::any_of(checks.held_out, does);
+}
+
 /// What speaks against the numbers: they break a tolerance or disagree with a check.
 std::vector<std::string> objections(const Result& result) {
   std::vector<std::string> out;
@@ -226,11 +214,10 @@ std::vector<std::string> objections(const Result& result) {
   if (angle && angle->verdict == Consistency::inconsistent)
     out.emplace_back("the run-out contradicts the squareness");
   for (const ProfileCheck& check : result.crosscheck.profiles)
-    if (check.verdict == Consistency::inconsistent)
+    if (contradicts(check))
       out.push_back(joined(check.profiles, " and ") + " disagree in " + check.what);
   for (const HeldOutCheck& check : result.crosscheck.held_out)
-    if (check.verdict == HeldOutVerdict::does_not_fit)
-      out.push_back(check.profile + ", held out, does not fit");
+    if (contradicts(check)) out.push_back(check.profile + ", held out, does not fit");
   return out;
 }
 
@@ -247,7 +234,13 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   if (!result.final->converged)
     return say(Alarm::bad, "Not converged", "no number of this report can be relied on");
   say(Alarm::plain, "Fitted", "no missing effect was looked for");
-  const std::string finding = analysis.trace ? say_finding(analysis, out) : out.verdict;
+  std::string finding = analysis.trace ? say_finding(analysis, out) : out.verdict;
+  if (is_contradicted(result.crosscheck) && analysis.trace &&
+      (out.alarm == Alarm::good || out.alarm == Alarm::plain)) {
+    out.badge = "Inconsistent";
+    if (analysis.trace->verdict == TraceVerdict::nothing_missing)
+      finding = "the model explains what was fitted down to noise";
+  }
   std::vector<std::string> clauses = objections(result);
   if (!clauses.empty()) out.alarm = std::max(out.alarm, Alarm::warn);
   const bool harms = out.alarm == Alarm::warn || out.alarm == Alarm::bad;
@@ -275,23 +268,25 @@ void say_crosscheck(const Result& result, Summary& out) {
     (is_consistent ? consistent : parts)
         .push_back(std::string(is_consistent ? "consistent" : "INCONSISTENT") +
                    " with the run-out, Eq. (21): " + value_text(indirect, kMicroradian) +
-                   " µm/m, E_n = " + number(*angle->En, 2));
+                   " µm/m, E_n = " + En_text(*angle->En));
   }
   for (const ProfileCheck& check : checks.profiles)
-    if (check.verdict == Consistency::inconsistent)
+    if (contradicts(check))
       parts.push_back("INCONSISTENT: " + check.what + " of " + joined(check.profiles, " and ") +
-                      (check.En ? ", E_n = " + number(*check.En, 2) : ""));
+                      (check.En ? ", E_n = " + En_text(*check.En) : ""));
   for (const HeldOutCheck& check : checks.held_out) {
-    const bool fits = check.verdict == HeldOutVerdict::fits;
+    const bool fits = !contradicts(check);
     (fits ? consistent : parts)
         .push_back(check.profile + ", held out, " +
                    (fits ? "fits" : "DOES NOT FIT at " + number(check.at_mm, 4) + " mm"));
   }
   std::ranges::move(consistent, std::back_inserter(parts));
   out.has_crosscheck = !parts.empty();
-  if (parts.empty())
-    parts.push_back("none" + (angle && !angle->reason.empty() ? ": " + angle->reason : ""));
-  out.crosscheck = joined(parts, "; ");
+  const std::string none = angle && !angle->reason.empty() ? ": " + angle->reason : "";
+  out.crosscheck = parts.empty() ? "none" + none : joined(parts, "; ");
+  out.checks = out.conformity.empty() ? out.crosscheck
+               : parts.empty()        ? out.conformity + "; no cross-check" + none
+                                      : out.conformity + "; " + out.crosscheck;
 }
 
 void say_missing(const Analysis& analysis, Summary& out) {
@@ -302,61 +297,21 @@ void say_missing(const Analysis& analysis, Summary& out) {
     out.missing = "not known: the time limit ended the search";
   if (analysis.trace && !analysis.trace->blunders.empty())
     out.missing = "not looked for while a profile has a blunder";
+  if (analysis.result.final && !analysis.result.final->converged)
+    out.missing = "not known: the fit did not converge";
+  else if (analysis.trace && is_contradicted(analysis.result.crosscheck) &&
+           analysis.trace->verdict == TraceVerdict::nothing_missing)
+    out.missing = "nothing that the fitted profiles show";
   out.missing_in_brief = out.missing;
   if (!was_extended(analysis)) return;
   out.has_missing = true;
-  std::string moved, size;
   const auto shift = largest_shift(analysis.result);
-  if (shift && std::abs(shift->in_expanded_uncertainties) > harmless_shift(*analysis.trace))
-    moved = "moved " + moved_by(*shift) + ": ";
-  else
-    size = size_of_missing(analysis.result);
-  const std::size_t left = kBoxText - std::min(kBoxText, code_points(moved + size));
-  out.missing = moved + found(*analysis.trace) + size;
-  out.missing_in_brief = moved + found_in_brief(*analysis.trace, left) + size;
-}
-
-std::string next_step(const Analysis& analysis) {
-  const Result& result = analysis.result;
-  if (!result.final) return "slideway identify, which fits and looks for what is missing";
-  if (analysis.trace && !analysis.trace->blunders.empty()) return analysis.trace->advice.front();
-  for (const UndeterminedDirection* direction : open_directions(*result.final))
-    if (!direction->advice.empty())
-      return with_titles(direction->advice) + "; slideway plan tries further cuts on paper";
-  if (analysis.trace && analysis.trace->verdict == TraceVerdict::ambiguous && is_harmless(analysis))
-    return kNothingToDo;
-  const auto& angle = result.crosscheck.squareness;
-  if (angle && angle->verdict == Consistency::inconsistent)
-    return "look for another cause: the squareness cannot have made this form";
-  if (analysis.trace && analysis.trace->unfinished) return "run it again with a longer time limit";
-  if (analysis.trace && !analysis.trace->advice.empty())
-    return with_titles(analysis.trace->advice.front());
-  if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
-  if (analysis.trace->verdict == TraceVerdict::unnamed)
-    return "look at the residual on the page: where the structure is, and over what it repeats";
-  return kNothingToDo;
-}
-
-/// Effects whose column is that of the squareness, but for the one that is so by Eq. (16).
-std::string one_with_squareness(const TraceResult& trace) {
-  std::vector<std::string> names;
-  for (const NotSeparable& each : trace.not_separable)
-    if (each.same_as.find("dbeta_xz") != std::string::npos && !is_vertical(each.effect))
-      names.push_back(each.effect);
-  return effect_titles(names, ", ");
-}
-
-/// The most that an effect which is just not seen moves the squareness.
-std::string unseen(const Analysis& analysis) {
-  if (!analysis.trace) return "";
-  const DetectionLimit* worst = nullptr;
-  for (const DetectionLimit& each : analysis.trace->detection_limits)
-    if (each.squareness_rad && (!worst || *each.squareness_rad > *worst->squareness_rad))
-      worst = &each;
-  if (!worst) return "";
-  const std::string same = one_with_squareness(*analysis.trace);
-  return (same.empty() ? "" : "by any amount: " + same + "; ") + "by up to " +
-         number(*worst->squareness_rad / kMicroradian, 2) + " µm/m: " + effect_title(worst->effect);
+  const bool moved = shift && !is_harmless(analysis);
+  const std::string what =
+      moved ? ", which moved " + moved_by(*shift) : size_of_missing(analysis.result);
+  const std::size_t left = kBoxText - std::min(kBoxText, code_points(what));
+  out.missing = found(*analysis.trace) + what;
+  out.missing_in_brief = found_in_brief(*analysis.trace, left) + what;
 }
 
 }  // namespace
@@ -368,12 +323,17 @@ Summary summary_of(const Analysis& analysis) {
     held.push_back(each.what + " " +
                    (each.verdict == ConformityVerdict::does_not_conform
                         ? "DOES NOT CONFORM"
-                        : std::string(text_of(each.verdict))));
+                        : verdict_text(each.verdict)));
   out.conformity = joined(held, "; ");
   say_verdict(analysis, out);
   out.straightness = straightness_of(analysis.result);
   out.squareness = squareness_of(analysis.result);
-  out.unseen = unseen(analysis);
+  const bool has_curve = out.straightness.starts_with("E_ZX ") && out.straightness.ends_with("µm");
+  out.result =
+      out.straightness + (has_curve ? " (end points)" : "") + "; squareness " + out.squareness;
+  if (analysis.result.final && !analysis.result.final->converged)
+    out.result = "not determined: the fit did not converge";
+  out.unseen = moved_unseen(analysis);
   say_crosscheck(analysis.result, out);
   say_missing(analysis, out);
   out.next = next_step(analysis);

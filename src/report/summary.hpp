@@ -18,9 +18,11 @@ struct Summary {
   std::string verdict;       // in a sentence, what harms most first
   std::string straightness;  // "E_ZX 24.4 ± 6.8 µm", or why there is none
   std::string squareness;    // "2.797 ± 0.029 µm/m", or why there is none
+  std::string result;        // both, with the definition of E_ZX
   std::string unseen;        // what may have moved it unseen: "by up to 4.1 µm/m: tool wear"
   std::string conformity;    // "flatness conforms", "" without a tolerance
   std::string crosscheck;
+  std::string checks;   // both
   std::string missing;  // what was missing and what that had done
   std::string next;
   std::string missing_in_brief, next_in_brief;  // in a line of the box, if it can be
@@ -29,6 +31,23 @@ struct Summary {
 };
 
 Summary summary_of(const Analysis& analysis);
+
+inline constexpr const char* kNothingToDo = "none is needed for these numbers";
+/// What to do now, or kNothingToDo.
+std::string next_step(const Analysis& analysis);
+
+/// The most that an effect which is just not seen moves the squareness; "": none is known.
+std::string moved_unseen(const Analysis& analysis);
+
+/// Whether what the loop has added moved no declared number worth an alarm. REQUIRES a loop.
+bool is_harmless(const Analysis& analysis);
+
+/// Whether a check speaks against the model.
+bool contradicts(const ProfileCheck& check);
+bool contradicts(const HeldOutCheck& check);
+
+/// Null where it is not in the model.
+const FittedParameter* squareness_parameter(const Result& result);
 
 /// An effect's plain name; "unnamed" is "something without a name".
 std::string effect_title(const std::string& name);

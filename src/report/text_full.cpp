@@ -42,7 +42,8 @@ std::string inputs(const Result& result) {
                size_text(in.rms_um, in.rms_urad), size_text(in.pv_um, in.pv_urad)});
     notes += note(in.name + ": " + in.file + ", sha256 " + in.sha256.substr(0, 16) +
                   (in.missing > 0 ? ", " + counted(in.missing, "missing value") : "") +
-                  (in.left_out > 0 ? ", " + std::to_string(in.left_out) + " left out" : ""));
+                  (in.left_out > 0 ? ", " + std::to_string(in.left_out) + " left out" : "") +
+                  (in.loss ? ", loss " + text(*in.loss) : ""));
     for (const std::string& each : in.notes) notes += note(in.name + ": " + each);
   }
   return heading("Inputs") + table.text() + notes;
@@ -241,7 +242,7 @@ std::string squareness_check(const SquarenessCheck& check) {
   std::string out =
       "Squareness by the fit: " + angle(check.fit_rad, check.fit_U_rad) +
       "; by the run-out, Eq. (21): " + angle(check.indirect_rad, check.indirect_U_rad) + ". ";
-  if (check.En) out += "E_n = " + number(*check.En, 2) + ": ";
+  if (check.En) out += "E_n = " + En_text(*check.En) + ": ";
   if (check.verdict == Consistency::consistent)
     out += "consistent (E_n is not above 1). ";
   else if (check.verdict == Consistency::inconsistent)
@@ -264,17 +265,17 @@ std::string crosscheck(const Crosscheck& checks) {
   std::string out = checks.squareness ? squareness_check(*checks.squareness) : "";
   for (const ProfileCheck& check : checks.profiles)
     out += note(check.what + " of " + joined(check.profiles, " and ") +
-                (check.En ? ": E_n = " + number(*check.En, 2) : "") + ", " + text(check.verdict));
+                (check.En ? ": E_n = " + En_text(*check.En) : "") + ", " + text(check.verdict));
   for (const HeldOutCheck& check : checks.held_out)
     out += note(check.profile + ", held out: " + text(check.verdict) + " (chi-square " +
-                number(check.chi2, 3) + ", p = " + probability(check.p_value) + "), off by up to " +
+                number(check.chi2, 3) + ", " + p_text(check.p_value) + "), off by up to " +
                 size_text(check.largest_um, check.largest_urad) + " at " + number(check.at_mm, 4) +
                 " mm");
   for (const PureErrorCheck& check : checks.repeats)
     out += note("repeats " + joined(check.profiles, " and ") + ": what they have in common " +
                 (check.verdict == RepeatFit::fits ? "is no more than noise"
                                                   : "is LACK OF FIT of the model") +
-                " (F = " + number(check.F, 3) + ", p = " + probability(check.p_value) + ", " +
+                " (F = " + number(check.F, 3) + ", " + p_text(check.p_value) + ", " +
                 size_text(check.common_um, check.common_urad) + " rms)");
   return out.empty() ? "" : heading("Cross-check") + out;
 }

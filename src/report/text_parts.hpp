@@ -15,6 +15,16 @@ std::string note(const std::string& text);
 /// "-" where it is not finite.
 std::string number(double value, int digits);
 std::string probability(double p);
+/// "p = 0.03", "p < 1e-4".
+std::string p_text(double p);
+/// E_n in two digits, or in as many as tell it from its limit 1: "1.004".
+std::string En_text(double En);
+/// "cannot be decided" where a report has "can not be decided".
+std::string verdict_text(ConformityVerdict verdict);
+/// A quantity with a tolerance, by its definition: "straightness (minimum zone)".
+std::string toleranced(const std::string& what);
+/// What the declared model gave, "" where that is the same number.
+std::string declared_value(const Result& result, const FittedParameter& p);
 /// "um" as µm, "urad" as µrad, "1" as nothing.
 std::string unit_text(const std::string& unit);
 /// Of a pair of numbers such as rms_um and rms_urad the one that is there, with its unit.

@@ -29,6 +29,30 @@ std::string unit_text(const std::string& unit) {
 
 std::string probability(double p) { return p < 1e-4 ? "< 1e-4" : number(p, 2); }
 
+std::string p_text(double p) { return (p < 1e-4 ? "p " : "p = ") + probability(p); }
+
+std::string En_text(double En) {
+  constexpr int kMostDigits = 15;
+  std::string text = number(En, 2);
+  for (int digits = 3; En > 1.0 && text == "1" && digits <= kMostDigits; ++digits)
+    text = number(En, digits);
+  return text;
+}
+
+std::string verdict_text(ConformityVerdict verdict) {
+  return verdict == ConformityVerdict::undecided ? "cannot be decided"
+                                                 : std::string(text_of(verdict));
+}
+
+std::string toleranced(const std::string& what) {
+  return what == "straightness" ? what + " (minimum zone)" : what;
+}
+
+std::string declared_value(const Result& result, const FittedParameter& p) {
+  const FittedParameter* const before = result.declared ? result.declared->find(p.name) : nullptr;
+  return before == nullptr || value_text(*before) == value_text(p) ? "" : value_text(*before);
+}
+
 std::string size_text(const std::optional<double>& um, const std::optional<double>& urad,
                       int digits) {
   std::vector<std::string> out;
@@ -70,9 +94,9 @@ std::vector<std::string> first_lines(std::vector<std::string> lines, std::size_t
 
 // --- the box ---------------------------------------------------------------------------------
 
-/// Up to six lines. Where a sentence needs a second one, entries that say nothing leave; only then
-/// long entries are cut, from the last one up, the verdict and the numbers last.
-std::string box(const Summary& summary, const std::string& page) {
+/// With room for six lines: where a sentence needs a second one, entries that say nothing leave;
+/// only then long entries are cut, from the last one up, the verdict and the numbers last.
+std::string box(const Summary& summary, const TextOptions& options) {
   std::vector<std::vector<std::string>> entries;
   const auto add = [&](const char* label, const std::string& words) {
     std::string first = "│ " + std::string(label);
@@ -81,13 +105,13 @@ std::string box(const Summary& summary, const std::string& page) {
     for (std::size_t i = 1; i < lines.size(); ++i) lines[i].replace(0, 1, "│");
     entries.push_back(std::move(lines));
   };
+  const bool is_whole = options.full || options.whole_box;
   add("Verdict", summary.badge + ": " + summary.verdict + ".");
-  add("Result", summary.straightness + "; squareness " + summary.squareness);
-  const bool has_limit = !summary.conformity.empty();
-  add("Check", summary.conformity + (has_limit ? "; " : "") + summary.crosscheck);
-  add("Missing", summary.missing_in_brief);
-  add("Next", summary.next_in_brief);
-  add("Page", page.empty() ? "none was written; --html FILE writes it" : page);
+  add("Result", summary.result);
+  add("Check", summary.checks);
+  add("Missing", is_whole ? summary.missing : summary.missing_in_brief);
+  add("Next", is_whole ? summary.next : summary.next_in_brief);
+  add("Page", options.page.empty() ? "none was written; --html FILE writes it" : options.page);
   std::size_t count = 0;
   for (const auto& lines : entries) count += lines.size();
   const auto leave = [&](std::size_t entry, bool says_nothing) {
@@ -96,10 +120,9 @@ std::string box(const Summary& summary, const std::string& page) {
     entries[entry].clear();
   };
   leave(3, !summary.has_missing || summary.verdict_names_missing);
-  leave(4, !summary.has_next);
-  leave(5, page.empty());
-  for (const std::size_t give : {4U, 5U, 3U, 2U, 0U, 1U})
-    while (count > kBoxLines && entries[give].size() > 1) {
+  leave(5, options.page.empty());
+  for (const std::size_t give : {5U, 3U, 2U, 4U, 0U, 1U})
+    while (!is_whole && count > kBoxLines && entries[give].size() > 1) {
       entries[give] = first_lines(entries[give], entries[give].size() - 1);
       --count;
     }
@@ -119,12 +142,6 @@ std::string coverage(const FittedParameter& p) {
 
 std::string value_of(const FittedParameter& p) {
   return value_text(p) + (p.at_bound ? ", at its bound" : "");
-}
-
-/// What the declared model gave, where that is another number.
-std::string declared_value(const Result& result, const FittedParameter& p) {
-  const FittedParameter* const before = result.declared ? result.declared->find(p.name) : nullptr;
-  return before == nullptr || value_text(*before) == value_text(p) ? "" : value_text(*before);
 }
 
 std::string model_heading(const ModelResult& model) {
@@ -195,9 +212,8 @@ std::string tolerances(const Result& result) {
     value.value = angle ? each.value_um_per_m : each.value_um;
     value.expanded_uncertainty = angle ? each.U_um_per_m : each.U_um;
     const double limit = (angle ? each.limit_um_per_m : each.limit_um).value_or(NAN);
-    out +=
-        item("Tolerance of " + each.what + ": " + value_text(value) + ", limit " +
-             number(limit, 4) + (angle ? " µm/m: " : " µm: ") + std::string(text_of(each.verdict)));
+    out += item("Tolerance of " + toleranced(each.what) + ": " + value_text(value) + ", limit " +
+                number(limit, 4) + (angle ? " µm/m: " : " µm: ") + verdict_text(each.verdict));
   }
   return out.empty() ? "" : "\n" + out;
 }
@@ -282,7 +298,7 @@ std::string parameter_table(const Result& result, std::size_t most) {
 std::string text_report(const Analysis& analysis, const TextOptions& options) {
   const Result& result = analysis.result;
   const Summary summary = summary_of(analysis);
-  std::string text = box(summary, options.page);
+  std::string text = box(summary, options);
   text += in_lines(first_lines(lines_of(heading("slideway " + result.version +
                                                 (result.title.empty() ? "" : ": " + result.title))),
                                2));

@@ -134,6 +134,22 @@ TEST(FileBytes, OfARegularFileRefusesWhatMayNeverEnd) {
   EXPECT_EQ(FileBytes::of_regular_file(folder.file("a", "bytes")).text(), "bytes");
 }
 
+TEST(FileBytes, OfAFileOrStdinReadsAPipeThatIsOpenAlready) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  ASSERT_EQ(::write(ends[1], "bytes", 5), 5);
+  ::close(ends[1]);
+  EXPECT_EQ(FileBytes::of_file_or_stdin("/dev/fd/" + std::to_string(ends[0])).text(), "bytes");
+  ::close(ends[0]);
+  const TemporaryFolder folder;
+  const fs::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const fs::path& path : {pipe, fs::path("/dev/zero")})
+    EXPECT_THAT(
+        [&] { FileBytes::of_file_or_stdin(path); },
+        ThrowsMessage<DataError>(path.string() + ": is a pipe or a device, expected a file"));
+}
+
 TEST(FileBytes, KeepsItsBytesWhenMoved) {
   const TemporaryFolder folder;
   const std::string large(70'000'000, 'x');

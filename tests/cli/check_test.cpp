@@ -41,6 +41,25 @@ TEST_F(Check, NamesEveryFaultWithItsLineAndAMark) {
     EXPECT_THAT(found.out, HasSubstr(part));
 }
 
+TEST_F(Check, OneFaultHidesNoOther) {
+  const std::string profile =
+      "[[profile]]\nname = \"gone\"\nfile = \"gone.csv\"\nposition_column = \"x_mm\"\n"
+      "value_column = \"z_um\"\nposition_unit = \"mm\"\nvalue_unit = \"um\"\n";
+  const ProgramRun found =
+      check(ProblemText{.columns = "position_column = \"q\"\nvalue_column = \"z_um\"\n",
+                        .effect = profile + "[[effect]]\nname = \"straightness\"\ndegree = 3\n"
+                                            "body = \"y\"\n[[effect]]\nname = \"channel\"\n"
+                                            "channel = \"oil\"\n",
+                        .more = "[[channel]]\nname = \"oil\"\nfile = \"oil.csv\"\n"
+                                "time_column = \"t\"\nvalue_column = \"T\"\ntime_unit = \"s\"\n"}
+                .text());
+  EXPECT_EQ(found.exit_code, 2);
+  for (const char* part :
+       {"no column 'q'", "profile 'gone': gone.csv: cannot be read", "no body 'y'",
+        "channel 'oil': oil.csv: cannot be read", "| file = \"oil.csv\"", "4 faults"})
+    EXPECT_THAT(found.out, HasSubstr(part));
+}
+
 TEST_F(Check, NeverOffersAUnitOfAnotherSize) {
   for (const char* unit : {"mum", "micron", "mm ", "nmm", "km", "MM"}) {
     const std::string said =

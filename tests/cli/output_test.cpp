@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
@@ -140,6 +141,84 @@ TEST_F(Output, NeverReplacesTheInput) {
   }
   EXPECT_EQ(contents(path("problem.toml")), problem);
   EXPECT_EQ(contents(path("face.csv")), csv);
+}
+
+class Inputs : public Output {
+ protected:
+  /// A problem with a log and a file of effects.
+  void SetUp() override {
+    folder_.file("problem.toml",
+                 ProblemText{.machine = "effects = [\"shop.toml\"]\n[machine]\nlever = \"paper\"\n",
+                             .profile_more = "start_s = 0\nfeed_mm_per_min = 60\n"
+                                             "spindle_rpm = 100\ncut_direction = \"inward\"\n",
+                             .more = "[[channel]]\nname = \"oil\"\nfile = \"oil.csv\"\n"
+                                     "time_column = \"t\"\nvalue_column = \"T\"\n"
+                                     "time_unit = \"s\"\n"}
+                     .text());
+    folder_.file("face.csv", face_csv(64));
+    folder_.file("oil.csv", "t,T\n0,20\n100,21\n200,25\n");
+    folder_.file("shop.toml",
+                 "[[effect]]\nname = \"formula\"\nas = \"kink\"\nformula = \"a * r^3\"\n"
+                 "parameters = [{ name = \"a\", unit = \"um\" }]\ncause = \"c\"\n"
+                 "source = \"s\"\ntypical = \"t\"\n");
+  }
+};
+
+TEST_F(Inputs, ThatAProblemNamesAreNeverReplaced) {
+  ASSERT_EQ(run({"check", "problem.toml"}).exit_code, 0);
+  std::filesystem::create_symlink("oil.csv", path("link.csv"));
+  for (const char* input : {"oil.csv", "./shop.toml", "link.csv", "face.csv"}) {
+    for (const char* command : {"identify", "fit", "rank", "check", "plan"}) {
+      const ProgramRun refused = run({command, "problem.toml", "--json", input});
+      EXPECT_TRUE(is_refused(refused, 2)) << command << ' ' << input;
+      EXPECT_THAT(refused.err, HasSubstr("is the input, which would be lost"));
+    }
+    folder_.file("list.csv", "problem\nproblem.toml\n");
+    EXPECT_TRUE(is_refused(run({"batch", "list.csv", "--out", input}), 2)) << input;
+    EXPECT_TRUE(is_refused(run({"batch", "list.csv", "--out", "out.jsonl", "--json", input}), 2));
+  }
+  EXPECT_THAT(contents(path("oil.csv")), testing::StartsWith("t,T"));
+  EXPECT_THAT(contents(path("shop.toml")), testing::StartsWith("[[effect]]"));
+}
+
+TEST_F(Inputs, AreNotReplacedWhereTheProblemHasFaults) {
+  folder_.file("problem.toml", ProblemText{.effect = "[[effect]]\nname = \"squarenes\"\n"}.text());
+  EXPECT_TRUE(is_refused(run({"check", "problem.toml", "--json", "face.csv"}), 2));
+  EXPECT_EQ(contents(path("face.csv")), face_csv(64));
+}
+
+TEST_F(Inputs, AndOutputsAreFilesNotNames) {
+  std::filesystem::create_symlink("o.json", path("o.html"));
+  for (const char* page : {"./o.json", "o.html", "o.json"}) {
+    const ProgramRun refused =
+        run({"identify", "problem.toml", "--json", "o.json", "--html", page});
+    EXPECT_TRUE(is_refused(refused, 2)) << page;
+    EXPECT_THAT(refused.err, HasSubstr("name one file"));
+  }
+  folder_.file("list.csv", "problem\nproblem.toml\n");
+  EXPECT_TRUE(is_refused(run({"batch", "list.csv", "--out", "o", "--json", "./o"}), 2));
+  EXPECT_FALSE(std::filesystem::exists(path("o.json")));
+}
+
+TEST_F(Inputs, ThatMayNeverEndAreRefused) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"identify", "pipe"},
+                                             {"check", "/dev/zero"},
+                                             {"simulate", "pipe", "--out", "d"},
+                                             {"diff", "pipe", "/dev/zero"},
+                                             {"export", "/dev/zero", "--to", "isg"},
+                                             {"report", "pipe", "--html", "o.html"},
+                                             {"batch", "pipe", "--out", "o"},
+                                             {"batch", "verify", "pipe", "problem.toml"}}) {
+    const ProgramRun refused = run(arguments);
+    EXPECT_NE(refused.exit_code, 0) << arguments[0];
+    EXPECT_THAT(refused.out + refused.err, HasSubstr("is a pipe or a device, expected a file"));
+  }
+  folder_.file(
+      "problem.toml",
+      ProblemText{.machine = "effects = [\"pipe\"]\n[machine]\nlever = \"paper\"\n"}.text());
+  EXPECT_TRUE(is_refused(run({"fit", "problem.toml"}), 2));
 }
 
 }  // namespace

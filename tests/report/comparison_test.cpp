@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "report/sample_result.hpp"
@@ -62,6 +63,45 @@ TEST(Comparison, NamesWhatChanged) {
     std::istringstream text(swapped ? comparison_text(later, first)
                                     : comparison_text(first, later));
     for (std::string line; std::getline(text, line);) EXPECT_LE(columns_of(line), 80U) << line;
+  }
+}
+
+TEST(Comparison, NamesEachChangeOfInputsOptionsAndVerdicts) {
+  const auto full = [](const std::string& name) {
+    NamedReport out = sample(name);
+    Result& result = out.analysis.result;
+    out.analysis.details.setups = {{.profile = "feed2", .setup = {}}};
+    out.analysis.details.options.emplace();
+    out.analysis.trace.emplace().gates = {{"delta_bic", 10.0}};
+    result.crosscheck.held_out = {{.profile = "cut3"}};
+    result.crosscheck.profiles = {{.profiles = {"a", "c"}, .what = "squareness"}};
+    result.conformity = {{.what = "straightness", .limit_um = 5.0}};
+    return out;
+  };
+  using Changes = std::vector<std::pair<std::string, std::function<void(Analysis&)>>>;
+  const Changes changes{
+      {"input feed2, loss", [](Analysis& a) { a.result.inputs[0].loss = Loss::huber; }},
+      {"setup of feed2, feed_mm_per_min",
+       [](Analysis& a) { a.details.setups[0].setup.feed_mm_per_min = 2.0; }},
+      {"setup of feed2, overhang_mm",
+       [](Analysis& a) { a.details.setups[0].setup.overhang_mm = 3.0; }},
+      {"options, max_effects", [](Analysis& a) { a.details.options->max_effects += 1; }},
+      {"assumed profile.feed2.free", [](Analysis& a) { a.result.assumed.clear(); }},
+      {"gate delta_bic", [](Analysis& a) { a.trace->gates[0].second = 6.0; }},
+      {"tolerance of straightness", [](Analysis& a) { a.result.conformity[0].limit_um = 4.0; }},
+      {"conformity of straightness",
+       [](Analysis& a) { a.result.conformity[0].verdict = ConformityVerdict::does_not_conform; }},
+      {"cut3, held out",
+       [](Analysis& a) { a.result.crosscheck.held_out[0].verdict = HeldOutVerdict::does_not_fit; }},
+      {"squareness of a and c",
+       [](Analysis& a) { a.result.crosscheck.profiles[0].verdict = Consistency::inconsistent; }}};
+  EXPECT_THAT(comparison_text(full("a"), full("b")), HasSubstr("verdicts are the same."));
+  for (const auto& [what, change] : changes) {
+    NamedReport later = full("b");
+    change(later.analysis);
+    const json found = json::parse(comparison_json(full("a"), later))["changes"];
+    ASSERT_EQ(found.size(), 1U) << what;
+    EXPECT_EQ(found[0]["what"], what);
   }
 }
 

@@ -75,18 +75,30 @@ std::string refusal(const std::string& json) {
 
 TEST(HtmlReport, SaysWhatWasMissingAndWhatItHadBent) {
   const std::string page = html_report(sample_analysis());
-  EXPECT_THAT(page,
-              HasSubstr("; thermal drift was missing and had moved squareness Δβxz by 10 U."));
+  EXPECT_THAT(
+      page,
+      HasSubstr("; the model lacked thermal drift, which had moved squareness Δβxz by 10 U."));
   // (3.0 - 2.8)e-6 / 2e-8
-  EXPECT_THAT(page, HasSubstr("moved squareness Δβxz by 10 U: thermal drift"));
+  EXPECT_THAT(page, HasSubstr("thermal drift, which moved squareness Δβxz by 10 U"));
   EXPECT_THAT(page, HasSubstr("(3.000 ± 0.020)\u00a0×\u00a010<sup>−6</sup>"));  // declared
   EXPECT_THAT(page, HasSubstr("the joint fit does not bear it out"));
   EXPECT_THAT(page, HasSubstr("measure a second feed"));
 }
 
+TEST(HtmlReport, HasTheDeclaredModelsNumbersWhereTheyDiffer) {
+  Analysis analysis = sample_analysis();
+  EXPECT_THAT(html_report(analysis), HasSubstr("declared model</th>"));
+  analysis.result.declared->parameters = analysis.result.final->parameters;
+  EXPECT_THAT(html_report(analysis), Not(HasSubstr("declared model</th>")));
+  analysis.trace.reset();  // a fit that changes U alone
+  analysis.result.declared->parameters[0].expanded_uncertainty = 1e-6;
+  EXPECT_THAT(html_report(analysis), HasSubstr("declared model</th>"));
+}
+
 TEST(HtmlReport, SaysInTheFirstSentenceWhatDominatesAndWhetherTheRunOutAgrees) {
-  EXPECT_THAT(html_report(sample_analysis()),
-              HasSubstr("Squareness, 2.800 ± 0.020 µm/m, dominates; the run-out agrees; thermal"));
+  EXPECT_THAT(
+      html_report(sample_analysis()),
+      HasSubstr("Squareness, 2.800 ± 0.020 µm/m, dominates; the run-out agrees; the model "));
 }
 
 TEST(HtmlReport, PutsWhatHarmsMostFirst) {

@@ -50,12 +50,16 @@ TEST(Rounded, WritesAnExactValueInFull) { EXPECT_THAT(rounded(0.1, 0.0), pair_of
 
 TEST(Rounded, ShowsAValueFarBelowItsUncertaintyAsZero) {
   EXPECT_THAT(rounded(3e-12, 4.0), pair_of("0.0", "4.0"));
+  EXPECT_EQ(with_uncertainty(-1e-29, 2e-12), "(0.0 ± 2.0)e-12");
+  EXPECT_EQ(with_uncertainty(2.5e-32, 9.9e-15), "(0.0 ± 9.9)e-15");
+  EXPECT_THAT(rounded(0.0, 1e-300).value, testing::MatchesRegex("0[.]0*"));
 }
 
-TEST(Rounded, TurnsToScientificFormBeyondTheDigitsOfADouble) {
-  EXPECT_THAT(rounded(1e300, 1e-300), pair_of("1.00000000000000e+300", "1.0e-300"));
-  EXPECT_THAT(rounded(1.0, std::numeric_limits<double>::denorm_min()),
-              pair_of("1.00000000000000e+00", "4.9e-324"));
+TEST(Rounded, WritesTwelveDigitsWhereTheUncertaintyLiesBeyond) {
+  EXPECT_THAT(rounded(1e300, 1e-300), pair_of("1e+300", "1.0e-300"));
+  EXPECT_THAT(rounded(1.0, std::numeric_limits<double>::denorm_min()), pair_of("1", "4.9e-324"));
+  EXPECT_THAT(rounded(2.287254867310929e-34, 0.0), pair_of("2.28725486731e-34", "0"));
+  EXPECT_EQ(with_uncertainty(0.006321875, 2.5e-14), "0.006321875 ± 2.5e-14");
 }
 
 TEST(Rounded, RefusesWhatIsNoUncertainty) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cmath>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "slideway/trace/analysis.hpp"
 
@@ -12,6 +14,20 @@ inline std::size_t columns_of(const std::string& line) {
   std::size_t count = 0;
   for (const char c : line) count += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
   return count;
+}
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// The first line that holds `what`, or "".
+inline std::string line_with(const std::string& text, const std::string& what) {
+  for (const std::string& line : lines_of(text))
+    if (line.find(what) != std::string::npos) return line;
+  return "";
 }
 
 inline FittedParameter fitted(const std::string& name, const std::string& symbol,

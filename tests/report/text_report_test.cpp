@@ -12,20 +12,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-/// The first line that holds `what`, or "".
-std::string line_with(const std::string& text, const std::string& what) {
-  for (const std::string& line : lines_of(text))
-    if (line.find(what) != std::string::npos) return line;
-  return "";
-}
-
 std::size_t column_of(const std::string& line, const std::string& what) {
   return columns_of(line.substr(0, line.find(what)));
 }
@@ -91,6 +77,36 @@ TEST(TextReport, CutsNoSentenceOfTheBoxWhileAnEntrySaysNothing) {
   EXPECT_THAT(text, Not(HasSubstr("│ Missing")));
 }
 
+TEST(TextReport, WritesEnInAsManyDigitsAsTellItFromItsLimit) {
+  Result result = sample_result();
+  result.crosscheck.profiles = {{.profiles = {"a", "c"},
+                                 .what = "squareness",
+                                 .En = 1.004,
+                                 .verdict = Consistency::inconsistent}};
+  EXPECT_THAT(full(result), HasSubstr("squareness of a and c: E_n = 1.004, inconsistent"));
+  result.crosscheck.profiles[0].En = 1.26;
+  EXPECT_THAT(full(result), HasSubstr("E_n = 1.3"));
+}
+
+TEST(TextReport, NamesTheDefinitionOfEachStraightness) {
+  Result result = sample_result();
+  result.conformity = {{.what = "straightness",
+                        .value_um = 0.25,
+                        .U_um = 0.02,
+                        .limit_um = 0.3,
+                        .verdict = ConformityVerdict::undecided}};
+  EXPECT_THAT(line_with(short_text(result), "│ Result"), HasSubstr("0.020 µm (end points);"));
+  EXPECT_THAT(line_with(short_text(result), "Tolerance of"),
+              HasSubstr("straightness (minimum zone): 0.250 ± 0.020, limit 0.3 µm: cannot"));
+}
+
+TEST(TextReport, NamesALossOtherThanTheSquare) {
+  Result result = sample_result();
+  EXPECT_THAT(full(result), Not(HasSubstr("loss huber")));
+  result.inputs[0].loss = Loss::huber;
+  EXPECT_THAT(on_one_line(full(result)), HasSubstr("left out, loss huber"));
+}
+
 TEST(TextReport, CountsInTheBoxWhatItHasNoRoomToName) {
   TraceResult trace;
   trace.verdict = TraceVerdict::explained;
@@ -147,7 +163,7 @@ TEST(TextReport, CallsAnEffectThatMovesNothingNoAlarm) {
       on_one_line(short_text(result, trace)),
       testing::ContainsRegex("Ambiguous, without harm: .*; a possible effect does not change"));
   *result.declared->parameters[0].value += 0.5 * U;
-  EXPECT_THAT(short_text(result, trace), HasSubstr("Ambiguous: axial spindle motion"));
+  EXPECT_THAT(short_text(result, trace), HasSubstr("Ambiguous: the model lacks axial"));
 }
 
 TEST(TextReport, SaysWhereThePageIs) {

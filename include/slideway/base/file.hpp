@@ -17,6 +17,8 @@ class FileBytes {
   explicit FileBytes(const std::filesystem::path& path);
   /// @throws DataError  also for a pipe, a socket or a device, which may never end
   static FileBytes of_regular_file(const std::filesystem::path& path);
+  /// The same, but a pipe or a terminal may be named where the process has it open: /dev/stdin.
+  static FileBytes of_file_or_stdin(const std::filesystem::path& path);
   ~FileBytes();
   FileBytes(FileBytes&& other) noexcept;
   FileBytes& operator=(FileBytes&& other) noexcept;

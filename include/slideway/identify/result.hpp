@@ -32,6 +32,7 @@ struct InputSummary {
   Kind kind = Kind::face;
   Quantity quantity = Quantity::height;
   Role role = Role::fit;
+  std::optional<Loss> loss;           // none: every residual counts by its square
   std::optional<double> azimuth_deg;  // of a face
   std::optional<std::string> surface, instrument;
   std::size_t samples = 0;

@@ -16,6 +16,8 @@ inline constexpr std::array<std::string_view, 2> kTexts<CutDirection>{"inward", 
 template <>
 inline constexpr std::array<std::string_view, 2> kTexts<Role>{"fit", "holdout"};
 template <>
+inline constexpr std::array<std::string_view, 3> kTexts<Loss>{"none", "huber", "cauchy"};
+template <>
 inline constexpr std::array<std::string_view, 3> kTexts<Axis>{"x", "y", "z"};
 template <>
 inline constexpr std::array<std::string_view, 2> kTexts<Lever>{"paper", "split"};
@@ -48,6 +50,7 @@ inline constexpr auto kRecord<InputSummary> =
            field("format", &InputSummary::format), field("sha256", &InputSummary::sha256),
            field("kind", &InputSummary::kind), field("quantity", &InputSummary::quantity),
            field("role", &InputSummary::role, "holdout: never fitted, only predicted"),
+           field("loss", &InputSummary::loss, "none: every residual counts by its square"),
            field("azimuth_deg", &InputSummary::azimuth_deg, "of a face"),
            field("surface", &InputSummary::surface, "as the problem names it"),
            field("instrument", &InputSummary::instrument, "as the problem names it"),

@@ -12,9 +12,8 @@ struct RoundedPair {
 };
 
 /// A value rounded to the place of its uncertainty, which has two significant digits (GUM 7.2.6):
-/// rounded(10.05762, 0.027) is "10.058", "0.027". Plain decimals; only where the two lie further
-/// apart than the digits of a double are both in scientific form. An exact value (uncertainty 0) is
-/// written in full.
+/// rounded(10.05762, 0.027) is "10.058", "0.027". Plain decimals. A value of more than twelve
+/// digits beside its uncertainty, or an exact one (uncertainty 0), has twelve significant digits.
 /// @throws std::logic_error  one of the two is not finite, or the uncertainty is negative
 RoundedPair rounded(double value, double uncertainty);
 

@@ -58,6 +58,8 @@ class Input:
     quantity: Literal["height", "slope"]
     role: Literal["fit", "holdout"]
     """holdout: never fitted, only predicted"""
+    loss: Literal["none", "huber", "cauchy"] | None
+    """none: every residual counts by its square"""
     azimuth_deg: float | None
     """of a face"""
     surface: str | None

@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <cmath>
+
+#include "slideway/base/text.hpp"
+#include "slideway/base/units.hpp"
+#include "slideway/effects/catalogue.hpp"
+#include "slideway/report/number.hpp"
+#include "summary.hpp"
+#include "text_parts.hpp"
+
+/// What numbers are in doubt, and what to do about it.
+namespace slideway {
+namespace {
+
+/// Of the declared numbers, in U: what is no alarm.
+double harmless_shift(const TraceResult& trace) {
+  for (const auto& [name, value] : trace.gates)
+    if (name == "harmless_shift") return value;
+  return Gates{}.harmless_shift;
+}
+
+/// Effects whose column is that of the squareness, but for the one that is so by Eq. (16).
+std::string one_with_squareness(const TraceResult& trace) {
+  std::vector<std::string> names;
+  for (const NotSeparable& each : trace.not_separable)
+    if (each.same_as.find("dbeta_xz") != std::string::npos && !is_vertical(each.effect))
+      names.push_back(each.effect);
+  return effect_titles(names, ", ");
+}
+
+/// The size at which an effect that is just not seen moves the squareness most.
+const DetectionLimit* worst_unseen(const TraceResult& trace) {
+  const DetectionLimit* worst = nullptr;
+  for (const DetectionLimit& each : trace.detection_limits)
+    if (each.squareness_rad && (!worst || *each.squareness_rad > *worst->squareness_rad))
+      worst = &each;
+  return worst;
+}
+
+/// Whether what the data do not show may move the squareness by more than its U.
+bool may_be_moved_unseen(const Analysis& analysis) {
+  const FittedParameter* const p = squareness_parameter(analysis.result);
+  const DetectionLimit* const worst = worst_unseen(*analysis.trace);
+  return p != nullptr && is_known(*p) && worst != nullptr &&
+         (*worst->squareness_rad > *p->expanded_uncertainty ||
+          !one_with_squareness(*analysis.trace).empty());
+}
+
+/// What to do about checks that failed; "": none has.
+std::string reconciled(const Crosscheck& checks) {
+  for (const HeldOutCheck& check : checks.held_out)
+    if (contradicts(check))
+      return "find what sets " + check.profile + " apart: its setup, its cut or its reading";
+  for (const ProfileCheck& check : checks.profiles)
+    if (contradicts(check))
+      return "find why " + joined(check.profiles, " and ") +
+             " disagree: their setups, cuts or readings";
+  if (checks.squareness && checks.squareness->verdict == Consistency::inconsistent)
+    return "look for another cause: the squareness cannot have made this form";
+  return "";
+}
+
+/// What the closed loop leaves to do; "": nothing.
+std::string next_of_loop(const Analysis& analysis) {
+  const TraceResult& trace = *analysis.trace;
+  if (trace.verdict == TraceVerdict::ambiguous && is_harmless(analysis)) return "";
+  if (trace.unfinished) return "run it again with a longer time limit";
+  if (!trace.advice.empty()) return with_titles(trace.advice.front());
+  if (trace.verdict == TraceVerdict::unnamed)
+    return "look at the residual on the page: where the structure is, and over what it repeats";
+  return "";
+}
+
+}  // namespace
+
+bool is_harmless(const Analysis& analysis) {
+  const std::optional<Shift> shift = largest_shift(analysis.result);
+  return shift && std::abs(shift->in_expanded_uncertainties) <= harmless_shift(*analysis.trace);
+}
+
+bool contradicts(const ProfileCheck& check) { return check.verdict == Consistency::inconsistent; }
+bool contradicts(const HeldOutCheck& check) {
+  return check.verdict == HeldOutVerdict::does_not_fit;
+}
+
+const FittedParameter* squareness_parameter(const Result& result) {
+  if (!result.final) return nullptr;
+  const auto found = std::ranges::find_if(result.final->parameters, is_squareness);
+  return found == result.final->parameters.end() ? nullptr : &*found;
+}
+
+std::string moved_unseen(const Analysis& analysis) {
+  if (!analysis.trace) return "";
+  const DetectionLimit* const worst = worst_unseen(*analysis.trace);
+  if (!worst) return "";
+  const std::string same = one_with_squareness(*analysis.trace);
+  return (same.empty() ? "" : "by any amount: " + same + "; ") + "by up to " +
+         number(*worst->squareness_rad / kMicroradian, 2) + " µm/m: " + effect_title(worst->effect);
+}
+
+std::string next_step(const Analysis& analysis) {
+  const Result& result = analysis.result;
+  if (!result.final) return "slideway identify, which fits and looks for what is missing";
+  if (!result.final->converged)
+    return "declare fewer effects or other priors: the fit must converge";
+  if (analysis.trace && !analysis.trace->blunders.empty()) return analysis.trace->advice.front();
+  if (const std::string next = reconciled(result.crosscheck); !next.empty()) return next;
+  for (const UndeterminedDirection* direction : open_directions(*result.final))
+    if (!direction->advice.empty())
+      return with_titles(direction->advice) + "; slideway plan tries further cuts on paper";
+  if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
+  if (const std::string next = next_of_loop(analysis); !next.empty()) return next;
+  return may_be_moved_unseen(analysis)
+             ? "slideway plan: cuts that show what may have moved the squareness"
+             : kNothingToDo;
+}
+
+}  // namespace slideway

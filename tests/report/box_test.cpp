@@ -1,0 +1,79 @@
+#include <gmock/gmock.h>
+
+#include "report/sample_result.hpp"
+#include "slideway/report/report.hpp"
+
+namespace slideway::box_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string short_text(const Result& result, const TraceResult& trace) {
+  return text_report({result, trace});
+}
+
+TEST(Box, CutsNothingOfTheBoxWhereItHasAllRoom) {
+  TraceResult trace;
+  trace.verdict = TraceVerdict::unnamed;
+  trace.advice = {std::string(60, 'w') + " " + std::string(60, 'x') + " " + std::string(60, 'y')};
+  Result result = sample_result();
+  result.final->identifiability.unidentifiable.clear();
+  result.crosscheck.squareness->reason = std::string(60, 'z') + " " + std::string(60, 'v');
+  result.crosscheck.squareness->En.reset();
+  EXPECT_THAT(short_text(result, trace), HasSubstr("…"));
+  for (const TextOptions& options : {TextOptions{.full = true}, TextOptions{.whole_box = true}}) {
+    const std::string text = text_report({result, trace}, options);
+    const std::string box = text.substr(0, text.find("\n\n"));
+    for (const char letter : {'w', 'x', 'y', 'z', 'v'})
+      EXPECT_THAT(box, HasSubstr(std::string(60, letter)));
+    EXPECT_THAT(box, Not(HasSubstr("…")));
+  }
+}
+
+TEST(Box, KeepsTheNextStepInTheBox) {
+  TraceResult trace;
+  trace.verdict = TraceVerdict::nothing_missing;
+  Result result = sample_result();
+  result.final->identifiability.unidentifiable.clear();
+  result.crosscheck.squareness->reason = std::string(60, 'z') + " " + std::string(60, 'v');
+  result.crosscheck.squareness->En.reset();
+  EXPECT_THAT(short_text(result, trace), HasSubstr("│ Next     none is needed"));
+}
+
+TEST(Box, HasANextStepWhereverTheNumbersAreInDoubt) {
+  TraceResult trace;
+  trace.verdict = TraceVerdict::nothing_missing;
+  Result sound = sample_result();
+  sound.final->identifiability.unidentifiable.clear();
+  const auto next = [&](const Result& result) {
+    return line_with(short_text(result, trace), "│ Next");
+  };
+  EXPECT_THAT(next(sound), HasSubstr("none is needed"));
+  EXPECT_THAT(short_text(sound, trace), HasSubstr("Nothing missing:"));
+
+  Result result = sound;
+  result.final->converged = false;
+  EXPECT_THAT(next(result), HasSubstr("the fit must converge"));
+  EXPECT_THAT(line_with(short_text(result, trace), "│ Result"), Not(HasSubstr("±")));
+
+  result = sound;
+  result.crosscheck.held_out = {{.profile = "cut3", .verdict = HeldOutVerdict::does_not_fit}};
+  EXPECT_THAT(next(result), HasSubstr("what sets cut3 apart"));
+  EXPECT_THAT(short_text(result, trace), Not(HasSubstr("Nothing missing")));
+
+  result = sound;
+  result.crosscheck.profiles = {
+      {.profiles = {"a", "c"}, .what = "squareness", .verdict = Consistency::inconsistent}};
+  EXPECT_THAT(next(result), HasSubstr("why a and c disagree"));
+  EXPECT_THAT(short_text(result, trace), HasSubstr("│ Verdict  Inconsistent: a and c disagree"));
+
+  // U of the squareness is 2.2e-9 rad.
+  trace.detection_limits = {{.effect = "tool_wear", .squareness_rad = 2.0e-9}};
+  EXPECT_THAT(next(sound), HasSubstr("none is needed"));
+  trace.detection_limits[0].squareness_rad = 3.0e-9;
+  EXPECT_THAT(next(sound), HasSubstr("slideway plan"));
+}
+
+}  // namespace
+}  // namespace slideway::box_test
