@@ -70,8 +70,8 @@ struct Description {
   bool measured = false;
   /// An error of what measures: each instrument has a size of its own, which its traces share.
   bool of_instrument = false;
-  /// Every cut has it, by the kinematics: not whether it is there is in question, but its size. What
-  /// has no name is no rival of it.
+  /// Every cut has it, by the kinematics: not whether it is there is in question, but its size.
+  /// What has no name is no rival of it.
   bool kinematic = false;
 };
 
