@@ -19,7 +19,9 @@ Disagreement disagreement(const FittedModel& fitted) {
   const auto count = static_cast<double>(pairs.size());
   std::vector<std::string> common;
   bool is_first = true;
-  for (const auto& [names, p] : pairs) {
+  for (const auto& pair : pairs) {
+    const std::vector<std::string>& names = pair.first;
+    const double p = pair.second;
     out.p_value = std::min(out.p_value, count * p);
     if (count * p > model.gates.disagreement_p) continue;
     if (is_first) common = names;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/noise_model.hpp"
 
 namespace slideway {
@@ -99,12 +100,13 @@ class TimeFinder {
   [[nodiscard]] std::vector<Blunder> best() {
     std::ranges::stable_sort(found_, {}, [](const auto& each) { return each.first; });
     std::vector<Blunder> out;
-    for (const auto& [left, blunder] : found_) {
+    for (const std::pair<double, Blunder>& each : found_) {
+      const Blunder& blunder = each.second;
       const auto is_known = [&](const Blunder& known) {
         return known.profile == blunder.profile && known.what == blunder.what;
       };
       if (!out.empty() && out.front().what != BlunderKind::clock &&
-          left > found_.front().first + problem_.trace.gates.tie_bic)
+          each.first > found_.front().first + problem_.trace.gates.tie_bic)
         break;
       if (std::ranges::none_of(out, is_known)) out.push_back(blunder);
     }
