@@ -72,7 +72,8 @@ class ExportCommand : public Command {
       fail("--step: goes with a compensation table, not with --to " + format_);
     if (!is_table) return;
     if (std::ranges::count(compensation_formats(), format_) == 0)
-      fail("--to: '" + printable(format_) + "' is not accepted; accepted: " + accepted());
+      fail("--to: '" + printable(format_) + "' is not accepted" +
+           did_you_mean(format_, compensation_formats()) + "; accepted: " + accepted());
     if (given.count("step") != 0 && !(step_mm_ > 0.0)) fail("--step: must be above 0 mm");
   }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "residual.hpp"
+#include "slideway/base/distribution.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/straightness.hpp"
 
@@ -162,6 +163,27 @@ void explain_noise_of_causes(const Model& model, const Solution& fit, ModelResul
   }
 }
 
+/// Priors that the fit leaves further off than they allow. χ² of their residuals is at most that of
+/// as many independent values.
+void explain_priors(const Model& model, const Solution& fit, ModelResult& out) {
+  constexpr double kUnlikely = 0.01;
+  const Eigen::Index count = fit.linear.prior_residuals.size() - fit.linear.curve_rows;
+  if (count == 0) return;
+  const double chi_square = fit.linear.prior_residuals.head(count).squaredNorm();
+  const double p = chi_squared_tail(static_cast<double>(count), chi_square);
+  if (p >= kUnlikely) return;
+  std::vector<std::string> names;
+  for (const ModelTerm& term : model.terms)
+    for (const Prior& prior : term.priors)
+      if (const std::string name = term.name + "." + prior.parameter;
+          std::ranges::count(names, name) == 0)
+        names.push_back(name);
+  out.notes.push_back("the priors (" + joined(names) +
+                      ") contradict the data or one another: chi-square " +
+                      significant(chi_square, 2) + " for " + std::to_string(count) +
+                      "; U holds only if all of them are right");
+}
+
 void explain_left_out(const Model& model, ModelResult& out) {
   std::vector<std::string> parts;
   for (const Observation& observation : model.observations)
@@ -192,6 +214,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
                           "': positions are not uniform; brought to a uniform grid for the wavelet "
                           "by linear interpolation, the model's columns likewise");
   }
+  explain_priors(model, fit, out);
   explain_left_out(model, out);
 }
 

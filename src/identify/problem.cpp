@@ -228,13 +228,13 @@ Problem problem_of(const TomlValue& tree, const std::filesystem::path& path,
 
 Problem read_problem(const std::filesystem::path& path,
                      const std::optional<std::filesystem::path>& data_dir) {
-  return read_problem(path, data_dir, {});
+  return problem_of(read_toml(path), path, {path.parent_path(), data_dir, true});
 }
 
 Problem read_problem(const std::filesystem::path& path,
                      const std::optional<std::filesystem::path>& data_dir,
                      std::span<const Override> overrides) {
-  TomlValue tree = read_toml(path);
+  TomlValue tree = read_toml(path, true);  // a batch ends what takes too long
   for (const Override& override : overrides) put(override, path.string(), tree);
   return problem_of(tree, path, {path.parent_path(), data_dir, true});
 }

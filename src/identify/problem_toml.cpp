@@ -42,9 +42,9 @@ TomlValue converted(const toml::node& node) {
   return value;
 }
 
-toml::table parsed(const std::filesystem::path& path) {
+toml::table parsed(const std::filesystem::path& path, bool may_wait = false) {
   try {
-    const FileBytes bytes = FileBytes::of_file_or_stdin(path);
+    const FileBytes bytes = may_wait ? FileBytes(path) : FileBytes::of_file_or_stdin(path);
     return toml::parse(bytes.text(), path.string());
   } catch (const DataError& error) {
     throw FaultError({.message = error.what()});
@@ -107,7 +107,9 @@ void point_to_simulation(toml::table& table, const ProfileEntry& entry, const st
 
 }  // namespace
 
-TomlValue read_toml(const std::filesystem::path& path) { return converted(parsed(path)); }
+TomlValue read_toml(const std::filesystem::path& path, bool may_wait) {
+  return converted(parsed(path, may_wait));
+}
 
 TomlValue toml_value(const std::string& text) {
   // Most texts are none, and being refused takes the parser long.

@@ -45,7 +45,7 @@ std::string verdict_text(ConformityVerdict verdict) {
 }
 
 std::string toleranced(const std::string& what) {
-  return what == "straightness" ? what + " (minimum zone)" : what;
+  return motion_error_of(what) == MotionError::straightness ? what + " (minimum zone)" : what;
 }
 
 std::string declared_value(const Result& result, const FittedParameter& p) {

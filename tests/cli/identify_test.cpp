@@ -19,6 +19,23 @@ const std::string kSmallFace = shipped("problems/paper-face-10mm/problem.toml");
 
 class Identify : public ProgramTest {};
 
+TEST_F(Identify, SaysThatPriorsContradictEachOther) {
+  folder_.file("face.csv", face_csv(64));
+  const auto said = [&](const std::string& priors) {
+    folder_.file("problem.toml",
+                 ProblemText{.effect = "[[effect]]\nname = \"straightness\"\ndegree = 2\n"
+                                       "priors = [" +
+                                       priors + "]\n"}
+                     .text());
+    return json::parse(run({"fit", "problem.toml", "--json", "-"}).out)["final"]["notes"].dump();
+  };
+  const std::string one = "{ parameter = \"b2\", value = 0, standard_uncertainty = 1e-6 }";
+  // Between two priors 7e4 standard uncertainties apart, whatever the data say.
+  const std::string other = "{ parameter = \"b2\", value = 0.1, standard_uncertainty = 1e-6 }";
+  EXPECT_THAT(said(one + ", " + other), HasSubstr("the priors (straightness.b2) contradict"));
+  EXPECT_THAT(said(one), testing::Not(HasSubstr("contradict")));
+}
+
 // The report example of the interface, up to crosscheck; of a list each element must have the keys.
 const json kKeys = json::parse(R"({
   "schema": 0, "version": 0, "title": 0, "about": {}, "assumed": [{"key": 0, "value": 0, "why": 0}],
