@@ -40,10 +40,9 @@ class DemoCommand : public Command {
     write_file(folder() / "result.json", json_report(analysis));
     write_file(page, html_report(analysis));
     if (!is_quiet())
-      print_report(
-          text_report(analysis, {.whole_box = !obeys_escapes(Stream::out), .page = page.string()}) +
-          "\nAn example: " + (folder() / "problem.toml").string() +
-          "\nYour own file: slideway init FILE.csv\n");
+      print_report(text_report(analysis, {.page = page.string()}) +
+                   "\nAn example: " + (folder() / "problem.toml").string() +
+                   "\nYour own file: slideway init FILE.csv\n");
     if (open_ && !has_shown(page.string()))
       say("no program shows the page; open it in a browser: " + page.string());
     return kDone;

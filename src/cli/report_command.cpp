@@ -156,12 +156,8 @@ int ProblemCommand::run_problem(Scope scope, bool closes_loop,
                      line.show("closing the loop: " + stage, done);
                    });
   }();
-  report(
-      [&] {
-        return text_report(
-            analysis, {.full = full_, .whole_box = !obeys_escapes(Stream::out), .page = page()});
-      },
-      [&] { return json_report(analysis); }, [&] { return html_report(analysis); });
+  report([&] { return text_report(analysis, {.full = full_, .page = page()}); },
+         [&] { return json_report(analysis); }, [&] { return html_report(analysis); });
   return strict_ && is_negative(analysis) ? kNegativeVerdict : kDone;
 }
 

@@ -185,7 +185,7 @@ py::tuple analysed(const py::object& problem,
                   progress(stage, done);
                 });
     json = json_report(analysis);
-    report = text_report(analysis, {.whole_box = true});
+    report = text_report(analysis);
   }
   return py::make_tuple(text(json), text(report));
 }

@@ -105,12 +105,11 @@ std::string box(const Summary& summary, const TextOptions& options) {
     for (std::size_t i = 1; i < lines.size(); ++i) lines[i].replace(0, 1, "│");
     entries.push_back(std::move(lines));
   };
-  const bool is_whole = options.full || options.whole_box;
   add("Verdict", summary.badge + ": " + summary.verdict + ".");
   add("Result", summary.result);
   add("Check", summary.checks);
-  add("Missing", is_whole ? summary.missing : summary.missing_in_brief);
-  add("Next", is_whole ? summary.next : summary.next_in_brief);
+  add("Missing", options.full ? summary.missing : summary.missing_in_brief);
+  add("Next", options.full ? summary.next : summary.next_in_brief);
   add("Page", options.page.empty() ? "none was written; --html FILE writes it" : options.page);
   std::size_t count = 0;
   for (const auto& lines : entries) count += lines.size();
@@ -122,7 +121,7 @@ std::string box(const Summary& summary, const TextOptions& options) {
   leave(3, !summary.has_missing || summary.verdict_names_missing);
   leave(5, options.page.empty());
   for (const std::size_t give : {5U, 3U, 2U, 4U, 0U, 1U})
-    while (!is_whole && count > kBoxLines && entries[give].size() > 1) {
+    while (!options.full && count > kBoxLines && entries[give].size() > 1) {
       entries[give] = first_lines(entries[give], entries[give].size() - 1);
       --count;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/noise_model.hpp"
 
@@ -11,10 +12,19 @@ namespace {
 constexpr std::size_t kEffectsTried = 3;  // best first, each of a name of its own
 constexpr std::size_t kMostProfiles = 8;  // each takes a search
 
-bool is_of_time(const Candidate& candidate) {
-  const IndependentVariable variable = candidate.term.effect->description().variable;
+/// Whether an effect grows or fades in time; of waves each start is as good as another.
+bool is_of_time(const std::string& name) {
+  const Effect& effect = specimen(name);
+  const IndependentVariable variable = effect.description().variable;
   return (variable == IndependentVariable::time || variable == IndependentVariable::distance) &&
-         candidate.term.profiles.empty();
+         effect.linear_parameters();
+}
+
+Problem with_effects_of_time(Problem problem) {
+  std::erase_if(problem.trace.candidates,
+                [](const std::string& name) { return !is_of_time(name); });
+  problem.trace.own.clear();
+  return problem;
 }
 
 /// The declared model of the profiles that are not held out.
@@ -33,7 +43,7 @@ std::vector<AcceptedEffect> shown_effects(const Problem& problem, const FittedMo
   const Gates& gates = problem.trace.gates;
   Candidates candidates;
   for (const Candidate& each : dictionary.candidates)
-    if (is_of_time(each)) candidates.push_back(&each);
+    if (each.term.profiles.empty()) candidates.push_back(&each);
   std::vector<AcceptedEffect> out;
   if (candidates.empty()) return out;
   const Whitened data(fitted.fit.linear, noise_beside(fitted.fit.linear, gates));
@@ -78,7 +88,7 @@ FittedModel as_the_others_show(const FittedModel& all, const FittedModel& others
 class TimeFinder {
  public:
   TimeFinder(const Problem& problem, ModelExtender& extender, const std::vector<ShownEffect>& shown)
-      : problem_(problem),
+      : problem_(with_effects_of_time(problem)),
         extender_(extender),
         shown_(shown),
         noise_(noise_beside(extender.base().fit.linear, problem.trace.gates)) {}
@@ -131,7 +141,7 @@ class TimeFinder {
            penalty(data, *effect.candidate, effect.candidate->amplitudes());
   }
 
-  const Problem& problem_;
+  Problem problem_;
   ModelExtender& extender_;
   const std::vector<ShownEffect>& shown_;
   std::vector<Noise> noise_;

@@ -45,13 +45,12 @@ std::string data_json(const Result& result);
 std::string data_text(const Result& result);
 
 struct TextOptions {
-  bool full = false;       // all that was found
-  bool whole_box = false;  // no sentence of the box is cut, whatever room it needs
-  std::string page;        // where the page is; "": none was written
+  bool full = false;  // all that was found; no sentence of the box is cut, whatever room it needs
+  std::string page;   // where the page is; "": none was written
 };
 
 /// The report for people in at most 80 columns: first a box with the verdict, of at most six lines
-/// unless `full` or `whole_box`, then the parameters of the final model, the station heights of a
+/// unless `full`, then the parameters of the final model, the station heights of a
 /// slide, what was assumed, and notes; at most 40 lines unless `full`.
 std::string text_report(const Analysis& analysis, const TextOptions& options = {});
 
