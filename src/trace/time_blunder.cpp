@@ -10,7 +10,7 @@ namespace slideway {
 namespace {
 
 constexpr std::size_t kEffectsTried = 3;  // best first, each of a name of its own
-constexpr std::size_t kMostProfiles = 8;  // each takes a search
+constexpr std::size_t kMostHeldOut = 8;   // each takes a search
 
 /// Whether an effect grows or fades in time; of waves each start is as good as another.
 bool is_of_time(const std::string& name) {
@@ -153,7 +153,7 @@ class TimeFinder {
 std::vector<Blunder> find_time_blunders(const Problem& problem, ModelExtender& extender,
                                         const std::vector<ShownEffect>& shown) {
   const std::vector<const Observation*> fitted = fitted_observations(extender.base().model);
-  if (fitted.size() < 3 || fitted.size() > kMostProfiles) return {};
+  if (fitted.size() < 3 || fitted.size() > kMostHeldOut) return {};
   TimeFinder finder(problem, extender, shown);
   for (const Observation* const observation : fitted) {
     extender.limit().check();

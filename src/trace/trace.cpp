@@ -61,7 +61,7 @@ class Loop {
     Selection selection = blunders.empty() ? select_effects(problem_, statistics_, gates, progress_)
                                            : nothing_selected(extender_, gates);
     among_ = disagreement(extender_.extended(selection.effects));
-    if (blunders.empty() && something_is_wrong(selection) &&
+    if (blunders.empty() && profiles_differ() &&
         !limit_.allows([&] { blunders = find_time_blunders(problem_, extender_, shown_); }))
       out.not_looked_at.emplace_back("another direction or start of one cut");
     if (!blunders.empty()) selection = nothing_selected(extender_, gates);
