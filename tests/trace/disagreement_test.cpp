@@ -1,5 +1,6 @@
 // Profiles that should agree and do not: something is missing, whatever the residual of all says.
 
+#include <array>
 #include <random>
 
 #include "identify/cases.hpp"
@@ -96,6 +97,53 @@ TEST(Harmonic, OfAWaveIsNoSecondEffect) {
     EXPECT_NE(result.verdict, TraceVerdict::explained);
     EXPECT_LE(named(result).size(), 1U);
   }
+}
+
+/// Three cuts that warm up by 0.3 µm with a time constant of three minutes, noise of 10 nm; one of
+/// them, if any, with the wrong direction in its problem file.
+std::vector<Profile> warmed(std::optional<std::size_t> swapped, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> noise(0.0, 1e-5);
+  const std::array<std::pair<double, CutDirection>, 3> cuts{
+      {{2.0, CutDirection::inward}, {5.0, CutDirection::inward}, {3.0, CutDirection::outward}}};
+  std::vector<Profile> out;
+  for (const auto& [feed, direction] : cuts) {
+    const std::vector<double> x = cases::spaced(0.2, 40.0, 600);
+    std::vector<double> z;
+    for (const double r : x) {
+      const double minutes = (direction == CutDirection::inward ? 40.0 - r : r) / feed;
+      z.push_back(2e-5 * r + 3e-4 * (1.0 - std::exp(-minutes / 3.0)) + noise(engine));
+    }
+    Profile& face =
+        out.emplace_back(cases::profile("cut" + std::to_string(out.size() + 1), Kind::face, x, z));
+    face.setup.feed_mm_per_min = feed;
+    face.setup.spindle_rpm = 400.0;
+    face.setup.cut_direction = direction;
+    face.setup.cut_radius_mm = 40.0;
+  }
+  if (swapped) {
+    std::optional<CutDirection>& direction = out[*swapped].setup.cut_direction;
+    direction = *direction == CutDirection::inward ? CutDirection::outward : CutDirection::inward;
+  }
+  return out;
+}
+
+// No effect of time is declared: only what the other cuts show of one tells the direction.
+TEST(Disagreement, AWrongDirectionOfOneCutIsNamedWithItsCut) {
+  Problem problem = cases::problem(Lever::paper, 1,
+                                   {cases::effect("squareness"), cases::effect("straightness", 3)});
+  problem.trace.candidates = effect_names();
+  for (const std::size_t swapped : {0U, 1U, 2U}) {
+    const Closed result = closed(problem, warmed(swapped, 7));
+    SCOPED_TRACE(story(result));
+    ASSERT_FALSE(result.blunders.empty());
+    EXPECT_EQ(result.blunders.front().profile, "cut" + std::to_string(swapped + 1));
+    EXPECT_EQ(result.blunders.front().what, BlunderKind::cut_direction);
+  }
+  const Closed right = closed(problem, warmed(std::nullopt, 7));
+  SCOPED_TRACE(story(right));
+  EXPECT_TRUE(right.blunders.empty());
+  EXPECT_THAT(named(right), Contains("thermal_drift"));
 }
 
 }  // namespace
