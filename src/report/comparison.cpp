@@ -202,7 +202,7 @@ std::string parameter_text(const std::vector<Pair>& pairs) {
     return value ? number(*value, count) : "-";
   };
   for (const Pair& p : pairs) {
-    table.add({p.name, p.in_a, p.in_b, digits(p.difference, 2), p.En ? En_text(*p.En) : "-",
+    table.add({p.name, p.in_a, p.in_b, digits(p.difference, 2), p.En ? en_text(*p.En) : "-",
                unit_text(p.unit)});
     if (p.En && *p.En > 1.0) changed.push_back(p.name);
   }

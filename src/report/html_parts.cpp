@@ -53,8 +53,8 @@ Html html_value(const QuantityValue& result, double unit) {
   return is_number ? typeset(text) : Html(text);
 }
 
-Html html_En(const std::optional<double>& En) {
-  return En && std::isfinite(*En) ? typeset(En_text(*En)) : "–";
+Html html_en(const std::optional<double>& En) {
+  return En && std::isfinite(*En) ? typeset(en_text(*En)) : "–";
 }
 
 Html html_probability(double p) {

@@ -26,7 +26,7 @@ Html html_symbol(std::string_view symbol);
 /// finite.
 Html html_number(const std::optional<double>& value, int digits = 4);
 Html html_value(const QuantityValue& result, double unit = 1.0);  // as value_text()
-Html html_En(const std::optional<double>& En);
+Html html_en(const std::optional<double>& En);
 Html html_probability(double p);  // "0.02", "< 10⁻⁴"
 Html html_p_value(double p);      // "p = 0.02", "p < 10⁻⁴"
 

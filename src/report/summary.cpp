@@ -268,12 +268,12 @@ void say_crosscheck(const Result& result, Summary& out) {
     (is_consistent ? consistent : parts)
         .push_back(std::string(is_consistent ? "consistent" : "INCONSISTENT") +
                    " with the run-out, Eq. (21): " + value_text(indirect, kMicroradian) +
-                   " µm/m, E_n = " + En_text(*angle->En));
+                   " µm/m, E_n = " + en_text(*angle->En));
   }
   for (const ProfileCheck& check : checks.profiles)
     if (contradicts(check))
       parts.push_back("INCONSISTENT: " + check.what + " of " + joined(check.profiles, " and ") +
-                      (check.En ? ", E_n = " + En_text(*check.En) : ""));
+                      (check.En ? ", E_n = " + en_text(*check.En) : ""));
   for (const HeldOutCheck& check : checks.held_out) {
     const bool fits = !contradicts(check);
     (fits ? consistent : parts)

@@ -104,12 +104,12 @@ std::string next_step(const Analysis& analysis) {
   if (!result.final->converged)
     return "declare fewer effects or other priors: the fit must converge";
   if (analysis.trace && !analysis.trace->blunders.empty()) return analysis.trace->advice.front();
-  if (const std::string next = reconciled(result.crosscheck); !next.empty()) return next;
+  if (std::string next = reconciled(result.crosscheck); !next.empty()) return next;
   for (const UndeterminedDirection* direction : open_directions(*result.final))
     if (!direction->advice.empty())
       return with_titles(direction->advice) + "; slideway plan tries further cuts on paper";
   if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
-  if (const std::string next = next_of_loop(analysis); !next.empty()) return next;
+  if (std::string next = next_of_loop(analysis); !next.empty()) return next;
   return may_be_moved_unseen(analysis)
              ? "slideway plan: cuts that show what may have moved the squareness"
              : kNothingToDo;

@@ -242,7 +242,7 @@ std::string squareness_check(const SquarenessCheck& check) {
   std::string out =
       "Squareness by the fit: " + angle(check.fit_rad, check.fit_U_rad) +
       "; by the run-out, Eq. (21): " + angle(check.indirect_rad, check.indirect_U_rad) + ". ";
-  if (check.En) out += "E_n = " + En_text(*check.En) + ": ";
+  if (check.En) out += "E_n = " + en_text(*check.En) + ": ";
   if (check.verdict == Consistency::consistent)
     out += "consistent (E_n is not above 1). ";
   else if (check.verdict == Consistency::inconsistent)
@@ -265,7 +265,7 @@ std::string crosscheck(const Crosscheck& checks) {
   std::string out = checks.squareness ? squareness_check(*checks.squareness) : "";
   for (const ProfileCheck& check : checks.profiles)
     out += note(check.what + " of " + joined(check.profiles, " and ") +
-                (check.En ? ": E_n = " + En_text(*check.En) : "") + ", " + text(check.verdict));
+                (check.En ? ": E_n = " + en_text(*check.En) : "") + ", " + text(check.verdict));
   for (const HeldOutCheck& check : checks.held_out)
     out += note(check.profile + ", held out: " + text(check.verdict) + " (chi-square " +
                 number(check.chi2, 3) + ", " + p_text(check.p_value) + "), off by up to " +

@@ -18,7 +18,7 @@ std::string probability(double p);
 /// "p = 0.03", "p < 1e-4".
 std::string p_text(double p);
 /// E_n in two digits, or in as many as tell it from its limit 1: "1.004".
-std::string En_text(double En);
+std::string en_text(double En);
 /// "cannot be decided" where a report has "can not be decided".
 std::string verdict_text(ConformityVerdict verdict);
 /// A quantity with a tolerance, by its definition: "straightness (minimum zone)".

@@ -31,7 +31,7 @@ std::string probability(double p) { return p < 1e-4 ? "< 1e-4" : number(p, 2); }
 
 std::string p_text(double p) { return (p < 1e-4 ? "p " : "p = ") + probability(p); }
 
-std::string En_text(double En) {
+std::string en_text(double En) {
   constexpr int kMostDigits = 15;
   std::string text = number(En, 2);
   for (int digits = 3; En > 1.0 && text == "1" && digits <= kMostDigits; ++digits)
