@@ -123,7 +123,7 @@ std::span<const Gate> gate_table() {
       Gate{
           "disagreement_p", &Gates::disagreement_p, "", 1e-9, 0.05,
           "Something is missing where noise makes any two of the profiles differ as much, over all "
-          "effects, with a smaller probability.",
+          "effects, or one repeat from the others, with a smaller probability.",
           "240 simulated faces without a fault: the least was 2e-4"},
       Gate{"held_out_p", &Gates::held_out_p, "", 1e-6, 0.2,
            "A held-out profile does not fit if noise explains it with a smaller probability.",

@@ -97,7 +97,8 @@ Linearisation common_trace(const Linearisation& all, const std::vector<std::size
 /// Noise of the mean of each group: see check_repeats().
 std::vector<Noise> noises_of_means(const Linearisation& all,
                                    const std::vector<std::vector<std::size_t>>& groups,
-                                   const std::vector<Linearisation>& common, const Gates& gates) {
+                                   const std::vector<Linearisation>& common,
+                                   const std::vector<std::size_t>& odd, const Gates& gates) {
   Linearisation together = common.front();
   for (const Linearisation& each : std::span(common).subspan(1)) {
     together.observations.push_back(each.observations.front());
@@ -111,7 +112,7 @@ std::vector<Noise> noises_of_means(const Linearisation& all,
     };
     allow_for(noise_beside(common[g], gates).front());
     for (const std::size_t i : groups[g])
-      if (const auto deviation = deviation_from_repeats(all, i, gates))
+      if (const auto deviation = deviation_from_repeats(all, i, odd, gates))
         allow_for(estimate_noise({&*deviation, 1}, Eigen::MatrixXd(0, 0), gates)
                       .front()
                       .scaled(1.0 / static_cast<double>(groups[g].size())));
@@ -175,11 +176,14 @@ std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
 }
 
 std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear, std::size_t i,
+                                                    const std::vector<std::size_t>& odd,
                                                     const Gates& gates) {
+  if (std::ranges::count(odd, i) > 0) return std::nullopt;
   const Observation& observation = *linear.observations[i];
   std::vector<std::size_t> group;
   for (std::size_t j = 0; j < linear.observations.size(); ++j)
-    if (are_repeats(observation, *linear.observations[j], gates)) group.push_back(j);
+    if (std::ranges::count(odd, j) == 0 && are_repeats(observation, *linear.observations[j], gates))
+      group.push_back(j);
   const StationSums repeats(linear, group, observation, gates);
   const Eigen::VectorXd& count = repeats.count;
   std::vector<Eigen::Index> alone;
@@ -206,13 +210,18 @@ std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gat
   finer.values_per_cosine = gates.values_per_repeated_cosine;
   finer.longest_memory = gates.longest_texture;  // texture of several lengths, no memory,
   finer.memory_odds = 1.0;                       // where the fine band asks for it
-  const std::vector<std::vector<std::size_t>> groups = repeat_groups(linear, gates);
+  std::vector<std::vector<std::size_t>> groups = repeat_groups(linear, gates);
+  std::vector<std::size_t> odd;
+  for (const OddRepeat& each : odd_repeats(linear, gates)) {
+    odd.push_back(each.profile);
+    for (std::vector<std::size_t>& group : groups) std::erase(group, each.profile);
+  }
   std::vector<PureErrorCheck> out;
   if (groups.empty()) return out;
   std::vector<Linearisation> common;
   for (const std::vector<std::size_t>& group : groups)
     common.push_back(common_trace(linear, group, gates));
-  const std::vector<Noise> noises = noises_of_means(linear, groups, common, finer);
+  const std::vector<Noise> noises = noises_of_means(linear, groups, common, odd, finer);
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const LackOfFit found = lack_of_fit(common[g], {noises[g]}, finer);
     PureErrorCheck check;

@@ -24,8 +24,10 @@ std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
                                                     const Gates& gates);
 
 /// Residual of a profile less the mean of its repeats at the same stations, of the size its noise
-/// has; nothing where no other profile repeats it. Stations that a repeat lacks are left free.
+/// has; nothing where no other profile repeats it, or where it is odd. Stations that a repeat lacks
+/// are left free.
 std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear, std::size_t i,
+                                                    const std::vector<std::size_t>& odd,
                                                     const Gates& gates);
 
 }  // namespace slideway

@@ -32,9 +32,9 @@ std::string probability(double p) { return p < 1e-4 ? "< 1e-4" : number(p, 2); }
 std::string p_text(double p) { return (p < 1e-4 ? "p " : "p = ") + probability(p); }
 
 std::string en_text(double En) {
-  constexpr int kMostDigits = 15;
+  constexpr int kDigitsOfADouble = 15;
   std::string text = number(En, 2);
-  for (int digits = 3; En > 1.0 && text == "1" && digits <= kMostDigits; ++digits)
+  for (int digits = 3; En > 1.0 && text == "1" && digits <= kDigitsOfADouble; ++digits)
     text = number(En, digits);
   return text;
 }

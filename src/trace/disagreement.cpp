@@ -30,6 +30,9 @@ Disagreement disagreement(const FittedModel& fitted) {
                   [&](const std::string& each) { return std::ranges::count(names, each) == 0; });
   }
   if (pairs.size() > 1 && common.size() == 1) out.odd_one = common.front();
+  const std::vector<OddRepeat> odd = odd_repeats(fit.linear, model.gates);
+  for (const OddRepeat& each : odd) out.p_value = std::min(out.p_value, each.p_value);
+  if (odd.size() == 1) out.odd_one = fit.linear.observations[odd.front().profile]->profile->name;
   return out;
 }
 

@@ -6,12 +6,13 @@
 
 namespace slideway {
 
-/// Whether the fitted profiles are of one machine, by check_profiles().
+/// Whether the fitted profiles are of one machine, by check_profiles() and odd_repeats().
 struct Disagreement {
   /// Probability that noise makes any pair differ as much as that which differs most: Bonferroni's
-  /// bound, of the χ² of each pair over all effects.
+  /// bound, of the χ² of each pair over all effects; or any repeat from the others, if less.
   double p_value = 1.0;
-  std::string odd_one;  // the one profile that every pair which differs has; "": none
+  std::string odd_one;  // the one profile that every pair which differs has, or the one odd
+                        // repeat; "": none
 };
 
 /// A pair differs where noise explains it with a probability below Gates::disagreement_p.

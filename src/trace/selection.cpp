@@ -42,14 +42,8 @@ class Selector {
         progress_(progress) {}
 
   Selection run() {
-    std::set<std::vector<std::string>> seen;  // sets of effects that were complete
-    do {
-      narrowed_ = false;
-      grow();
-      drop_small();
-      exchange();
-    } while (narrowed_ && seen.insert(names()).second);
-    take_back();
+    select();
+    hold_against_causes();
     hold_against_the_unnamed();
     name_rivals();
     out_.lack_of_fit = left_over();
@@ -58,6 +52,17 @@ class Selector {
   }
 
  private:
+  void select() {
+    std::set<std::vector<std::string>> seen;  // sets of effects that were complete
+    do {
+      narrowed_ = false;
+      grow();
+      drop_small();
+      exchange();
+    } while (narrowed_ && seen.insert(names()).second);
+    take_back();
+  }
+
   /// Of the effects of the set, in alphabetical order.
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> out;
@@ -209,6 +214,7 @@ class Selector {
 
   void leave(std::size_t which, const std::string& why) {
     out_.left.emplace_back(out_.effects[which].name(), why);
+    if (out_.effects[which].candidate->raises_degree) out_.instead.clear();
     out_.effects = all_but(std::move(out_.effects), which);
   }
 
@@ -218,7 +224,7 @@ class Selector {
     for (std::size_t i = 0; i < out_.effects.size(); ++i) {
       tell("comparing rivals", i);
       const SearchRound& round = extender_.search(all_but(out_.effects, i));
-      const TestedCandidate* best = round.choice(gates_);
+      const TestedCandidate* best = round.choice(gates_, excluded_);
       if (!best) continue;
       const TestedCandidate* own = find_tested(round, out_.effects[i], gates_);
       if (own && own->refined.delta_bic <= best->refined.delta_bic + gates_.exchange_bic)
@@ -298,7 +304,8 @@ class Selector {
       const SearchRound& round = extender_.search(all_but(out_.effects, i));
       const TestedCandidate& own = *find_tested(round, effect, gates_);
       for (const TestedCandidate* rival : round.rivals(own, gates_))
-        effect.round.ambiguous_with.push_back(rival->name());
+        if (std::ranges::count(effect.round.ambiguous_with, rival->name()) == 0)
+          effect.round.ambiguous_with.push_back(rival->name());
       const bool outranks = note_outranked(round, own);
       const Stability found = stability(round, own, gates_);
       effect.round.stability = found.share;
@@ -320,6 +327,56 @@ class Selector {
                            "in BIC " +
                            significant(each->refined.delta_bic - own.refined.delta_bic, 2));
     return !outranked.empty();
+  }
+
+  /// A carriage's polynomial of a higher degree comes near every sum of smooth effects, and leaves
+  /// them nothing to explain once it is in the model. So effects are selected without it, too.
+  void hold_against_causes() {
+    Selector without(problem_, statistics_, gates_, progress_);
+    for (const AcceptedEffect& effect : out_.effects)
+      if (effect.candidate->raises_degree) without.exclude(effect.name());
+    if (without.excluded_.empty()) return;
+    without.select();
+    if (without.out_.effects.empty()) return;
+    if (statistics_.lead(out_.effects, without.out_.effects) < -gates_.exchange_bic) {
+      const std::string together = joined(without.names(), " and ");
+      for (const std::string& raised : without.excluded_)
+        without.out_.left.emplace_back(raised, together + " without it fits better");
+      out_ = std::move(without.out_);
+      ruled_out_ = std::move(without.ruled_out_);
+      taken_back_ = std::move(without.taken_back_);
+      return;
+    }
+    without.add_best_that_is_possible();
+    if (statistics_.lead(out_.effects, without.out_.effects) > gates_.tie_bic) return;
+    std::vector<std::string> causes = without.names();
+    std::erase_if(causes, [own = names()](const std::string& each) {
+      return std::ranges::count(own, each) > 0;
+    });
+    for (AcceptedEffect& effect : out_.effects) {
+      if (!effect.candidate->raises_degree) continue;
+      effect.round.ambiguous_with = causes;
+      out_.notes.push_back(effect.name() + ": without it, " + joined(causes, " and ") +
+                           " explain as much");
+    }
+    out_.instead = std::move(without.out_.effects);
+  }
+
+  /// One effect more, even if noise gives as much: beside a rival the others need not explain all.
+  void add_best_that_is_possible() {
+    for (const TestedCandidate& each : extender_.search(out_.effects).tested) {
+      if (!each.is_possible() || each.refined.delta_bic > -gates_.delta_bic ||
+          std::ranges::count(excluded_, each.name()) > 0)
+        continue;
+      out_.effects.push_back({each.refined.candidate, each.refined.shape, {}});
+      return;
+    }
+  }
+
+  /// Never to be chosen.
+  void exclude(const std::string& name) {
+    excluded_.push_back(name);
+    ruled_out_.push_back(name);
   }
 
   /// Names what nothing without a name explains as well.
@@ -360,6 +417,7 @@ class Selector {
   ModelExtender& extender_;
   const Gates& gates_;
   const Progress& progress_;
+  std::vector<std::string> excluded_;
   std::vector<std::string> ruled_out_;   // names that do not help beside the others
   std::vector<std::string> taken_back_;  // those of them that were in the set
   bool narrowed_ = false;  // the same effect in fewer cuts: it may be in others as well

@@ -36,6 +36,21 @@ double SetStatistics::over_process(const Effects& effects, std::size_t which) {
   });
 }
 
+double SetStatistics::lead(const Effects& effects, const Effects& other) {
+  return kept_or_made(leads_, {candidates_of(effects), candidates_of(other)}, [&] {
+    const Whitened& data = extender_.search(effects).data;
+    const auto unknowns = [&](const Effects& of) {
+      double sum = 0.0;
+      for (const AcceptedEffect& effect : of)
+        sum += penalty(data, *effect.candidate, effect.candidate->amplitudes());
+      return sum;
+    };
+    const Whitened without(extender_.extended(other).fit.linear, data.noise(), data.undescribed());
+    return without.residual().squaredNorm() + unknowns(other) - data.residual().squaredNorm() -
+           unknowns(effects);
+  });
+}
+
 Standing SetStatistics::standing(const Effects& effects, const Gates& gates) {
   Standing out;
   const auto make = [&] {

@@ -31,6 +31,9 @@ class SetStatistics {
   /// gain_over_process()
   double over_process(const Effects& effects, std::size_t which);
 
+  /// By how much the BIC of a set is lower than that of another one, under the noise beside it.
+  double lead(const Effects& effects, const Effects& other);
+
   /// The nearest of unnamed_rivals(). REQUIRES a set that is not empty.
   Standing standing(const Effects& effects, const Gates& gates);
 
@@ -42,6 +45,7 @@ class SetStatistics {
   ModelExtender& extender_;
   std::map<Key, std::vector<UnnamedRival>> rivals_;
   std::map<One, double> gains_, over_process_;
+  std::map<std::pair<Key, Key>, double> leads_;
 };
 
 }  // namespace slideway

@@ -206,6 +206,10 @@ class Loop {
                             std::to_string(*effect.candidate->options.degree));
       advise(selection, i, out);
     }
+    if (!selection.instead.empty())
+      out.advice.emplace_back(
+          "read the straightness along the slide (autocollimator): it tells a way of a higher "
+          "degree from other causes");
     if (const double radius = left_out_radius(extender_.extended(selection.effects).model);
         radius > left_out_radius(extender_.base().model))
       out.notes.push_back("values within r = " + significant(radius, 2) +
@@ -281,6 +285,10 @@ class Loop {
       const FittedModel& without = extender_.extended(all_but(selection.effects, unsure));
       closed.widening = widening_instead(selection, fitted, without);
       if (of_another_cause) closed.widening->add_absence(fitted, without);
+    }
+    if (!selection.instead.empty()) {
+      if (!closed.widening) closed.widening.emplace(fitted.fit.linear.prior_rows.cols());
+      closed.widening->add_absence(fitted, extender_.extended(selection.instead));
     }
     for (std::size_t i = 0; i < selection.effects.size(); ++i) {
       const WithoutEffect place = without_effect(selection, i);

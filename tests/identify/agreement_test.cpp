@@ -148,7 +148,7 @@ TEST(Repeats, WhatTheyShareAndTheModelLacksIsLackOfFit) {
 // Lack of fit is asked for at 1 %: four of forty surfaces have it by chance once in 1400 times.
 TEST(Repeats, ATextureOfSeveralLengthsIsNoLackOfFit) {
   int lacks = 0;
-  for (std::uint64_t surface = 0; surface < 40; ++surface) {
+  for (unsigned surface = 0; surface < 40; ++surface) {
     std::vector<Profile> profiles{run("a", 5e-3, 2 * surface + 1), run("b", 5e-3, 2 * surface + 2)};
     RandomStream random(surface, "texture");
     for (const double length : {1.0, 2.0, 5.0, 10.0}) {
@@ -164,6 +164,38 @@ TEST(Repeats, ATextureOfSeveralLengthsIsNoLackOfFit) {
     lacks += checks.at(0).verdict == RepeatFit::lack_of_fit ? 1 : 0;
   }
   EXPECT_LE(lacks, 3);
+}
+
+/// Runs of white noise, the last with a bump of so many deviations over a tenth of the travel.
+std::vector<OddRepeat> odd_of(std::size_t count, double bump, unsigned seed) {
+  std::vector<Profile> profiles;
+  for (unsigned k = 0; k < count; ++k)
+    profiles.push_back(run(std::string(1, static_cast<char>('a' + k)), 5e-3, 10 * seed + k));
+  Profile& last = profiles.back();
+  for (std::size_t i = 0; i < last.values.size(); ++i)
+    last.values[i] +=
+        bump * kNoise * std::exp(-0.5 * std::pow((last.positions[i] - 0.6 * kLength) / 20.0, 2));
+  return odd_repeats(fit_declared(straight(), profiles).fit.linear, Gates{});
+}
+
+TEST(Repeats, TheOneWithABumpIsOdd) {
+  for (const std::size_t count : {3U, 4U, 6U})
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+      const std::vector<OddRepeat> odd = odd_of(count, 8.0, seed);
+      ASSERT_EQ(odd.size(), 1U) << count << " runs, seed " << seed;
+      EXPECT_EQ(odd.front().profile, count - 1);
+      EXPECT_LT(odd.front().p_value, Gates{}.disagreement_p);
+    }
+}
+
+// Of two, either may be the odd one.
+TEST(Repeats, OfTwoNoneIsOdd) { EXPECT_TRUE(odd_of(2, 50.0, 1).empty()); }
+
+// At disagreement_p = 1e-4 a false alarm in a hundred problems has a chance of one in a hundred.
+TEST(Repeats, WhiteNoiseMakesNoneOdd) {
+  for (unsigned seed = 1; seed <= 50; ++seed)
+    for (const std::size_t count : {3U, 5U})
+      EXPECT_TRUE(odd_of(count, 0.0, seed).empty()) << count << " runs, seed " << seed;
 }
 
 }  // namespace

@@ -24,7 +24,18 @@ std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit
 /// each show (delete-one jackknife): a column each.
 Eigen::MatrixXd scatter_of_profiles(const Solution& fit, const Gates& gates);
 
-/// What the repeats of each group have in common and the model lacks.
+/// One of three repeats or more that is unlike the others.
+struct OddRepeat {
+  std::size_t profile = 0;  // index of the fitted one
+  double p_value = 1.0;     // that noise makes any of the group differ as much
+};
+
+/// Repeats whose difference from the others of their group is larger than those' differences from
+/// one another, in the slow band, with a probability by chance below Gates::disagreement_p. No
+/// model of the noise is asked: the others show it.
+std::vector<OddRepeat> odd_repeats(const Linearisation& linear, const Gates& gates);
+
+/// What the repeats of each group have in common and the model lacks; not the odd ones.
 ///
 /// Texture repeats; it may have several lengths, up to Gates::longest_texture. The mean residual of
 /// a group has the largest, in the long run, of three noises: that of its own fine band, that of

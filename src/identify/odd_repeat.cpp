@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <cmath>
+
+#include "repeats.hpp"
+#include "slideway/base/distribution.hpp"
+#include "slideway/identify/agreement.hpp"
+#include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/noise_model.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr std::size_t kLeastRepeats = 3;  // of two, either may be the odd one
+
+/// Slow cosines of the residuals of a group, levelled, at the stations all have: a column each.
+Eigen::MatrixXd slow_parts(const Linearisation& linear, const std::vector<std::size_t>& group,
+                           const Gates& gates) {
+  const Observation& first = *linear.observations[group.front()];
+  std::vector<std::vector<Eigen::Index>> matches;
+  for (const std::size_t i : group)
+    matches.push_back(matched_values(first, *linear.observations[i], gates));
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index row = 0; row < first.values.size(); ++row)
+    if (std::ranges::all_of(matches, [&](const auto& match) { return match[row] >= 0; }))
+      rows.push_back(row);
+  Eigen::MatrixXd residuals(std::ssize(rows), std::ssize(group));
+  for (std::size_t k = 0; k < group.size(); ++k)
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      residuals(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(k)) =
+          linear.residuals[group[k]][matches[k][rows[r]]];
+  const Eigen::MatrixXd levelling = orthonormal(first.nuisances(rows, Eigen::all));
+  Gates finer = gates;
+  finer.values_per_cosine = gates.values_per_repeated_cosine;
+  Eigen::MatrixXd cosines =
+      slow_cosines(std::ssize(rows), slow_cosine_count(std::ssize(rows), finer));
+  cosines -= levelling * (levelling.transpose() * cosines).eval();
+  return orthonormal(std::move(cosines)).transpose() * residuals;
+}
+
+/// Means over octaves of frequency, in place.
+void smooth(Eigen::VectorXd& spectrum) {
+  for (Eigen::Index first = 0, count = 1; first < spectrum.size(); first += count, count *= 2) {
+    auto octave = spectrum.segment(first, std::min(count, spectrum.size() - first));
+    octave.setConstant(octave.mean());
+  }
+}
+
+/// Probability that noise makes one of m repeats differ as much from the others. Both mean squares
+/// have the spectrum of the noise, which the others show: their degrees of freedom are those of a
+/// sum of unequal squares (Satterthwaite 1946).
+double probability_beside(const Eigen::MatrixXd& parts, Eigen::Index which) {
+  const auto count = static_cast<double>(parts.cols());
+  const Eigen::VectorXd mean = (parts.rowwise().sum() - parts.col(which)) / (count - 1.0);
+  const double square = (count - 1.0) / count * (parts.col(which) - mean).squaredNorm();
+  Eigen::MatrixXd others = parts.colwise() - mean;
+  others.col(which).setZero();
+  Eigen::VectorXd variances = others.rowwise().squaredNorm() / (count - 2.0);
+  smooth(variances);
+  const double expected = variances.sum();
+  if (!(expected > 0.0)) return square > 0.0 ? 0.0 : 1.0;
+  const double freedom = expected * expected / variances.squaredNorm();
+  const double rest = (count - 2.0) * freedom;
+  return beta_share(0.5 * rest, 0.5 * freedom, rest / (rest + freedom * square / expected));
+}
+
+}  // namespace
+
+std::vector<OddRepeat> odd_repeats(const Linearisation& linear, const Gates& gates) {
+  std::vector<OddRepeat> out;
+  for (std::vector<std::size_t> group : repeat_groups(linear, gates)) {
+    while (group.size() >= kLeastRepeats) {
+      const Eigen::MatrixXd parts = slow_parts(linear, group, gates);
+      if (parts.rows() == 0) break;
+      OddRepeat odd;
+      Eigen::Index which = 0;
+      for (Eigen::Index k = 0; k < parts.cols(); ++k) {
+        const double p =
+            std::min(1.0, static_cast<double>(parts.cols()) * probability_beside(parts, k));
+        if (p < odd.p_value) odd = {group[static_cast<std::size_t>(k)], p}, which = k;
+      }
+      if (!(odd.p_value < gates.disagreement_p)) break;
+      out.push_back(odd);
+      group.erase(group.begin() + which);
+    }
+  }
+  return out;
+}
+
+}  // namespace slideway
