@@ -125,6 +125,12 @@ std::span<const Gate> gate_table() {
           "Something is missing where noise makes any two of the profiles differ as much, over all "
           "effects, or one repeat from the others, with a smaller probability.",
           "240 simulated faces without a fault: the least was 2e-4"},
+      Gate{
+          "shared_evidence", &Gates::shared_evidence, "nats", 3.0, 50.0,
+          "Something is missing where a process that faces share has so much log evidence over the "
+          "noise of the fit.",
+          "noise gives e^10 with a probability below e^-10 (Markov's inequality), for each of some "
+          "twenty lengths and sizes"},
       Gate{"held_out_p", &Gates::held_out_p, "", 1e-6, 0.2,
            "A held-out profile does not fit if noise explains it with a smaller probability.",
            "one false alarm in a hundred profiles"},

@@ -122,6 +122,19 @@ Structure find_structure(const Model& model, const Whitened& data, const Lineari
   return found;
 }
 
+double shared_evidence(const FittedModel& fitted) {
+  const Linearisation& linear = fitted.fit.linear;
+  const auto faces = std::ranges::count(linear.observations, Kind::face,
+                                        [](const auto* each) { return each->profile->setup.kind; });
+  if (faces < 2 || fitted.fit.uncertainty.inflation > 1.0) return 0.0;
+  const Whitened data(linear, fitted.fit.noise);
+  double out = 0.0;
+  for (const ProcessVariable& variable : process_variables(fitted.model, linear))
+    if (!variable.of_each && variable.profiles.size() > 1)
+      out = std::max(out, best_process(data, variable).log_evidence);
+  return out;
+}
+
 const Clock& clock_of(const Unnamed& unnamed) {
   static constexpr Clock kClocks[] = {
       {"r", "x", "mm", 1.0, IndependentVariable::slide},

@@ -14,6 +14,12 @@ struct Structure {
 };
 Structure find_structure(const Model& model, const Whitened& data, const Linearisation& linear);
 
+/// Log evidence of the best process of the slide, of the time, of the distance or of the trace that
+/// several faces have in common, over noise alone, nats; 0 where there are not two, or where the
+/// noise of the fit is that beside a structure (FitNoise). Noise of a long memory explains a
+/// structure in each of them by itself, not in all of them at once.
+double shared_evidence(const FittedModel& fitted);
+
 /// Size, place and form of what is left.
 Unnamed describe(const Model& model, const Structure& structure, const Whitened& data,
                  const Linearisation& linear);

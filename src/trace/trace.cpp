@@ -254,13 +254,21 @@ class Loop {
                        : "beside the others it does not help",
                    out);
     out.lack_of_fit_p = selection.lack_of_fit.p_value;
-    double repeated_p = 1.0;  // of what repeats have in common
-    for (const PureErrorCheck& each : check_repeats(fitted.fit.linear, gates))
-      if (each.verdict == RepeatFit::lack_of_fit) repeated_p = std::min(repeated_p, each.p_value);
-    if (out.blunders.empty() && !something_is_wrong(selection) && repeated_p == 1.0) return;
-    report_unnamed(fitted, last.data,
-                   std::min({selection.lack_of_fit.p_value, repeated_p, among_.p_value}),
-                   last.tested, closed);
+    double found_p = std::min(selection.lack_of_fit.p_value, among_.p_value);
+    bool is_wrong = !out.blunders.empty() || something_is_wrong(selection);
+    const std::vector<PureErrorCheck> repeats = check_repeats(fitted.fit.linear, gates);
+    for (const PureErrorCheck& each : repeats) {
+      if (each.verdict != RepeatFit::lack_of_fit) continue;
+      found_p = std::min(found_p, each.p_value);
+      is_wrong = true;
+    }
+    if (!is_wrong && repeats.empty()) {  // what repeats share is texture as well
+      const double evidence = shared_evidence(fitted);
+      found_p = std::min(found_p, std::exp(-evidence));
+      is_wrong = evidence > gates.shared_evidence;
+    }
+    if (!is_wrong) return;
+    report_unnamed(fitted, last.data, found_p, last.tested, closed);
     if (profiles_differ() && out.blunders.empty())
       out.advice.push_back(disagreement_advice(among_));
     if (!limit_.allows([&] {

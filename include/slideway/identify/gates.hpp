@@ -55,6 +55,7 @@ struct Gates {
   double false_disagreement = 0.0455;
   double held_out_p = 0.01;
   double disagreement_p = 1e-4;
+  double shared_evidence = 10.0;
   double same_place = 0.25;
   double values_per_repeated_cosine = 3.0;
   double blunder_bic = 20.0;

@@ -35,7 +35,7 @@ std::unique_ptr<Effect> make_speed_effect(const Request& request) {
                       .formula = "A ((max(r, 0.02 mm)/R)^-m - 1)",
                       .source = "force law F ~ v^-m with v = 2π r n",
                       .cause = "the cutting speed falls to zero at the centre: the force grows and "
-                               "lifts the tool, chips build up on the edge",
+                               "lifts the tool, or pulls it in (A < 0); chips build up on the edge",
                       .typical = "1 to 40 nm over the face, m of 0.1 to 0.5",
                       .variable = IndependentVariable::radius,
                       .confounded_with = "centre_height and everything singular at the centre",
@@ -43,7 +43,7 @@ std::unique_ptr<Effect> make_speed_effect(const Request& request) {
                       .separated_by = "a spring pass (no depth of cut, no force), a second feed "
                                       "(force grows with about f^0.7)",
                       .steep_at_centre = true},
-      .amplitude = {"amplitude_um", "A", "µm", 0.01, 0.0},
+      .amplitude = {"amplitude_um", "A", "µm", 0.01},
       .reading = log_speed_ratio,
       .value = speed_effect_value,
       .applies_to = is_face_height,
