@@ -154,7 +154,7 @@ std::string fit(const ModelResult& model) {
   std::string head = model.converged ? "Fit: converged" : "Fit: NOT CONVERGED";
   if (!model.converged && !model.message.empty()) head += " (" + model.message + ")";
   head += ", " + counted(model.observations, "value") + " (" +
-          number(model.effective_observations, 4) + " effective), residual rms " +
+          number(std::round(model.effective_observations), 15) + " effective), residual rms " +
           size_text(model.rms_um, model.rms_urad, 4);
   const bool declared = std::ranges::all_of(
       model.noise, [](const auto& n) { return n.scaling == NoiseScaling::declared; });

@@ -146,7 +146,7 @@ std::string value_of(const FittedParameter& p) {
 std::string model_heading(const ModelResult& model) {
   return heading("Final model: " + effect_titles(model.effects, ", ") + "; " +
                  counted(model.observations, "value") + " (" +
-                 number(model.effective_observations, 3) + " effective), residual " +
+                 number(std::round(model.effective_observations), 15) + " effective), residual " +
                  size_text(model.rms_um, model.rms_urad) + " rms");
 }
 

@@ -218,6 +218,14 @@ TEST(TextReport, GivesAValueWithItsUncertaintyAndUnit) {
   EXPECT_THAT(line, testing::ContainsRegex("\\(2.8000 ± 0.0022\\)e-06 +rad"));
 }
 
+TEST(TextReport, CountsEffectiveValuesAsItCountsValues) {
+  Result result = sample_result();
+  result.final->observations = 1248;
+  result.final->effective_observations = 1248.0;
+  for (const std::string& text : {full(result), short_text(result)})
+    EXPECT_THAT(on_one_line(text), HasSubstr("1248 values (1248 effective)"));
+}
+
 TEST(TextReport, NeverShowsANumberForAParameterThatIsNotDetermined) {
   const std::string text = full(sample_result());
   EXPECT_THAT(line_with(text, "vertical straightness c_1"), HasSubstr("not determined"));
