@@ -37,7 +37,7 @@ OrderedJson trend_json(const Trend& trend, bool are_dates) {
           {"unit", rate_unit(trend, are_dates)},
           {"standard_uncertainty", trend.standard_uncertainty},
           {"expanded_uncertainty", trend.expanded_uncertainty},
-          {"p_value", trend.p_value},
+          {"p_value", written_probability(trend.p_value)},
           {"between_items", trend.between_items}};
 }
 
@@ -127,7 +127,8 @@ std::string pooled_json(const std::vector<PooledMachine>& machines, bool are_dat
     for (const PooledItem& item : machine.items)
       items.push_back({{"id", item.id},
                        {"En", or_null(item.En)},
-                       {"p_value", or_null(item.p_value)},
+                       {"p_value", item.p_value ? OrderedJson(written_probability(*item.p_value))
+                                                : OrderedJson()},
                        {"fits", item.fits}});
     out.push_back({{"machine", machine.machine},
                    {"parameters", parameters},
