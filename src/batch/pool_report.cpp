@@ -48,7 +48,7 @@ std::string number(const std::optional<double>& value, int digits) {
 std::string parameters_text(const PooledMachine& machine) {
   using Column = TextColumn;
   TextTable table({"parameter", "value ± U", "unit", "k"},
-                  {Column::name, Column::text, Column::text, Column::number});
+                  {Column::text, Column::text, Column::text, Column::number});
   for (const FittedParameter& p : machine.parameters) {
     std::string shown = "not determined";
     if (p.identifiable) shown = with_uncertainty(*p.value, *p.expanded_uncertainty);
@@ -62,7 +62,7 @@ std::string trends_text(const PooledMachine& machine, bool are_dates) {
   if (machine.trends.empty()) return "";
   using Column = TextColumn;
   TextTable table({"trend", "rate ± U", "unit", "p"},
-                  {Column::name, Column::text, Column::text, Column::number});
+                  {Column::text, Column::text, Column::text, Column::number});
   for (const Trend& trend : machine.trends) {
     table.add({trend.parameter, with_uncertainty(trend.rate, trend.expanded_uncertainty),
                rate_unit(trend, are_dates), significant(trend.p_value, 2)});

@@ -263,8 +263,11 @@ std::string short_text(const Analysis& analysis, const Summary& summary, std::st
   if (result.final) {
     text += model_heading(*result.final);
     const std::size_t used = lines_of(text + more).size() + 4;  // headings, a note
-    text += parameter_table(result,
-                            std::min(kParameterRows, kAllLines - std::min(kAllLines - 4, used)));
+    const std::size_t room = kAllLines - std::min(kAllLines - 4, used);
+    std::size_t rows = std::min(kParameterRows, room);
+    std::string table = parameter_table(result, rows);
+    while (rows > 1 && lines_of(table).size() > room + 1) table = parameter_table(result, --rows);
+    text += table;
   }
   text += more;
   const std::size_t used = lines_of(text).size();
@@ -287,8 +290,7 @@ std::string parameter_table(const Result& result, std::size_t most) {
   if (all.empty()) return "";
   std::vector<std::string> headings{"parameter", "value ± U", "unit", has_k ? "k" : "",
                                     has_declared ? "declared model" : ""};
-  TextTable table(std::move(headings), {TextColumn::name, TextColumn::text, TextColumn::text,
-                                        TextColumn::text, TextColumn::text});
+  TextTable table(std::move(headings), std::vector<TextColumn>(5, TextColumn::text));
   for (std::vector<std::string>& row : rows) table.add(std::move(row));
   if (rows.size() == all.size()) return table.text();
   return table.text() + item(counted(all.size() - rows.size(), "more parameter") + ": --full");
