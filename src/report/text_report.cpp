@@ -251,15 +251,19 @@ std::string notes(const Analysis& analysis, std::size_t room) {
   return "\n" + out;
 }
 
-std::string unseen_line(const Summary& summary) {
-  if (summary.unseen.empty()) return "";
-  return note("What these data do not show may move the squareness " + summary.unseen + ".");
+std::string unseen_lines(const Summary& summary) {
+  std::string out;
+  if (!summary.same.empty())
+    out += note("The straightness holds whatever has its columns: " + summary.same + ".");
+  if (!summary.unseen.empty())
+    out += note("What these data do not show may move the squareness " + summary.unseen + ".");
+  return out;
 }
 
 std::string short_text(const Analysis& analysis, const Summary& summary, std::string text) {
   const Result& result = analysis.result;
   const std::string more =
-      unseen_line(summary) + stations(result) + assumed(result) + tolerances(result);
+      unseen_lines(summary) + stations(result) + assumed(result) + tolerances(result);
   if (result.final) {
     text += model_heading(*result.final);
     const std::size_t used = lines_of(text + more).size() + 4;  // headings, a note
@@ -307,7 +311,7 @@ std::string text_report(const Analysis& analysis, const TextOptions& options) {
   if (result.final)
     text +=
         model_heading(*result.final) + parameter_table(result, result.final->parameters.size() + 1);
-  text += unseen_line(summary) + stations(result) + tolerances(result) + full_text(analysis);
+  text += unseen_lines(summary) + stations(result) + tolerances(result) + full_text(analysis);
   std::string notes;
   for (const std::string& each : all_notes(analysis)) notes += note(each);
   return text + (notes.empty() ? "" : heading("Notes") + notes);
