@@ -37,7 +37,7 @@ OrderedJson trend_json(const Trend& trend, bool are_dates) {
           {"unit", rate_unit(trend, are_dates)},
           {"standard_uncertainty", trend.standard_uncertainty},
           {"expanded_uncertainty", trend.expanded_uncertainty},
-          {"p_value", trend.p_value},
+          {"p_value", written_probability(trend.p_value)},
           {"between_items", trend.between_items}};
 }
 
@@ -48,7 +48,7 @@ std::string number(const std::optional<double>& value, int digits) {
 std::string parameters_text(const PooledMachine& machine) {
   using Column = TextColumn;
   TextTable table({"parameter", "value ± U", "unit", "k"},
-                  {Column::name, Column::text, Column::text, Column::number});
+                  {Column::text, Column::text, Column::text, Column::number});
   for (const FittedParameter& p : machine.parameters) {
     std::string shown = "not determined";
     if (p.identifiable) shown = with_uncertainty(*p.value, *p.expanded_uncertainty);
@@ -62,7 +62,7 @@ std::string trends_text(const PooledMachine& machine, bool are_dates) {
   if (machine.trends.empty()) return "";
   using Column = TextColumn;
   TextTable table({"trend", "rate ± U", "unit", "p"},
-                  {Column::name, Column::text, Column::text, Column::number});
+                  {Column::text, Column::text, Column::text, Column::number});
   for (const Trend& trend : machine.trends) {
     table.add({trend.parameter, with_uncertainty(trend.rate, trend.expanded_uncertainty),
                rate_unit(trend, are_dates), significant(trend.p_value, 2)});
@@ -127,7 +127,8 @@ std::string pooled_json(const std::vector<PooledMachine>& machines, bool are_dat
     for (const PooledItem& item : machine.items)
       items.push_back({{"id", item.id},
                        {"En", or_null(item.En)},
-                       {"p_value", or_null(item.p_value)},
+                       {"p_value", item.p_value ? OrderedJson(written_probability(*item.p_value))
+                                                : OrderedJson()},
                        {"fits", item.fits}});
     out.push_back({{"machine", machine.machine},
                    {"parameters", parameters},

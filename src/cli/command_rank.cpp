@@ -87,7 +87,7 @@ class RankCommand : public ProblemCommand {
                       {"lag", row.lag},
                       {"lag_coefficient", row.lag_coefficient},
                       {"effective_observations", row.effective_observations},
-                      {"p_value", row.p_value}});
+                      {"p_value", written_probability(row.p_value)}});
     const nlohmann::ordered_json document = {{"schema", "slideway.columns/1"},
                                              {"file", input()},
                                              {"signal", signal_},

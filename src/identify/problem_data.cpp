@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "copies.hpp"
+#include "position_units.hpp"
 #include "problem_section.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
@@ -102,6 +103,7 @@ std::vector<Profile> read_profiles(const Problem& problem, const GivenTraces& gi
     files.finish(entry);
   }
   hold_out_copies(profiles);
+  note_other_position_units(profiles);
   return profiles;
 }
 
@@ -122,6 +124,7 @@ std::vector<Profile> read_profiles(const Problem& problem, Faults& faults) {
     }
   }
   hold_out_copies(profiles);
+  note_other_position_units(profiles);
   return profiles;
 }
 

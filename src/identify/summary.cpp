@@ -109,6 +109,7 @@ void add_noise(const Solution& fit, ModelResult& out) {
     const Noise& noise = fit.noise[i];
     const Observation& observation = *fit.linear.observations[i];
     const auto n = static_cast<double>(observation.values.size());
+    const double used = n - static_cast<double>(observation.left_out());
     const double step =
         (observation.profile->setup.last_mm - observation.profile->setup.first_mm) / n;
     NoiseSummary summary{observation.profile->name,
@@ -118,8 +119,8 @@ void add_noise(const Solution& fit, ModelResult& out) {
                          !noise.is_white(), noise.unlike_sisters};
     set_size(observation, noise.standard_deviation() * std::sqrt(n) / per_sample(observation),
              summary.standard_deviation_um, summary.standard_deviation_urad);
-    summary.effective_observations = noise.effective_values();
-    summary.correlation_mm = !noise.is_white() ? n / summary.effective_observations * step : 0.0;
+    summary.effective_observations = std::max(1.0, noise.effective_values() * used / n);
+    summary.correlation_mm = !noise.is_white() ? n / noise.effective_values() * step : 0.0;
     Eigen::MatrixXd whitened = fit.linear.residuals[i];
     noise.whiten(whitened);
     out.chi_square += whitened.squaredNorm();
@@ -127,7 +128,7 @@ void add_noise(const Solution& fit, ModelResult& out) {
     if (n > 2.0 * lags)
       summary.ljung_box_p = ljung_box_p_value({whitened.data(), static_cast<std::size_t>(n)}, lags,
                                               noise.is_white() ? 0 : kMemoryParameters);
-    out.observations += static_cast<std::size_t>(n);
+    out.observations += static_cast<std::size_t>(used);
     out.effective_observations += summary.effective_observations;
     out.degrees_of_freedom += n - static_cast<double>(observation.nuisances.cols());
     out.noise.push_back(std::move(summary));

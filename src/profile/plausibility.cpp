@@ -26,6 +26,7 @@ constexpr Usual kSpeed{"spindle_rpm", 0.1, 1e5, "spindles turn at 0.1 to 100000 
 constexpr Usual kNose{"nose_radius_mm", 1e-3, 200.0, "noses have 0.001 to 200 mm"};
 constexpr Usual kOverhang{"overhang_mm", 0.0, 3000.0, "holders reach out 3 m at most"};
 constexpr Usual kZ{"z_mm", 0.0, 3e4, "lathes travel 30 m at most"};
+constexpr Usual kSpindle{"spindle_position_mm", 0.0, 3e4, "lathes travel 30 m at most"};
 constexpr Usual kBase{"base_mm", 0.1, 3000.0, "mirrors and levels stand on 0.1 mm to 3 m"};
 constexpr Usual kTraverse{"traverse_mm_per_s", 1e-3, 1e3, "styli travel at 0.001 to 1000 mm/s"};
 constexpr Usual kStart{"start_s", 0.0, 30.0 * 86400.0, "a month lies between two cuts at most"};
@@ -62,6 +63,7 @@ void note_cut(Profile& profile) {
 void note_centre(Profile& profile) {
   const Setup& setup = profile.setup;
   if (setup.kind != Kind::face) return;
+  note(profile, kSpindle, setup.spindle_position_mm);
   const double outside =
       std::max(setup.first_mm - setup.center_mm, setup.center_mm - setup.last_mm);
   const double length = setup.last_mm - setup.first_mm;

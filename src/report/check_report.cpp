@@ -33,6 +33,7 @@ std::string profiles(const Result& data) {
                           significant(in.position_min_mm, 6) + " to " +
                           significant(in.position_max_mm, 6) + " mm; " + values +
                           (in.role == Role::holdout ? "; held out" : ""));
+    for (const std::string& each : in.notes) text += paragraph("    - ", each);
   }
   return text;
 }
@@ -167,7 +168,7 @@ std::string check_text(const ProblemCheck& check) {
 }
 
 std::string check_json(const ProblemCheck& check) {
-  Json faults = Json::array(), assumed = Json::array();
+  Json faults = Json::array(), assumed = Json::array(), notes = Json::array();
   for (const Fault& fault : check.faults) faults.push_back(json_of(fault));
   if (check.data)
     for (const Assumption& each : check.data->assumed)
@@ -175,10 +176,15 @@ std::string check_json(const ProblemCheck& check) {
           {{"key", each.key},
            {"value", Json::accept(each.value) ? Json::parse(each.value) : Json(each.value)},
            {"why", each.why}});
+  if (check.data)
+    for (const InputSummary& in : check.data->inputs)
+      for (const std::string& each : in.notes)
+        notes.push_back({{"profile", in.name}, {"note", each}});
   const Json document{{"schema", "slideway.check/1"},
                       {"problem", check.path.string()},
                       {"faults", faults},
                       {"assumed", assumed},
+                      {"notes", notes},
                       {"design", check.design ? json_of(*check.design) : Json()}};
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

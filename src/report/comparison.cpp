@@ -195,7 +195,7 @@ std::vector<Change> changes_of(const NamedReport& a, const NamedReport& b) {
 std::string parameter_text(const std::vector<Pair>& pairs) {
   if (pairs.empty()) return heading("Parameters: none in either report");
   TextTable table({"parameter", "A ± U", "B ± U", "B - A", "E_n", "unit"},
-                  {TextColumn::name, TextColumn::text, TextColumn::text, TextColumn::number,
+                  {TextColumn::text, TextColumn::text, TextColumn::text, TextColumn::number,
                    TextColumn::number, TextColumn::text});
   std::vector<std::string> changed;
   const auto digits = [](const std::optional<double>& value, int count) {

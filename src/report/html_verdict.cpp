@@ -41,6 +41,11 @@ Html unseen_paragraph(const Summary& summary) {
   return element("br") + small("what these data do not show may move it " + Html(summary.unseen));
 }
 
+Html same_paragraph(const Summary& summary) {
+  if (summary.same.empty()) return {};
+  return element("br") + small("holds whatever has its columns: " + Html(summary.same));
+}
+
 Html straightness_card(const Straightness& form) {
   if (form.errors.empty()) return form.reason;
   std::vector<Html> lines;
@@ -80,7 +85,7 @@ Html all_cards(const Analysis& analysis, const Summary& summary) {
                            squareness_card(p) + unseen_paragraph(summary));
     if (result.final->straightness)
       facts.emplace_back("Straightness error " + html_symbol("E_ZX"),
-                         straightness_card(*result.final->straightness));
+                         straightness_card(*result.final->straightness) + same_paragraph(summary));
   }
   if (!summary.conformity.empty()) facts.emplace_back("Tolerance", in_sentence(summary.conformity));
   if (const Html name = dominant_card(result.dominant); !name.empty())

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "slideway/report/number.hpp"
+
 namespace slideway {
 namespace {
 
@@ -15,6 +17,7 @@ std::string dumped(const Json& json) {
 }  // namespace
 
 void JsonWriter::write(double number) {
+  if (is_probability_) number = written_probability(number);
   if (!std::isfinite(number)) {
     text_ += "null";
     return;

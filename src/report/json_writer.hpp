@@ -35,6 +35,7 @@ class JsonWriter {
       if (brief_ && (digits == 0 || is_nothing(value))) return;
       key(field.key);
       digits_ = digits;
+      is_probability_ = field.key == "p_value" || field.key.ends_with("_p");
       write(value);
     });
     close('}');
@@ -123,6 +124,7 @@ class JsonWriter {
   bool indented_, brief_, is_first_ = true;
   std::size_t depth_ = 0;
   int digits_ = 0;
+  bool is_probability_ = false;
 };
 
 }  // namespace slideway

@@ -7,14 +7,7 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kGap = 2;
-
-/// Width a column can be cut down to, or none.
-std::optional<std::size_t> shortest_width(TextColumn column) {
-  if (column == TextColumn::name) return 8;
-  if (column == TextColumn::effect) return 21;
-  return std::nullopt;
-}
+constexpr std::size_t kGap = 2, kShortestName = 8;
 
 bool starts_code_point(char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }
 
@@ -91,7 +84,7 @@ std::vector<std::size_t> TextTable::widths() const {
   while (total() > kLineWidth) {
     std::size_t* longest = nullptr;
     for (std::size_t i = 0; i < widths.size(); ++i)
-      if (widths[i] > shortest_width(columns_[i]).value_or(widths[i]) &&
+      if (columns_[i] == TextColumn::name && widths[i] > kShortestName &&
           (longest == nullptr || widths[i] > *longest))
         longest = &widths[i];
     if (longest == nullptr) break;
@@ -102,17 +95,33 @@ std::vector<std::size_t> TextTable::widths() const {
 
 std::string TextTable::text() const {
   const std::vector<std::size_t> width = widths();
-  std::string text;
+  std::vector<std::optional<std::size_t>> below(width.size());  // indent of a column that goes on
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < width.size(); ++i) {
+    const std::size_t size = std::min(kGap + width[i], kLineWidth);
+    if (i > 0 && end + size > kLineWidth)
+      end = *(below[i] = std::min(kGap + width[0], kLineWidth - size));
+    end += size;
+  }
+  std::string text, line;
+  const auto end_line = [&] {
+    line.erase(line.find_last_not_of(' ') + 1);
+    if (!line.empty())
+      text += code_points(line) <= kLineWidth ? line + "\n" : paragraph("  ", line);
+    line.clear();
+  };
   for (const auto& row : rows_) {
-    std::string line;
     for (std::size_t i = 0; i < row.size(); ++i) {
+      if (below[i]) {
+        end_line();
+        line.append(*below[i], ' ');
+      }
       const std::string cell = shortened(row[i], width[i]);
-      const std::string blanks(width[i] - std::min(width[i], code_points(cell)), ' ');
-      line += std::string(kGap, ' ');
+      const std::string blanks(width[i] - code_points(cell), ' ');
+      line.append(kGap, ' ');
       line += columns_[i] == TextColumn::number ? blanks + cell : cell + blanks;
     }
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += code_points(line) <= kLineWidth ? line + "\n" : paragraph("  ", line);
+    end_line();
   }
   return text;
 }

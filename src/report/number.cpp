@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "slideway/base/text.hpp"
@@ -80,6 +81,8 @@ std::string fixed_point(double value, int decimals) {
   if (!std::isfinite(value)) throw std::logic_error("fixed_point: the value is not finite");
   return at_place(value, -decimals);
 }
+
+double written_probability(double p) { return std::max(p, std::numeric_limits<double>::min()); }
 
 std::string to_digits(double value, int digits) {
   if (!std::isfinite(value)) throw std::logic_error("to_digits: the value is not finite");

@@ -334,6 +334,7 @@ Summary summary_of(const Analysis& analysis) {
   if (analysis.result.final && !analysis.result.final->converged)
     out.result = "not determined: the fit did not converge";
   out.unseen = moved_unseen(analysis);
+  out.same = same_as_straightness(analysis);
   say_crosscheck(analysis.result, out);
   say_missing(analysis, out);
   out.next = next_step(analysis);

@@ -20,6 +20,7 @@ struct Summary {
   std::string squareness;    // "2.797 ± 0.029 µm/m", or why there is none
   std::string result;        // both, with the definition of E_ZX
   std::string unseen;        // what may have moved it unseen: "by up to 4.1 µm/m: tool wear"
+  std::string same;          // what has the columns of the straightness: "cupped workpiece"
   std::string conformity;    // "flatness conforms", "" without a tolerance
   std::string crosscheck;
   std::string checks;   // both
@@ -38,6 +39,9 @@ std::string next_step(const Analysis& analysis);
 
 /// The most that an effect which is just not seen moves the squareness; "": none is known.
 std::string moved_unseen(const Analysis& analysis);
+
+/// Effects that the straightness of a face holds unseen, for they have its columns; "": none has.
+std::string same_as_straightness(const Analysis& analysis);
 
 /// Whether what the loop has added moved no declared number worth an alarm. REQUIRES a loop.
 bool is_harmless(const Analysis& analysis);

@@ -19,11 +19,19 @@ double harmless_shift(const TraceResult& trace) {
   return Gates{}.harmless_shift;
 }
 
-/// Effects whose column is that of the squareness, but for the one that is so by Eq. (16).
-std::string one_with_squareness(const TraceResult& trace) {
+/// Whether a parameter of an error of the carriages is among names joined by commas.
+bool has_parameter_of(MotionError error, const std::string& names) {
+  for (std::size_t at = 0; at < names.size(); at = names.find_first_of(' ', at))
+    if (at = names.find_first_not_of(' ', at); motion_error_of(names.substr(at)) == error)
+      return true;
+  return false;
+}
+
+/// Effects whose columns an error of the carriages makes, but for the one that is so by Eq. (16).
+std::string one_with(MotionError error, const TraceResult& trace) {
   std::vector<std::string> names;
   for (const NotSeparable& each : trace.not_separable)
-    if (each.same_as.find("dbeta_xz") != std::string::npos && !is_vertical(each.effect))
+    if (has_parameter_of(error, each.same_as) && !is_vertical(each.effect))
       names.push_back(each.effect);
   return effect_titles(names, ", ");
 }
@@ -43,7 +51,7 @@ bool may_be_moved_unseen(const Analysis& analysis) {
   const DetectionLimit* const worst = worst_unseen(*analysis.trace);
   return p != nullptr && is_known(*p) && worst != nullptr &&
          (*worst->squareness_rad > *p->expanded_uncertainty ||
-          !one_with_squareness(*analysis.trace).empty());
+          !one_with(MotionError::squareness, *analysis.trace).empty());
 }
 
 /// What to do about checks that failed; "": none has.
@@ -93,9 +101,20 @@ std::string moved_unseen(const Analysis& analysis) {
   if (!analysis.trace) return "";
   const DetectionLimit* const worst = worst_unseen(*analysis.trace);
   if (!worst) return "";
-  const std::string same = one_with_squareness(*analysis.trace);
+  const std::string same = one_with(MotionError::squareness, *analysis.trace);
   return (same.empty() ? "" : "by any amount: " + same + "; ") + "by up to " +
          number(*worst->squareness_rad / kMicroradian, 2) + " µm/m: " + effect_title(worst->effect);
+}
+
+std::string same_as_straightness(const Analysis& analysis) {
+  const Result& result = analysis.result;
+  const bool has_face = std::ranges::any_of(result.inputs, [](const InputSummary& in) {
+    return in.kind == Kind::face && in.role == Role::fit;
+  });
+  if (!analysis.trace || !has_face || !result.final || !result.final->straightness ||
+      result.final->straightness->errors.empty())
+    return "";
+  return one_with(MotionError::straightness, *analysis.trace);
 }
 
 std::string next_step(const Analysis& analysis) {

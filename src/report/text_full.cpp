@@ -75,7 +75,7 @@ std::string candidate_correlations(std::vector<CandidateCorrelation> pairs) {
   std::ranges::stable_sort(pairs, larger);
   if (pairs.empty()) return "";
   TextTable table({"effect", "effect", "profile", "r"},
-                  {TextColumn::effect, TextColumn::effect, TextColumn::name, TextColumn::number});
+                  {TextColumn::text, TextColumn::text, TextColumn::name, TextColumn::number});
   for (std::size_t i = 0; i < std::min(kCorrelationsListed, pairs.size()); ++i)
     table.add({effect_title(pairs[i].a), effect_title(pairs[i].b), pairs[i].profile,
                coefficient(pairs[i].coefficient)});
@@ -94,7 +94,7 @@ std::string better_when_shifted(const std::vector<Ranking>& entries) {
 std::string ranking(const RankingResult& ranking) {
   if (ranking.entries.empty()) return "";
   TextTable table({"effect", "profile", "raw", "low band", "N_eff", "p"},
-                  {TextColumn::effect, TextColumn::name, TextColumn::number, TextColumn::number,
+                  {TextColumn::text, TextColumn::name, TextColumn::number, TextColumn::number,
                    TextColumn::number, TextColumn::number});
   for (const Ranking& entry : ranking.entries)
     table.add({effect_title(entry.effect), entry.profile, coefficient(entry.raw),
@@ -132,7 +132,7 @@ std::string standard_terms(const ModelResult& model) {
 std::string nuisances(const ModelResult& model) {
   if (model.nuisances.empty()) return "";
   TextTable table({"levelling of the traces", "value ± U", "unit"},
-                  {TextColumn::name, TextColumn::text, TextColumn::text});
+                  {TextColumn::text, TextColumn::text, TextColumn::text});
   for (const FittedParameter& p : model.nuisances)
     table.add({p.name, value_text(p), unit_text(p.unit)});
   return table.text();
@@ -154,7 +154,7 @@ std::string fit(const ModelResult& model) {
   std::string head = model.converged ? "Fit: converged" : "Fit: NOT CONVERGED";
   if (!model.converged && !model.message.empty()) head += " (" + model.message + ")";
   head += ", " + counted(model.observations, "value") + " (" +
-          number(model.effective_observations, 4) + " effective), residual rms " +
+          number(std::round(model.effective_observations), 15) + " effective), residual rms " +
           size_text(model.rms_um, model.rms_urad, 4);
   const bool declared = std::ranges::all_of(
       model.noise, [](const auto& n) { return n.scaling == NoiseScaling::declared; });
@@ -212,9 +212,8 @@ std::string identifiability(const ModelResult& model) {
 std::string residuals(const ModelResult& model) {
   std::string out;
   if (!model.contributions.empty()) {
-    TextTable shares(
-        {"effect", "profile", "rms", "share"},
-        {TextColumn::effect, TextColumn::name, TextColumn::number, TextColumn::number});
+    TextTable shares({"effect", "profile", "rms", "share"},
+                     {TextColumn::text, TextColumn::name, TextColumn::number, TextColumn::number});
     for (const Contribution& c : model.contributions)
       shares.add({effect_title(c.effect), c.profile, size_text(c.rms_um, c.rms_urad),
                   fixed_point(100.0 * c.share, 1) + " %"});

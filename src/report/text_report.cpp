@@ -146,7 +146,7 @@ std::string value_of(const FittedParameter& p) {
 std::string model_heading(const ModelResult& model) {
   return heading("Final model: " + effect_titles(model.effects, ", ") + "; " +
                  counted(model.observations, "value") + " (" +
-                 number(model.effective_observations, 3) + " effective), residual " +
+                 number(std::round(model.effective_observations), 15) + " effective), residual " +
                  size_text(model.rms_um, model.rms_urad) + " rms");
 }
 
@@ -251,20 +251,27 @@ std::string notes(const Analysis& analysis, std::size_t room) {
   return "\n" + out;
 }
 
-std::string unseen_line(const Summary& summary) {
-  if (summary.unseen.empty()) return "";
-  return note("What these data do not show may move the squareness " + summary.unseen + ".");
+std::string unseen_lines(const Summary& summary) {
+  std::string out;
+  if (!summary.same.empty())
+    out += note("The straightness holds whatever has its columns: " + summary.same + ".");
+  if (!summary.unseen.empty())
+    out += note("What these data do not show may move the squareness " + summary.unseen + ".");
+  return out;
 }
 
 std::string short_text(const Analysis& analysis, const Summary& summary, std::string text) {
   const Result& result = analysis.result;
   const std::string more =
-      unseen_line(summary) + stations(result) + assumed(result) + tolerances(result);
+      unseen_lines(summary) + stations(result) + assumed(result) + tolerances(result);
   if (result.final) {
     text += model_heading(*result.final);
     const std::size_t used = lines_of(text + more).size() + 4;  // headings, a note
-    text += parameter_table(result,
-                            std::min(kParameterRows, kAllLines - std::min(kAllLines - 4, used)));
+    const std::size_t room = kAllLines - std::min(kAllLines - 4, used);
+    std::size_t rows = std::min(kParameterRows, room);
+    std::string table = parameter_table(result, rows);
+    while (rows > 1 && lines_of(table).size() > room + 1) table = parameter_table(result, --rows);
+    text += table;
   }
   text += more;
   const std::size_t used = lines_of(text).size();
@@ -287,8 +294,7 @@ std::string parameter_table(const Result& result, std::size_t most) {
   if (all.empty()) return "";
   std::vector<std::string> headings{"parameter", "value ± U", "unit", has_k ? "k" : "",
                                     has_declared ? "declared model" : ""};
-  TextTable table(std::move(headings), {TextColumn::name, TextColumn::text, TextColumn::text,
-                                        TextColumn::text, TextColumn::text});
+  TextTable table(std::move(headings), std::vector<TextColumn>(5, TextColumn::text));
   for (std::vector<std::string>& row : rows) table.add(std::move(row));
   if (rows.size() == all.size()) return table.text();
   return table.text() + item(counted(all.size() - rows.size(), "more parameter") + ": --full");
@@ -305,7 +311,7 @@ std::string text_report(const Analysis& analysis, const TextOptions& options) {
   if (result.final)
     text +=
         model_heading(*result.final) + parameter_table(result, result.final->parameters.size() + 1);
-  text += unseen_line(summary) + stations(result) + tolerances(result) + full_text(analysis);
+  text += unseen_lines(summary) + stations(result) + tolerances(result) + full_text(analysis);
   std::string notes;
   for (const std::string& each : all_notes(analysis)) notes += note(each);
   return text + (notes.empty() ? "" : heading("Notes") + notes);

@@ -114,14 +114,15 @@ std::string limits(const TraceResult& trace) {
   if (trace.detection_limits.empty()) return "";
   const bool has_squareness = std::ranges::any_of(
       trace.detection_limits, [](const auto& limit) { return limit.squareness_rad.has_value(); });
-  TextTable table({"effect", "found from", "other shapes", "at", has_squareness ? "µm/m" : ""},
-                  {TextColumn::effect, TextColumn::number, TextColumn::number, TextColumn::name,
-                   TextColumn::number});
+  TextTable table({"effect", "found from", "other shapes", has_squareness ? "µm/m" : "", "at"},
+                  {TextColumn::text, TextColumn::number, TextColumn::number, TextColumn::number,
+                   TextColumn::text});
   for (const DetectionLimit& limit : trace.detection_limits)
     table.add({effect_title(limit.effect),
                limit.value ? number(*limit.value, 2) + " " + unit_text(limit.unit) : "at no size",
-               extremes(limit), limit.at,
-               limit.squareness_rad ? number(*limit.squareness_rad / kMicroradian, 2) : ""});
+               extremes(limit),
+               limit.squareness_rad ? number(*limit.squareness_rad / kMicroradian, 2) : "",
+               limit.at});
   return item(std::string("Sizes found with 80 % probability") +
               (has_squareness ? ", and the most that what is just not seen moves Δβxz:" : ":")) +
          table.text();

@@ -178,8 +178,8 @@ class Selector {
     if (!why.empty() || !effects[which].candidate->term.effect->is_carriage()) return why;
     const double margin = statistics_.over_process(effects, which);
     if (margin < gates_.process_margin)
-      why =
-          "a smooth process without a name fits as well: " + significant(margin, 2) + " nats less";
+      why = "a smooth process without a name fits as well: difference in BIC " +
+            significant(-2.0 * margin, 2);
     return why;
   }
 
@@ -389,13 +389,14 @@ class Selector {
         for (const std::size_t i : found.in_place_of) {
           out_.effects[i].round.ambiguous_with.emplace_back(kUnnamedRival);
           out_.notes.push_back(out_.effects[i].name() + ": " + found.rival +
-                               " explains as much, within " + significant(-found.margin, 2) +
-                               " nats of the margin");
+                               " explains as much, within a difference in BIC of " +
+                               significant(-2.0 * found.margin, 2));
         }
         return;
       }
-      leave(weakest(found.in_place_of), found.rival + " without a name explains more, by " +
-                                            significant(-found.margin, 2) + " nats");
+      leave(weakest(found.in_place_of), found.rival +
+                                            " without a name explains more: difference in BIC " +
+                                            significant(-2.0 * found.margin, 2));
       out_.withheld = true;
       take_back();
     }

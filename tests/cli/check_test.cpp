@@ -106,6 +106,22 @@ TEST_F(Check, FindsWhatIdentifyRefuses) {
     }
 }
 
+TEST_F(Check, ShowsTheNotesOfEachProfile) {
+  const std::string second =
+      "[[profile]]\nname = \"cut2\"\nfile = \"cut2.csv\"\nposition_column = \"x_um\"\n"
+      "value_column = \"z_um\"\nposition_unit = \"um\"\nvalue_unit = \"um\"\n";
+  const std::string note =
+      "positions of cut2 may be in another unit: its trace is 1000 times shorter than that of face";
+  write_file(path("cut2.csv"), "x_um" + face_csv(64).substr(4));
+  const ProgramRun good =
+      check(ProblemText{.effect = "[[effect]]\nname = \"squareness\"\n" + second}.text());
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_THAT(good.out, HasSubstr("    - positions of cut2 may be in another unit"));
+  for (const std::string& line : lines_of(good.out)) EXPECT_LE(code_points(line), 80U) << line;
+  const json document = json::parse(run({"check", "problem.toml", "--json", "-"}).out);
+  EXPECT_THAT(document["notes"], Contains(json{{"profile", "cut2"}, {"note", note}}));
+}
+
 TEST_F(Check, SaysWhatTheProfilesCanDetermineWithoutAFit) {
   const ProgramRun good = check(ProblemText{.effect = "[[effect]]\nname = \"squareness\"\n"
                                                       "[[effect]]\nname = \"straightness\"\n"

@@ -146,6 +146,20 @@ TEST(Fit, OfFourKindsOfReadingsFindsTheMachine) {
   for (const NoiseSummary& noise : result.noise) EXPECT_EQ(noise.scaling, NoiseScaling::declared);
 }
 
+// A face of 100 values 0.1 mm apart; two of them lie 0.05 mm from the axis, within one value.
+TEST(Fit, CountsTheValuesThatItUses) {
+  const std::vector<double> radii = cases::spaced(-4.95, 4.95, 100);
+  std::vector<double> heights;
+  for (const double s : radii) heights.push_back(-2e-5 * std::abs(s));
+  const std::vector<Profile> profiles{with_noise(cases::face("face", 10.0, radii, heights), 2e-5)};
+  const auto [model, found] = fit_model(
+      build_model(cases::problem(Lever::paper, 0, {cases::effect("squareness")}), profiles));
+  const ModelResult result = summarise(model, found);
+  EXPECT_EQ(result.observations, 98U);
+  EXPECT_DOUBLE_EQ(result.effective_observations, 98.0);  // declared: white
+  EXPECT_DOUBLE_EQ(result.noise[0].effective_observations, 98.0);
+}
+
 void expect_same(const ModelResult& a, const ModelResult& b, double factor = 1.0) {
   for (const std::string& name : kDetermined) {
     // Roundings of the data, which a millionth of the uncertainty is far above.

@@ -12,6 +12,7 @@
 namespace slideway {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -320,6 +321,32 @@ TEST_F(ReadProfile, SaysThatTheSpindleAxisIsFarAway) {
   profile_.notes.clear();
   read("0,0\n10,1\n");
   EXPECT_EQ(profile_.notes.size(), 1U);
+}
+
+TEST_F(ReadProfile, SaysThatTheFaceIsFartherAlongTheSlideThanAnyLatheReaches) {
+  const std::string note = " but lathes travel 30 m at most: is it right?";
+  for (const double side : {-1.0, 1.0}) {
+    profile_.notes.clear();
+    profile_.setup.spindle_position_mm = side * 1e6;
+    read("0,0\n100,1\n");
+    EXPECT_THAT(profile_.notes,
+                Contains(AllOf(HasSubstr("spindle_position_mm = "), HasSubstr(note))));
+  }
+  profile_.notes.clear();
+  profile_.setup.spindle_position_mm = 600.0;
+  read("0,0\n100,1\n");
+  EXPECT_EQ(profile_.notes.size(), 1U);
+}
+
+// The centre of a face of 100 mm at 1e6 mm.
+TEST_F(ReadProfile, SaysThatACentreIsFartherAwayThanAnyLatheTurns) {
+  for (const double side : {-1.0, 1.0}) {
+    profile_.notes.clear();
+    profile_.setup.center_mm = side * 1e6;
+    read("0,0\n100,1\n");
+    EXPECT_THAT(profile_.notes, Contains(HasSubstr("outside a trace of 100 mm")));
+    EXPECT_THAT(profile_.notes, Contains(HasSubstr("more than any lathe turns")));
+  }
 }
 
 TEST_F(ReadProfile, RefusesPositionsThatDifferInTheirLastDigitsOnly) {

@@ -23,6 +23,7 @@ Analysis sample_analysis() {
   round.ambiguous_with = {"tool_wear"};
   round.delta_bic = -123.456789;
   round.p_value = 0.0;
+  round.stability = 0.0;
   out.trace->detection_limits = {
       {"thermal_drift", "amplitude_um", "µm", 0.0123456, "time_constant_s = 120", {}, {}},
       {"cup", "sag_um", "µm", std::nullopt, "", {}, {}}};
@@ -38,7 +39,7 @@ TEST(Brief, HasWhatATableShows) {
   EXPECT_EQ(trace["verdict"], "ambiguous");
   EXPECT_EQ(trace["rounds"][0]["ambiguous_with"], Json::array({"tool_wear"}));
   EXPECT_EQ(trace["rounds"][0]["delta_bic"], -123.46);
-  EXPECT_EQ(trace["rounds"][0]["p_value"], 0.0) << "a number is there, if it is 0 too";
+  EXPECT_EQ(trace["rounds"][0]["stability"], 0.0) << "a number is there, if it is 0 too";
   EXPECT_EQ(trace["detection_limits"][0],
             Json({{"effect", "thermal_drift"}, {"unit", "µm"}, {"value", 0.0123}}));
   EXPECT_FALSE(trace["detection_limits"][1].contains("value"));

@@ -131,6 +131,22 @@ TEST(JsonReport, ANumberThatIsNotFiniteIsAbsentAndNamedInTheNotesOfItsPart) {
   EXPECT_THAT(text_report(analysis), HasSubstr("straightness b_2"));
 }
 
+TEST(JsonReport, AProbabilityThatUnderflowsIsNot0) {
+  Analysis analysis{sample_result(), TraceResult{}};
+  analysis.result.ranking.entries[0].p_value = 0.0;
+  analysis.result.final->noise[0].ljung_box_p = 0.0;
+  analysis.trace->rounds.emplace_back().p_value = 1e-320;
+  const std::string text = json_report(analysis);
+  const Json report = Json::parse(text);
+  constexpr double kLeast = std::numeric_limits<double>::min();
+  EXPECT_EQ(report["ranking"][0]["p_value"], kLeast);
+  EXPECT_EQ(report["final"]["noise"][0]["ljung_box_p"], kLeast);
+  EXPECT_EQ(report["trace"]["rounds"][0]["p_value"], kLeast);
+  EXPECT_EQ(report["final"]["noise"][1]["ljung_box_p"], 0.5);
+  EXPECT_EQ(json_report(parse_report(text, "report")), text);
+  EXPECT_GT(Json::parse(json_brief(analysis))["trace"]["rounds"][0]["p_value"].get<double>(), 0.0);
+}
+
 TEST(JsonReport, IsTheSameTextEveryTimeAndEndsWithANewline) {
   const std::string text = json_report({sample_result()});
   EXPECT_EQ(text, json_report({sample_result()}));

@@ -204,6 +204,66 @@ TEST(TextReport, HasNoLineOver80ColumnsWithLongNamesAndNumbers) {
   expect_fits(full(result));
 }
 
+TEST(TextReport, SaysOnceWhatHasTheColumnsOfTheStraightnessOfAFace) {
+  Result result = sample_result();
+  TraceResult trace;
+  trace.not_separable = {{"cup", "squareness.dbeta_xz, straightness.b2"},
+                         {"linear_drift", "squareness.dbeta_xz"},
+                         {"tool_wear", "vertical_straightness.c1"}};
+  const std::string sentence =
+      "- The straightness holds whatever has its columns: cupped workpiece.";
+  for (const std::string& text : {full(result, trace), short_text(result, trace)}) {
+    const std::string words = on_one_line(text);
+    EXPECT_THAT(words, HasSubstr(sentence));
+    EXPECT_EQ(words.find(sentence), words.rfind(sentence));
+  }
+  EXPECT_THAT(html_report({result, trace}),
+              HasSubstr("holds whatever has its columns: cupped workpiece"));
+  result.inputs.erase(result.inputs.begin());  // the face
+  EXPECT_THAT(short_text(result, trace), Not(HasSubstr("whatever has its columns")));
+  result = sample_result();
+  result.final->straightness.reset();
+  EXPECT_THAT(short_text(result, trace), Not(HasSubstr("whatever has its columns")));
+  trace.not_separable.erase(trace.not_separable.begin());  // another cut separates them
+  EXPECT_THAT(short_text(sample_result(), trace), Not(HasSubstr("whatever has its columns")));
+}
+
+TEST(TextReport, CutsNoNameOfAParameterOrAnEffect) {
+  Result result = sample_result();
+  result.final->parameters[1].name = "straightness_of_the_second_carriage.b2";
+  result.final->parameters[1].value = 1.23456789;
+  result.final->parameters[1].expanded_uncertainty = 1e-9;
+  result.final->parameters[1].at_bound = true;
+  result.declared->parameters[1].name = result.final->parameters[1].name;
+  result.final->nuisances[0].name = std::string(60, 'n') + ".offset";
+  result.final->contributions[0].effect = "deflection_of_the_boring_bar_under_the_cut";
+  TraceResult trace;
+  trace.detection_limits = {{"revolution_periodic",
+                             "amplitude_um",
+                             "um",
+                             0.0053,
+                             "cycles_per_revolution = 0.00397",
+                             {{0.1, 0.0053}, {0.2, 0.012}},
+                             1.3e-7}};
+  const std::string text = full(result, trace);
+  expect_fits(text);
+  expect_fits(short_text(result, trace));
+  for (const std::string& line : lines_of(text))  // only the name of a profile is cut
+    if (line.find("…") != std::string::npos) EXPECT_THAT(line, HasSubstr("the_"));
+  EXPECT_THAT(text, HasSubstr("  straightness of the second carriage b_2"));
+  EXPECT_THAT(text, HasSubstr("deflection of the boring bar under the cut"));
+  EXPECT_THAT(text, HasSubstr("cycles_per_revolution = 0.00397"));
+  EXPECT_THAT(text, HasSubstr(result.final->nuisances[0].name));
+}
+
+TEST(TextReport, HasAtMost40LinesHoweverLongNamesAre) {
+  Result result = sample_result();
+  FittedParameter long_one = result.final->parameters[1];
+  long_one.name = std::string(60, 'e') + ".b2";
+  result.final->parameters.assign(40, long_one);
+  EXPECT_LE(lines_of(short_text(result)).size(), 40U);
+}
+
 TEST(TextReport, GivesTheCoverageFactorWhereItIsNot2) {
   Result result = sample_result();
   EXPECT_THAT(line_with(full(result), "value ± U"), Not(HasSubstr(" k")));
@@ -216,6 +276,14 @@ TEST(TextReport, GivesAValueWithItsUncertaintyAndUnit) {
   const std::string line = line_with(full(sample_result()), "squareness Δβxz");
   EXPECT_THAT(line, HasSubstr("Δβxz"));
   EXPECT_THAT(line, testing::ContainsRegex("\\(2.8000 ± 0.0022\\)e-06 +rad"));
+}
+
+TEST(TextReport, CountsEffectiveValuesAsItCountsValues) {
+  Result result = sample_result();
+  result.final->observations = 1248;
+  result.final->effective_observations = 1248.0;
+  for (const std::string& text : {full(result), short_text(result)})
+    EXPECT_THAT(on_one_line(text), HasSubstr("1248 values (1248 effective)"));
 }
 
 TEST(TextReport, NeverShowsANumberForAParameterThatIsNotDetermined) {
@@ -336,9 +404,11 @@ TEST(TextReport, ListsDetectionLimitsInColumnsHoweverLongTheirShapes) {
                              {{0.1, 0.0059}, {0.5, 0.015}}}};
   const std::string text = full(sample_result(), trace);
   expect_fits(text);
-  const std::string line = line_with(text, "axial spindle motion");
-  EXPECT_THAT(line, testing::ContainsRegex("0.011 µm +0.0059 to 0.015 +cycles_.*0.01894$"));
-  EXPECT_EQ(column_of(line, "cycles_"), column_of(line_with(text, "edge roll-off"), "width_mm"));
+  EXPECT_THAT(line_with(text, "axial spindle motion"),
+              testing::ContainsRegex("0.011 µm +0.0059 to 0.015$"));
+  const std::string shape = "cycles_per_revolution = 0.01894";
+  EXPECT_EQ(column_of(line_with(text, shape), shape),
+            column_of(line_with(text, "width_mm = 0.135"), "width_mm"));
 }
 
 TEST(TextReport, IsTheSameTextEveryTime) {

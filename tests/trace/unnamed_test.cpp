@@ -26,6 +26,9 @@ TEST(Unnamed, TwoBumpsLiveOnTheRadius) {
   // Both halves of the diameter show it alike.
   ASSERT_TRUE(result.unnamed->odd_share);
   EXPECT_LT(*result.unnamed->odd_share, 0.05);
+  // Evidence is told in the report's unit.
+  EXPECT_THAT(result.notes, ::testing::Contains(::testing::HasSubstr("difference in BIC")));
+  EXPECT_THAT(result.notes, ::testing::Not(::testing::Contains(::testing::HasSubstr("nats"))));
 }
 
 // Of a straightness of degree 2 all that is not the reference line's is b_2's: curve and parameter

@@ -17,13 +17,13 @@ std::size_t code_points(std::string_view utf8);
 std::string paragraph(std::string_view first, std::string_view words);
 
 enum class TextColumn {
-  text,    // flush left
-  name,    // flush left; the middle is left out where the line would get too long
-  effect,  // the same, but long enough for the names of the catalogue
-  number   // flush right
+  text,   // flush left
+  name,   // flush left; the middle is left out where the line would get too long
+  number  // flush right
 };
 
-/// Aligned columns, two blanks of indent and two between columns.
+/// Aligned columns, two blanks of indent and two between columns. Columns that do not fit on the line
+/// go on below the second one.
 class TextTable {
  public:
   TextTable(std::vector<std::string> headings, std::vector<TextColumn> columns);

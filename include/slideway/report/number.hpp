@@ -33,6 +33,9 @@ bool is_known(const QuantityValue& result);
 /// @throws std::logic_error  it is not finite
 std::string fixed_point(double value, int decimals);
 
+/// A probability as JSON has it: none is 0, one that underflows is the smallest normal double.
+double written_probability(double p);
+
 /// `value` with that many significant digits, in plain decimals below a million: "1890".
 /// @throws std::logic_error  it is not finite
 std::string to_digits(double value, int digits);
