@@ -188,7 +188,7 @@ std::vector<Eigen::VectorXd> readings_of(const Model& model, const Linearisation
   return readings(model, linear, *found);
 }
 
-std::vector<ProcessVariable> process_variables(const Model& model, const Linearisation& linear) {
+std::vector<ProcessVariable> shared_variables(const Model& model, const Linearisation& linear) {
   std::vector<ProcessVariable> out;
   std::vector<std::size_t> all(linear.observations.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
@@ -207,6 +207,13 @@ std::vector<ProcessVariable> process_variables(const Model& model, const Lineari
       added.cosines.push_back(cosines_of(*linear.observations[i], values[i], low, high,
                                          cosine_count(linear, kMostCosines)));
   }
+  return out;
+}
+
+std::vector<ProcessVariable> process_variables(const Model& model, const Linearisation& linear) {
+  std::vector<ProcessVariable> out = shared_variables(model, linear);
+  std::vector<std::size_t> all(linear.observations.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   if (all.size() < 2) return out;
   out.push_back(own_processes(linear, all, "per profile"));
   for (const std::size_t i : all)

@@ -35,8 +35,11 @@ std::vector<Eigen::VectorXd> slide_positions(const Model& model, const Linearisa
 std::vector<Eigen::VectorXd> readings_of(const Model& model, const Linearisation& linear,
                                          const std::string& symbol);
 
-/// Every variable the fitted profiles have readings of: slide coordinate, cutting time, cutting
-/// distance, trace position, each profile with a process of its own, and one profile alone.
+/// Every variable that all fitted profiles have readings of: slide coordinate, cutting time,
+/// cutting distance, trace position.
+std::vector<ProcessVariable> shared_variables(const Model& model, const Linearisation& linear);
+
+/// The same, then each profile with a process of its own, and one profile alone.
 std::vector<ProcessVariable> process_variables(const Model& model, const Linearisation& linear);
 
 /// A Gaussian process of a variable, outside the model's span: its values are cosines * w with

@@ -1,10 +1,8 @@
 #include "selection.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
-#include "fit_numbers.hpp"
 #include "outcome.hpp"
 #include "slideway/base/text.hpp"
 #include "stability.hpp"
@@ -15,21 +13,6 @@ namespace slideway {
 namespace {
 
 using Effects = std::vector<AcceptedEffect>;
-
-/// "" if the residuals, in the units of the report, fall; else why the effect does not help. Where
-/// there are heights and slopes, the mean of their relative squares counts.
-std::string worsens(const ModelResult& without, const ModelResult& with) {
-  double rise = 0.0;
-  const auto add = [&](const std::optional<double>& before, const std::optional<double>& after) {
-    if (before && after && *before > 0.0) rise += *after * *after / (*before * *before) - 1.0;
-  };
-  add(without.rms_um, with.rms_um);
-  add(without.rms_urad, with.rms_urad);
-  if (const auto before = holdout_rms_um(without); before && !(*holdout_rms_um(with) < *before))
-    return "it predicts the held-out profiles worse";
-  if (rise > 0.0) return "the residual rises with it";
-  return "";
-}
 
 class Selector {
  public:
@@ -98,7 +81,7 @@ class Selector {
       if (!choice) return;
       Effects more = out_.effects;
       more.push_back(accepted(round, *choice));
-      std::string why = reason_against(more, more.size() - 1);
+      std::string why = reason_against(statistics_, gates_, more, more.size() - 1);
       if (why.empty()) why = comes_and_goes(stability(round, *choice, gates_));
       if (!why.empty()) {
         ruled_out_.push_back(choice->name());
@@ -168,38 +151,6 @@ class Selector {
     });
   }
 
-  /// Why an effect of a set does not help beside the others; "": it does. A carriage's polynomial
-  /// comes near everything smooth: it must outdo a process without a name.
-  /// It is asked in the low band of the search; in the declared one of what is there in the end.
-  std::string reason_against(const Effects& effects, std::size_t which) {
-    const Effects others = all_but(effects, which);
-    std::string why =
-        worsens(extender_.summary_of_search(others), extender_.summary_of_search(effects));
-    if (!why.empty() || !effects[which].candidate->term.effect->is_carriage()) return why;
-    const double margin = statistics_.over_process(effects, which);
-    if (margin < gates_.process_margin)
-      why = "a smooth process without a name fits as well: difference in BIC " +
-            significant(-2.0 * margin, 2);
-    return why;
-  }
-
-  /// The gate of the size, by the uncertainty that the report prints.
-  /// @param unnamed  what structure without a name adds to it; null: nothing
-  std::string too_small(const Effects& effects, std::size_t which, const Widening* unnamed) {
-    const FittedModel& fitted = extender_.extended(effects);
-    const auto term =
-        std::ranges::find(fitted.model.terms, effects[which].name(), &ModelTerm::name);
-    if (!term->effect->has_one_size() || effects[which].candidate->raises_degree) return "";
-    const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term->first_parameter);
-    const double more = unnamed ? unnamed->variance(row) : 0.0;
-    const double size = std::min(
-        std::abs(fitted.fit.parameters.values[term->first_parameter]) /
-            std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more)),
-        size_in_uncertainties(extender_.summary(effects), *term));
-    if (!(size < gates_.size)) return "";
-    return "its size is only " + significant(size, 2) + " of its standard uncertainties";
-  }
-
   /// Earlier effects that the last one has made superfluous leave.
   void drop_superfluous() {
     for (std::size_t i = 0; i + 1 < out_.effects.size();) {
@@ -235,7 +186,7 @@ class Selector {
         continue;
       Effects changed = out_.effects;
       changed[i] = accepted(round, *best);
-      if (!reason_against(changed, i).empty()) continue;
+      if (!reason_against(statistics_, gates_, changed, i).empty()) continue;
       narrowed_ |= best->refined.candidate->effect_name() == out_.effects[i].round.accepted &&
                    best->name() != out_.effects[i].name();
       if (best->name() != out_.effects[i].name())
@@ -248,7 +199,7 @@ class Selector {
   /// part of theirs.
   void drop_small() {
     for (std::size_t i = out_.effects.size(); i-- > 0;) {
-      const std::string why = too_small(out_.effects, i, nullptr);
+      const std::string why = too_small(extender_, gates_, out_.effects, i, nullptr);
       if (why.empty()) continue;
       ruled_out_.push_back(out_.effects[i].name());
       leave(i, why);
@@ -285,17 +236,17 @@ class Selector {
         if (each.refined.candidate == effect.candidate) return each.refused(gates_);
       return "beside the others it gains too little";
     }
-    std::string why = reason_against(out_.effects, i);
+    std::string why = reason_against(statistics_, gates_, out_.effects, i);
     if (why.empty())
       why = worsens(extender_.summary(all_but(out_.effects, i)), extender_.summary(out_.effects));
-    if (why.empty()) why = too_small(out_.effects, i, nullptr);
+    if (why.empty()) why = too_small(extender_, gates_, out_.effects, i, nullptr);
     if (!why.empty() || !left_over().significant(gates_)) return why;
     const FittedModel& fitted = extender_.extended(out_.effects);
     const SearchRound& last = extender_.search(out_.effects);
     const Widening unnamed =
         widening(fitted.model, fitted.fit,
                  find_structure(fitted.model, last.data, fitted.fit.linear), last.tested);
-    return too_small(out_.effects, i, &unnamed);
+    return too_small(extender_, gates_, out_.effects, i, &unnamed);
   }
 
   void name_rivals() {
@@ -426,15 +377,6 @@ class Selector {
 };
 
 }  // namespace
-
-const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,
-                                   const Gates& gates) {
-  const auto is_it = [&](const TestedCandidate& each) {
-    return each.name() == effect.name() && each.refused(gates).empty();
-  };
-  const auto found = std::ranges::find_if(round.tested, is_it);
-  return found == round.tested.end() ? nullptr : &*found;
-}
 
 int distinct_effects(const std::vector<AcceptedEffect>& effects) {
   std::set<std::string> names;

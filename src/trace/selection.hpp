@@ -1,6 +1,6 @@
 #pragma once
 
-#include "set_statistics.hpp"
+#include "set_gates.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 
 namespace slideway {
@@ -32,9 +32,5 @@ Selection nothing_selected(ModelExtender& extender, const Gates& gates);
 
 /// How many effects a set has, of one with a size per cut one.
 int distinct_effects(const std::vector<AcceptedEffect>& effects);
-
-/// The candidate of a search that is this effect and passes, or null.
-const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,
-                                   const Gates& gates);
 
 }  // namespace slideway

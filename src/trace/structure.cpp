@@ -129,9 +129,8 @@ double shared_evidence(const FittedModel& fitted) {
   if (faces < 2 || fitted.fit.uncertainty.inflation > 1.0) return 0.0;
   const Whitened data(linear, fitted.fit.noise);
   double out = 0.0;
-  for (const ProcessVariable& variable : process_variables(fitted.model, linear))
-    if (!variable.of_each && variable.profiles.size() > 1)
-      out = std::max(out, best_process(data, variable).log_evidence);
+  for (const ProcessVariable& variable : shared_variables(fitted.model, linear))
+    out = std::max(out, best_process(data, variable).log_evidence);
   return out;
 }
 
