@@ -22,8 +22,8 @@ enum class TextColumn {
   number  // flush right
 };
 
-/// Aligned columns, two blanks of indent and two between columns. Columns that do not fit on the line
-/// go on below the second one.
+/// Aligned columns, two blanks of indent and two between columns. Columns that do not fit on the
+/// line go on below the second one.
 class TextTable {
  public:
   TextTable(std::vector<std::string> headings, std::vector<TextColumn> columns);
