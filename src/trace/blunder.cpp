@@ -288,7 +288,8 @@ class Finder {
     Observation observation = recorded(i, list);
     const Prediction as_it_is = prediction(observation, others, noise);
     if (as_it_is.directions() == 0) return;
-    const double before = as_it_is.best(1.0, kAnyFactor).cost, square = as_it_is.disagreement(1.0);
+    const auto [before, size_before] = as_it_is.best(1.0, kAnyFactor);
+    const double square = as_it_is.disagreement(1.0);
     for (const Hypothesis& each : list) {
       if (each.profile) observation.profile = &*each.profile;
       const Prediction& meant = each.profile ? prediction(observation, others, noise) : as_it_is;
@@ -296,7 +297,8 @@ class Finder {
       if (after > before - gates.blunder_bic) continue;
       const double left = meant.disagreement(each.factor) / square;
       if (left > gates.blunder_left) continue;
-      if (std::abs(std::log(size)) > 2.0 * std::log(factor)) continue;
+      if (std::abs(std::log(size)) > std::max(2.0 * std::log(factor), 0.5 * std::log(size_before)))
+        continue;
       tell({profile.name, each.kind, after - before, left}, each);
     }
   }

@@ -12,9 +12,10 @@ namespace {
 constexpr double kTraceNoise = 3e-5;  // mm
 
 /// A cone of 10 µm over 60 mm with white noise.
-Profile cut(const std::string& name, unsigned seed, double factor = 1.0) {
+Profile cut(const std::string& name, unsigned seed, double factor = 1.0,
+            double deviation = kTraceNoise) {
   std::mt19937_64 engine(seed);
-  std::normal_distribution<double> noise(0.0, kTraceNoise);
+  std::normal_distribution<double> noise(0.0, deviation);
   const std::vector<double> x = cases::spaced(2.0, 60.0, 300);
   std::vector<double> z;
   for (const double r : x)
@@ -62,6 +63,18 @@ INSTANTIATE_TEST_SUITE_P(Factors, BlunderOf,
                                            std::pair{1 / 25.4, BlunderKind::inch},
                                            std::pair{1000.0, BlunderKind::per_metre},
                                            std::pair{1e-3, BlunderKind::metre}));
+
+// Its own noise is unlike that of the others, but 25 times less so once the unit is right.
+TEST(Blunder, ANoisyCutInAnotherUnitIsNamed) {
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const auto blunders =
+        found({cut("a", 3 * seed), cut("b", 3 * seed + 1, 25.4, 8.0 * kTraceNoise),
+               cut("c", 3 * seed + 2)});
+    ASSERT_EQ(blunders.size(), 1U) << "seed " << seed;
+    EXPECT_EQ(blunders[0].profile, "b");
+    EXPECT_EQ(blunders[0].what, BlunderKind::per_inch);
+  }
+}
 
 class PositionUnit : public ::testing::TestWithParam<std::pair<double, BlunderKind>> {};
 
