@@ -11,7 +11,6 @@
 #include "repeats.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/units.hpp"
-#include "slideway/identify/agreement.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/linear_algebra.hpp"
@@ -314,8 +313,7 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
                                 const std::vector<Eigen::MatrixXd>& suspect) {
   const std::size_t count = linear.observations.size();
   std::vector<std::optional<LinearProfile>> fine(count), repeats(count);
-  std::vector<std::size_t> odd;
-  for (const OddRepeat& each : odd_repeats(linear, gates)) odd.push_back(each.profile);
+  const std::vector<OddRepeat> odd = odd_repeats(linear, gates);
   parallel_for(count, [&](std::size_t i) {
     fine[i] = fine_band(linear, i, gates, suspect);
     repeats[i] = deviation_from_repeats(linear, i, odd, gates);

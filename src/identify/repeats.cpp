@@ -98,7 +98,7 @@ Linearisation common_trace(const Linearisation& all, const std::vector<std::size
 std::vector<Noise> noises_of_means(const Linearisation& all,
                                    const std::vector<std::vector<std::size_t>>& groups,
                                    const std::vector<Linearisation>& common,
-                                   const std::vector<std::size_t>& odd, const Gates& gates) {
+                                   const std::vector<OddRepeat>& odd, const Gates& gates) {
   Linearisation together = common.front();
   for (const Linearisation& each : std::span(common).subspan(1)) {
     together.observations.push_back(each.observations.front());
@@ -176,14 +176,16 @@ std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
 }
 
 std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear, std::size_t i,
-                                                    const std::vector<std::size_t>& odd,
+                                                    const std::vector<OddRepeat>& odd,
                                                     const Gates& gates) {
-  if (std::ranges::count(odd, i) > 0) return std::nullopt;
+  const auto is_odd = [&](std::size_t j) {
+    return std::ranges::count(odd, j, &OddRepeat::profile) > 0;
+  };
+  if (is_odd(i)) return std::nullopt;
   const Observation& observation = *linear.observations[i];
   std::vector<std::size_t> group;
   for (std::size_t j = 0; j < linear.observations.size(); ++j)
-    if (std::ranges::count(odd, j) == 0 && are_repeats(observation, *linear.observations[j], gates))
-      group.push_back(j);
+    if (!is_odd(j) && are_repeats(observation, *linear.observations[j], gates)) group.push_back(j);
   const StationSums repeats(linear, group, observation, gates);
   const Eigen::VectorXd& count = repeats.count;
   std::vector<Eigen::Index> alone;
@@ -211,11 +213,9 @@ std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gat
   finer.longest_memory = gates.longest_texture;  // texture of several lengths, no memory,
   finer.memory_odds = 1.0;                       // where the fine band asks for it
   std::vector<std::vector<std::size_t>> groups = repeat_groups(linear, gates);
-  std::vector<std::size_t> odd;
-  for (const OddRepeat& each : odd_repeats(linear, gates)) {
-    odd.push_back(each.profile);
+  const std::vector<OddRepeat> odd = odd_repeats(linear, gates);
+  for (const OddRepeat& each : odd)
     for (std::vector<std::size_t>& group : groups) std::erase(group, each.profile);
-  }
   std::vector<PureErrorCheck> out;
   if (groups.empty()) return out;
   std::vector<Linearisation> common;

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "slideway/identify/agreement.hpp"
 #include "slideway/identify/gates.hpp"
 #include "slideway/identify/noise.hpp"
 #include "slideway/identify/result.hpp"
@@ -27,7 +28,7 @@ std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
 /// has; nothing where no other profile repeats it, or where it is odd. Stations that a repeat lacks
 /// are left free.
 std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear, std::size_t i,
-                                                    const std::vector<std::size_t>& odd,
+                                                    const std::vector<OddRepeat>& odd,
                                                     const Gates& gates);
 
 }  // namespace slideway

@@ -297,6 +297,7 @@ class Finder {
       if (after > before - gates.blunder_bic) continue;
       const double left = meant.disagreement(each.factor) / square;
       if (left > gates.blunder_left) continue;
+      // Corrected, its noise is like its sisters', or half as unlike, in ln, as it was recorded.
       if (std::abs(std::log(size)) > std::max(2.0 * std::log(factor), 0.5 * std::log(size_before)))
         continue;
       tell({profile.name, each.kind, after - before, left}, each);
