@@ -302,7 +302,7 @@ TEST(SearchRange, StaysWithinWhatTheProfileShows) {
   near(make("time_periodic")->search_range(0, stations), 1.2, 600.0);
   near(make("thermal_drift")->search_range(0, stations), 1.2, 3000.0);
   near(make("slide_periodic")->search_range(0, stations), 0.1, 10.0);
-  near(make("revolution_periodic")->search_range(0, stations), 1.0 / 1100.0, 0.5);
+  near(make("revolution_periodic")->search_range(0, stations), 1.0 / 1100.0, 1.0 / 2.2);
   // One groove per turn samples a face: another speed would be another alias.
   near(make("spindle_runout")->search_range(0, stations), 110.0, 110.0);
   near(make("step")->search_range(0, stations), 0.01, 9.99);

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "../groove.hpp"
 #include "../periodic_effect.hpp"
 #include "../request.hpp"
@@ -5,12 +7,12 @@
 namespace slideway {
 namespace {
 
-// One groove per turn samples a face: above half a cycle per turn everything is an alias.
+// One groove per turn samples a face: above half a cycle per turn everything is an alias. There
+// other laws make lines as well: four values a period, as of those.
 std::pair<double, double> revolution_periodic_search(const Stations& stations) {
   const VariableRange range = range_of(stations, revolution_of);
-  const double limit = 0.5 / range.step;
   const bool is_face = stations.setup().kind == Kind::face;
-  return {0.5 / range.extent(), is_face && limit > 0.5 ? 0.5 : limit};
+  return {0.5 / range.extent(), is_face ? std::min(0.25 / range.step, 0.5) : 0.5 / range.step};
 }
 
 }  // namespace
