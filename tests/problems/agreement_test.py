@@ -83,7 +83,13 @@ def parameter_rows(text):
     for line in lines:
         if not line.startswith("  ") or line.startswith("  - ") or "more parameter" in line:
             break
-        rows.append(re.split(r" {2,}", line.strip()))
+        cells = re.split(r" {2,}", line.strip())
+        if not line.startswith("   "):
+            rows.append(cells)
+        elif rows:  # what does not fit goes on below
+            rows[-1] += cells
+        else:
+            heading += line
     return heading, rows
 
 
