@@ -142,12 +142,16 @@ bool is_changed_by_model_alone(const Linearisation& linear, const Estimate& afte
   return true;
 }
 
+FitNoise noise_of(const Model& model, const Linearisation& linear) {
+  if (!model.complete) return noise_under(linear, model.gates);
+  return {noise_if_complete(linear, noise_beside(linear, model.gates), model.gates)};
+}
+
 /// The noise under the model, and under that noise the prior of its curve.
 /// @return whether both are what they were
 bool settle(const Model& model, Solution& fit, Estimate& estimate,
             std::optional<CurveEstimate>& curve) {
-  FitNoise noise = curve ? noise_under(beside_curve(model, fit.linear, *curve), model.gates)
-                         : noise_under(fit.linear, model.gates);
+  FitNoise noise = noise_of(model, curve ? beside_curve(model, fit.linear, *curve) : fit.linear);
   const bool settled = has_settled(fit.noise, noise.profiles);
   fit.noise = std::move(noise.profiles);
   fit.uncertainty.inflation = noise.inflation;
@@ -243,6 +247,11 @@ FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes)
   }
   if (more) found = fit(model, found.estimate.shapes);
   return {std::move(model), std::move(found)};
+}
+
+FittedModel fit_as_complete(FittedModel fitted) {
+  fitted.model.complete = true;
+  return fit_model(std::move(fitted.model), fitted.fit.estimate.shapes);
 }
 
 FittedModel fit_declared(const Problem& problem, const std::vector<Profile>& profiles) {

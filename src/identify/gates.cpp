@@ -131,6 +131,9 @@ std::span<const Gate> gate_table() {
           "noise of the fit.",
           "noise gives e^10 with a probability below e^-10 (Markov's inequality), for each of some "
           "twenty lengths and sizes"},
+      Gate{"profiles_for_slow_noise", &Gates::profiles_for_slow_noise, "", 2.0, 100.0,
+           "So many faces are needed before what each has for itself may be slow noise.",
+           "of two, what one has alone is half of all there is"},
       Gate{"held_out_p", &Gates::held_out_p, "", 1e-6, 0.2,
            "A held-out profile does not fit if noise explains it with a smaller probability.",
            "one false alarm in a hundred profiles"},

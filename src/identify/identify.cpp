@@ -152,7 +152,8 @@ void set_final(const Problem& problem, const FittedModel& fitted, const MoreVari
   bool profiles_disagree = false;
   if (scope == Scope::identify) {
     std::vector<Noise> of_each;
-    if (model.observations.size() > 1) of_each = noise_of_each(fit.linear, fit.noise, model.gates);
+    if (model.observations.size() > 1)
+      of_each = model.complete ? fit.noise : noise_of_each(fit.linear, fit.noise, model.gates);
     checks.profiles = check_profiles(model, fit, of_each);
     checks.held_out = check_held_out(model, fit, of_each);
     checks.repeats = check_repeats(fit.linear, model.gates);

@@ -371,20 +371,24 @@ std::vector<Noise> noise_of_each(const Linearisation& all, const std::vector<Noi
   return out;
 }
 
+std::vector<Noise> noise_if_complete(const Linearisation& linear, std::vector<Noise> beside,
+                                     const Gates& gates) {
+  std::vector<std::size_t> all(beside.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  std::vector<double> repeats;
+  for (const Noise& noise : beside) repeats.push_back(noise.repeats());
+  from_whole_residuals(linear, all, gates, beside);
+  for (std::size_t i = 0; i < repeats.size(); ++i) beside[i] = beside[i].repeated(repeats[i]);
+  return beside;
+}
+
 FitNoise noise_under(const Linearisation& linear, const Gates& gates) {
   FitNoise out{noise_beside(linear, gates)};
   const LackOfFit left = lack_of_fit(linear, out.profiles, gates);
-  if (left.significant(gates)) {
+  if (left.significant(gates))
     out.inflation = left.ratio;
-    return out;
-  }
-  std::vector<std::size_t> all(out.profiles.size());
-  std::iota(all.begin(), all.end(), std::size_t{0});
-  std::vector<double> repeats;
-  for (const Noise& noise : out.profiles) repeats.push_back(noise.repeats());
-  from_whole_residuals(linear, all, gates, out.profiles);
-  for (std::size_t i = 0; i < repeats.size(); ++i)
-    out.profiles[i] = out.profiles[i].repeated(repeats[i]);
+  else
+    out.profiles = noise_if_complete(linear, std::move(out.profiles), gates);
   return out;
 }
 

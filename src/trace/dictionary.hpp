@@ -40,6 +40,11 @@ struct Candidate {
   }
 };
 
+/// Whether every cut has the effect: feed marks.
+inline bool is_kinematic(const Candidate& candidate) {
+  return candidate.term.effect->description().kinematic;
+}
+
 /// Those a search looks at.
 using Candidates = std::vector<const Candidate*>;
 

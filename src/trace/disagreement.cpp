@@ -4,17 +4,15 @@
 #include <map>
 
 #include "slideway/identify/agreement.hpp"
-#include "slideway/identify/noise_model.hpp"
 
 namespace slideway {
 
-Disagreement disagreement(const FittedModel& fitted) {
+Disagreement disagreement(const FittedModel& fitted, const std::vector<Noise>& of_each) {
   Disagreement out;
   const auto& [model, fit] = fitted;
   if (fit.linear.observations.size() < 2) return out;
   std::map<std::vector<std::string>, double> pairs;  // p-value of each, one for all its effects
-  for (const ProfileCheck& check :
-       check_profiles(model, fit, noise_of_each(fit.linear, fit.noise, model.gates)))
+  for (const ProfileCheck& check : check_profiles(model, fit, of_each))
     if (check.p_value) pairs[check.profiles] = *check.p_value;
   const auto count = static_cast<double>(pairs.size());
   std::vector<std::string> common;

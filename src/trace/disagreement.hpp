@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "slideway/identify/fit.hpp"
 
@@ -16,7 +17,8 @@ struct Disagreement {
 };
 
 /// A pair differs where noise explains it with a probability below Gates::disagreement_p.
-Disagreement disagreement(const FittedModel& fitted);
+/// @param of_each  noise of each profile, none of it what they disagree by
+Disagreement disagreement(const FittedModel& fitted, const std::vector<Noise>& of_each);
 
 /// What to do about it.
 std::string disagreement_advice(const Disagreement& found);

@@ -107,7 +107,7 @@ const SearchRound* ModelExtender::searched(const std::vector<AcceptedEffect>& ef
 }
 
 FittedModel ModelExtender::take_in_declared_band(const std::vector<AcceptedEffect>& effects) {
-  if (coarser_) return in_declared_band(effects);
+  if (coarser_ || effects.empty()) return in_declared_band(effects);
   extended(effects);
   return std::move(models_.extract(key_of(effects)).mapped());
 }

@@ -19,7 +19,7 @@ constexpr std::size_t kAllSubsets = 3;  // of a larger set those that lack one n
 std::vector<std::size_t> questionable(const Effects& effects) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < effects.size(); ++i)
-    if (!effects[i].candidate->term.effect->description().kinematic) out.push_back(i);
+    if (!is_kinematic(*effects[i].candidate)) out.push_back(i);
   return out;
 }
 

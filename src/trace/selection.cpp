@@ -136,18 +136,16 @@ class Selector {
            " % of the resamples choose it, the others most often nothing";
   }
 
-  /// Whether the last search finds more than noise gives, in whatever shape: in several profiles,
-  /// or so much that it does not matter where and why no name was given.
+  /// Whether the last search finds more than noise gives: an effect of all profiles that passes, or
+  /// so much that it does not matter where and why no name was given.
   [[nodiscard]] bool something_is_left() {
     const SearchRound& round = extender_.search(out_.effects);
     const bool has_several = round.data.observations() > 1;
     return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
-      const bool in_all = has_several && each.refined.candidate->term.profiles.empty() &&
-                          std::ranges::count(ruled_out_, each.name()) == 0;
-      return each.refined.projection.rank > 0 && each.part_of.empty() && each.folded.empty() &&
-             each.p_value <= (in_all ? gates_.significance : gates_.lack_of_fit_p) &&
-             !(each.held_out && !each.held_out->helps) &&
-             each.refined.delta_bic <= -(in_all ? gates_.delta_bic : gates_.left_over_bic);
+      return finds_too_much(each, gates_) ||
+             (has_several && each.refined.candidate->term.profiles.empty() &&
+              !is_kinematic(*each.refined.candidate) && each.refused(gates_).empty() &&
+              std::ranges::count(ruled_out_, each.name()) == 0);
     });
   }
 

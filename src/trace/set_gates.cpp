@@ -60,4 +60,11 @@ const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffec
   return found == round.tested.end() ? nullptr : &*found;
 }
 
+bool finds_too_much(const TestedCandidate& each, const Gates& gates) {
+  return each.refined.projection.rank > 0 && each.part_of.empty() && each.folded.empty() &&
+         !is_kinematic(*each.refined.candidate) && each.p_value <= gates.lack_of_fit_p &&
+         each.refined.delta_bic <= -gates.left_over_bic &&
+         !(each.held_out && !each.held_out->helps);
+}
+
 }  // namespace slideway

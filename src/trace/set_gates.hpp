@@ -28,4 +28,8 @@ std::string too_small(ModelExtender& extender, const Gates& gates,
 const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,
                                    const Gates& gates);
 
+/// Whether a candidate finds so much that something is missing, whatever it is refused for: feed
+/// marks apart, which every cut has.
+bool finds_too_much(const TestedCandidate& each, const Gates& gates);
+
 }  // namespace slideway

@@ -13,6 +13,7 @@
 #include "instrument.hpp"
 #include "loop.hpp"
 #include "outcome.hpp"
+#include "own_noise.hpp"
 #include "selection.hpp"
 #include "sensitivity.hpp"
 #include "shown.hpp"
@@ -20,6 +21,7 @@
 #include "slideway/identify/agreement.hpp"
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/left_out.hpp"
+#include "slideway/identify/noise_model.hpp"
 #include "slideway/trace/analysis.hpp"
 #include "time_blunder.hpp"
 #include "widening.hpp"
@@ -60,7 +62,7 @@ class Loop {
     if (!blunders.empty() && explained_by_an_effect(blunders)) blunders.clear();
     Selection selection = blunders.empty() ? select_effects(problem_, statistics_, gates, progress_)
                                            : nothing_selected(extender_, gates);
-    among_ = disagreement(extender_.extended(selection.effects));
+    judge(selection, blunders.empty());
     if (blunders.empty() && profiles_differ() &&
         !limit_.allows([&] { blunders = find_time_blunders(problem_, extender_, shown_); }))
       out.not_looked_at.emplace_back("another direction or start of one cut");
@@ -68,6 +70,22 @@ class Loop {
     tell_rounds(selection.effects);
     out.blunders = std::move(blunders);
     return selection;
+  }
+
+  /// Whether the profiles disagree beside what was selected, and whether that and all else that is
+  /// left is noise of their own.
+  void judge(Selection& selection, bool may_be_noise) {
+    const FittedModel& fitted = extender_.extended(selection.effects);
+    const auto& [model, fit] = fitted;
+    among_ = disagreement(fitted, noise_of_each(fit.linear, fit.noise, model.gates));
+    if (!may_be_noise || !something_is_wrong(selection)) return;
+    own_noise_ = noise_of_its_own(extender_, selection.effects);
+    if (!own_noise_) return;
+    among_ = {};
+    selection.withheld = false;
+    selection.lack_of_fit = lack_of_fit(fit.linear, *own_noise_, model.gates);
+    selection.notes.emplace_back(
+        "what is left is slow and every profile has its own: the noise holds it");
   }
 
   [[nodiscard]] bool profiles_differ() const {
@@ -98,7 +116,7 @@ class Loop {
     if (!out.blunders.empty()) out.advice.insert(out.advice.begin(), blunder_advice(out.blunders));
     out.verdict = verdict(out, !other_cause.empty());
     widen(selection, closed);
-    if (other_cause.empty() && out.blunders.empty() &&
+    if (other_cause.empty() && out.blunders.empty() && !own_noise_ &&
         out.rounds.size() == selection.effects.size() && !limit_.allows([&] {
           out.fragile = smallest_change(problem_, statistics_, selection, gates);
         }))
@@ -110,7 +128,9 @@ class Loop {
       out.not_looked_at.emplace_back("prediction over gaps");
     if (!selection.effects.empty() && !out.cross_validation.empty())
       out.gain = gain_of(out.cross_validation);
-    if (!selection.effects.empty())
+    if (own_noise_)
+      closed.extended = fit_as_complete(extender_.take_in_declared_band(selection.effects));
+    else if (!selection.effects.empty())
       closed.extended = extender_.take_in_declared_band(selection.effects);
   }
 
@@ -262,7 +282,7 @@ class Loop {
       found_p = std::min(found_p, each.p_value);
       is_wrong = true;
     }
-    if (!is_wrong && repeats.empty()) {  // what repeats share is texture as well
+    if (!is_wrong && !own_noise_ && repeats.empty()) {  // what repeats share is texture as well
       const double evidence = shared_evidence(fitted);
       found_p = std::min(found_p, std::exp(-evidence));
       is_wrong = evidence > gates.shared_evidence;
@@ -325,8 +345,10 @@ class Loop {
     const FittedModel& base = extender_.base();
     Candidates everywhere = extender_.candidates_beside({});
     std::erase_if(everywhere, [](const Candidate* each) { return !each->term.profiles.empty(); });
-    out.detection_limits = detection_limits(base, {base.fit.linear, data.noise()}, fitted.fit.noise,
-                                            everywhere, *extender_.calibration());
+    const std::vector<Noise>&searched = own_noise_ ? *own_noise_ : data.noise(),
+          &of_fit = own_noise_ ? *own_noise_ : fitted.fit.noise;
+    out.detection_limits = detection_limits(base, {base.fit.linear, searched}, of_fit, everywhere,
+                                            *extender_.calibration());
   }
 
   const Problem& problem_;
@@ -335,7 +357,8 @@ class Loop {
   const std::vector<ShownEffect>& shown_;
   ModelExtender extender_;
   SetStatistics statistics_;
-  Disagreement among_;  // of the profiles, beside what was selected
+  Disagreement among_;                           // of the profiles, beside what was selected
+  std::optional<std::vector<Noise>> own_noise_;  // that holds all that is left
 };
 
 }  // namespace

@@ -64,6 +64,9 @@ FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes 
 /// moments of the curve, its prior integrated out. Nothing where the model has no polynomial form.
 void allow_for_other_form(const Problem& problem, FittedModel& fitted);
 
+/// The same once more, the model taken to be complete: Model::complete.
+FittedModel fit_as_complete(FittedModel fitted);
+
 /// The declared model, built and fitted.
 /// @throws UsageError, DataError  as build_model(), fit()
 FittedModel fit_declared(const Problem& problem, const std::vector<Profile>& profiles);

@@ -56,6 +56,7 @@ struct Gates {
   double held_out_p = 0.01;
   double disagreement_p = 1e-4;
   double shared_evidence = 10.0;
+  double profiles_for_slow_noise = 3.0;
   double same_place = 0.25;
   double values_per_repeated_cosine = 3.0;
   double blunder_bic = 20.0;

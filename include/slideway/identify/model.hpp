@@ -81,6 +81,7 @@ struct Model {
   std::vector<Observation>
       observations;  // one per profile, fit and holdout, in the problem's order
   Gates gates;
+  bool complete = false;  // taken to be: its noise is noise_if_complete(), else noise_under()
 
   [[nodiscard]] Eigen::Index amplitudes() const;
   [[nodiscard]] Eigen::Index shapes() const;

@@ -34,6 +34,12 @@ struct FitNoise {
   double inflation = 1.0;       // of all variances, for structure the model lacks
 };
 
+/// The noise of every fitted profile if the model is complete: from the whole residual, the model
+/// left free.
+/// @param beside  noise_beside(): how repeats weigh is taken from it
+std::vector<Noise> noise_if_complete(const Linearisation& linear, std::vector<Noise> beside,
+                                     const Gates& gates);
+
 /// The noise of every fitted profile under the model, by restricted maximum likelihood.
 ///
 /// From the whole residual, the model left free, if the slow band holds no more than noise
