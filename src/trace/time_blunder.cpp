@@ -148,6 +148,19 @@ class TimeFinder {
   std::vector<std::pair<double, Blunder>> found_;
 };
 
+/// Whether the declared model leaves more than noise of the profiles, the sign of one of them
+/// turned.
+bool leaves_structure_with_sign(const Problem& problem, ModelExtender& extender,
+                                const std::vector<ShownEffect>& shown, const std::string& turned) {
+  extender.limit().check();
+  std::vector<Profile> profiles = extender.profiles();
+  for (double& value : std::ranges::find(profiles, turned, &Profile::name)->values) value = -value;
+  const FittedModel fitted = fitted_to(problem, profiles, shown);
+  const Gates& gates = problem.trace.gates;
+  return lack_of_fit(fitted.fit.linear, noise_beside(fitted.fit.linear, gates), gates)
+      .significant(gates);
+}
+
 }  // namespace
 
 std::vector<Blunder> find_time_blunders(const Problem& problem, ModelExtender& extender,
@@ -160,6 +173,16 @@ std::vector<Blunder> find_time_blunders(const Problem& problem, ModelExtender& e
     if (observation->profile->setup.cut_direction) finder.try_profile(observation->profile->name);
   }
   return finder.best();
+}
+
+std::vector<Blunder> held_against_time(std::vector<Blunder> found, const Problem& problem,
+                                       ModelExtender& extender,
+                                       const std::vector<ShownEffect>& shown) {
+  if (found.empty() || found.front().what != BlunderKind::sign ||
+      !leaves_structure_with_sign(problem, extender, shown, found.front().profile))
+    return found;
+  std::vector<Blunder> of_time = find_time_blunders(problem, extender, shown);
+  return of_time.empty() ? found : of_time;
 }
 
 }  // namespace slideway

@@ -13,4 +13,11 @@ namespace slideway {
 std::vector<Blunder> find_time_blunders(const Problem& problem, ModelExtender& extender,
                                         const std::vector<ShownEffect>& shown);
 
+/// Blunders that do not need an effect of time, held against those that do: a drift turns with the
+/// direction of the cut, so where a turned sign leaves more than noise, a direction or a start that
+/// leaves none is said instead.
+std::vector<Blunder> held_against_time(std::vector<Blunder> found, const Problem& problem,
+                                       ModelExtender& extender,
+                                       const std::vector<ShownEffect>& shown);
+
 }  // namespace slideway

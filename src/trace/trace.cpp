@@ -60,6 +60,7 @@ class Loop {
     const Gates& gates = problem_.trace.gates;
     std::vector<Blunder> blunders = find_blunders(extender_.base());
     if (!blunders.empty() && explained_by_an_effect(blunders)) blunders.clear();
+    blunders = held_against_time(std::move(blunders), problem_, extender_, shown_);
     Selection selection = blunders.empty() ? select_effects(problem_, statistics_, gates, progress_)
                                            : nothing_selected(extender_, gates);
     judge(selection, blunders.empty());

@@ -5,6 +5,7 @@
 
 #include "identify/cases.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "time_blunder.hpp"
 #include "trace/faces.hpp"
 
 namespace slideway::disagreement_test {
@@ -99,9 +100,10 @@ TEST(Harmonic, OfAWaveIsNoSecondEffect) {
   }
 }
 
-/// Three cuts that warm up by 0.3 µm with a time constant of three minutes, noise of 10 nm; one of
-/// them, if any, with the wrong direction in its problem file.
-std::vector<Profile> warmed(std::optional<std::size_t> swapped, unsigned seed) {
+/// Three cuts that warm up with a time constant of three minutes, noise of 10 nm; one of them, if
+/// any, with the wrong direction in its problem file.
+std::vector<Profile> warmed(std::optional<std::size_t> swapped, unsigned seed,
+                            double rise_mm = 3e-4) {
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> noise(0.0, 1e-5);
   const std::array<std::pair<double, CutDirection>, 3> cuts{
@@ -112,7 +114,7 @@ std::vector<Profile> warmed(std::optional<std::size_t> swapped, unsigned seed) {
     std::vector<double> z;
     for (const double r : x) {
       const double minutes = (direction == CutDirection::inward ? 40.0 - r : r) / feed;
-      z.push_back(2e-5 * r + 3e-4 * (1.0 - std::exp(-minutes / 3.0)) + noise(engine));
+      z.push_back(2e-5 * r + rise_mm * (1.0 - std::exp(-minutes / 3.0)) + noise(engine));
     }
     Profile& face =
         out.emplace_back(cases::profile("cut" + std::to_string(out.size() + 1), Kind::face, x, z));
@@ -144,6 +146,35 @@ TEST(Disagreement, AWrongDirectionOfOneCutIsNamedWithItsCut) {
   SCOPED_TRACE(story(right));
   EXPECT_TRUE(right.blunders.empty());
   EXPECT_THAT(named(right), Contains("thermal_drift"));
+}
+
+/// What is said in the place of a turned sign of one cut.
+Blunder instead_of_sign(const std::string& turned, const std::vector<Profile>& cuts) {
+  Problem problem = cases::problem(Lever::paper, 1,
+                                   {cases::effect("squareness"), cases::effect("straightness", 3)});
+  problem.trace.candidates = effect_names();
+  const FittedModel declared = fit_declared(problem, cuts);
+  const TimeLimit limit(std::nullopt);
+  const std::vector<ShownEffect> shown;
+  ModelExtender extender(problem, cuts, declared, shown, limit, {});
+  return held_against_time({{turned, BlunderKind::sign, -100.0, 0.05}}, problem, extender, shown)
+      .front();
+}
+
+// A drift turns with the direction of the cut, so with a wrong start of one cut the sign of another
+// may look turned.
+TEST(Disagreement, AStartThatExplainsAllIsSaidInsteadOfASign) {
+  std::vector<Profile> cuts = warmed(std::nullopt, 7);
+  cuts[0].setup.start_s = 600.0;
+  const Blunder found = instead_of_sign("cut3", cuts);
+  EXPECT_EQ(found.what, BlunderKind::clock);
+  EXPECT_EQ(found.profile, "cut1");
+}
+
+TEST(Disagreement, ASignThatExplainsAllStands) {
+  std::vector<Profile> cuts = warmed(std::nullopt, 7, 0.0);
+  for (double& value : cuts[2].values) value = -value;
+  EXPECT_EQ(instead_of_sign("cut3", cuts).what, BlunderKind::sign);
 }
 
 }  // namespace
