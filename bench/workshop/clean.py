@@ -163,6 +163,7 @@ def coarse_feed(rng: Rng, draw: Rng) -> Case:
     """An ordinary feed of 0.08 to 0.2 mm a turn: grooves of some µm, each read at several points."""
     shop = draw_shop(rng, diameter=False)
     feed = between(rng, max(0.08, 3 * 40 / shop.points), 0.21)
+    feed = min(feed, 0.36 * shop.nose)  # at 2.5 times that, grooves still meet
     return whole(replace(shop, feed=feed, radius=shop.points * feed / 3), draw)
 
 
