@@ -11,9 +11,10 @@ namespace {
 constexpr std::size_t kCount = 1500;
 
 std::vector<double> walk(double size_mm, std::mt19937_64& engine) {
-  std::normal_distribution<double> step(0.0, size_mm / std::sqrt(static_cast<double>(kCount)));
+  std::normal_distribution<double> normal;
+  const double step = size_mm / std::sqrt(static_cast<double>(kCount));
   std::vector<double> out{0.0};
-  while (out.size() < kCount) out.push_back(out.back() + step(engine));
+  while (out.size() < kCount) out.push_back(out.back() + step * normal(engine));
   return out;
 }
 
