@@ -33,6 +33,7 @@ constexpr std::array<std::pair<BlunderKind, double>, 4> kPositionFactors{
      {BlunderKind::position_per_metre, 1e-3}}};
 // Of the time of the cut: a start that was forgotten, or is one of another cut.
 constexpr std::array<double, 8> kShifts{-2.0, -1.0, -0.5, -0.25, 0.25, 0.5, 1.0, 2.0};
+constexpr int kHalvings = 6;  // of the step in which the best of these is moved
 
 double length_of(const Profile& profile) { return profile.setup.last_mm - profile.setup.first_mm; }
 
@@ -180,14 +181,30 @@ class Finder {
   [[nodiscard]] std::vector<CorrectedBlunder> find_of_time(const std::string& profile) const {
     std::vector<CorrectedBlunder> out;
     for (std::size_t i = 0; i < noise_.size(); ++i) {
-      if (fit_.linear.observations[i]->profile->name != profile) continue;
+      const Profile& own = *fit_.linear.observations[i]->profile;
+      if (own.name != profile) continue;
       std::vector<Hypothesis> list = hypotheses_of(i);
       std::erase_if(list, [](const Hypothesis& each) {
         return each.kind != BlunderKind::cut_direction && each.kind != BlunderKind::clock;
       });
-      try_profile(i, list, [&](const Blunder& each, const Hypothesis& by) {
-        out.push_back({each, *by.profile});
-      });
+      std::optional<CorrectedBlunder> start;
+      const auto tell = [&](const Blunder& each, const Hypothesis& by) {
+        if (each.what != BlunderKind::clock)
+          out.push_back({each, *by.profile});
+        else if (!start || each.delta_bic < start->blunder.delta_bic)
+          start = {each, *by.profile};
+      };
+      try_profile(i, list, tell);
+      if (!start) continue;
+      double step = 0.5 * (start->meant.setup.start_s - own.setup.start_s);
+      for (int halving = 0; halving < kHalvings; ++halving, step *= 0.5) {
+        Profile earlier = start->meant, later = start->meant;
+        earlier.setup.start_s -= step;
+        later.setup.start_s += step;
+        try_profile(i, {{BlunderKind::clock, 1.0, earlier}, {BlunderKind::clock, 1.0, later}},
+                    tell);
+      }
+      out.push_back(*std::move(start));
     }
     return out;
   }
@@ -273,6 +290,8 @@ class Finder {
     return out;
   }
 
+  /// Tells each hypothesis that holds. In another unit the noise of a profile is like its sisters',
+  /// or half as unlike, in ln, as it was recorded; that of its own fine band is enough.
   template <typename Told>
   void try_profile(std::size_t i, const std::vector<Hypothesis>& list, const Told& tell) const {
     const Gates& gates = model_.gates;
@@ -290,6 +309,7 @@ class Finder {
     if (as_it_is.directions() == 0) return;
     const auto [before, size_before] = as_it_is.best(1.0, kAnyFactor);
     const double square = as_it_is.disagreement(1.0);
+    const double own = noise_[i].long_run_deviation() / noise.long_run_deviation();
     for (const Hypothesis& each : list) {
       if (each.profile) observation.profile = &*each.profile;
       const Prediction& meant = each.profile ? prediction(observation, others, noise) : as_it_is;
@@ -297,9 +317,11 @@ class Finder {
       if (after > before - gates.blunder_bic) continue;
       const double left = meant.disagreement(each.factor) / square;
       if (left > gates.blunder_left) continue;
-      // Corrected, its noise is like its sisters', or half as unlike, in ln, as it was recorded.
-      if (std::abs(std::log(size)) > std::max(2.0 * std::log(factor), 0.5 * std::log(size_before)))
-        continue;
+      const bool is_like_sisters =
+          std::abs(std::log(size)) <=
+              std::max(2.0 * std::log(factor), 0.5 * std::log(size_before)) ||
+          std::abs(std::log(std::abs(each.factor) * own)) <= 2.0 * std::log(factor);
+      if (std::abs(each.factor) != 1.0 && !is_like_sisters) continue;
       tell({profile.name, each.kind, after - before, left}, each);
     }
   }

@@ -21,6 +21,11 @@ namespace slideway {
 /// disagreement, not only some of it.
 std::vector<Blunder> find_blunders(const FittedModel& fitted);
 
+/// Whether it is another unit of the positions.
+inline bool is_of_positions(BlunderKind kind) {
+  return BlunderKind::position_inch <= kind && kind <= BlunderKind::position_per_metre;
+}
+
 /// A blunder, and the profile as it was meant.
 struct CorrectedBlunder {
   Blunder blunder;

@@ -1,7 +1,9 @@
 #include "time_blunder.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "disagreement.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/noise_model.hpp"
@@ -13,8 +15,7 @@ constexpr std::size_t kEffectsTried = 3;  // best first, each of a name of its o
 constexpr std::size_t kMostHeldOut = 8;   // each takes a search
 
 /// Whether an effect grows or fades in time; of waves each start is as good as another.
-bool is_of_time(const std::string& name) {
-  const Effect& effect = specimen(name);
+bool is_of_time(const Effect& effect) {
   const IndependentVariable variable = effect.description().variable;
   return (variable == IndependentVariable::time || variable == IndependentVariable::distance) &&
          effect.linear_parameters();
@@ -22,7 +23,7 @@ bool is_of_time(const std::string& name) {
 
 Problem with_effects_of_time(Problem problem) {
   std::erase_if(problem.trace.candidates,
-                [](const std::string& name) { return !is_of_time(name); });
+                [](const std::string& name) { return !is_of_time(specimen(name)); });
   problem.trace.own.clear();
   return problem;
 }
@@ -93,16 +94,10 @@ class TimeFinder {
         shown_(shown),
         noise_(noise_beside(extender.base().fit.linear, problem.trace.gates)) {}
 
-  void try_profile(const std::string& odd) {
-    std::vector<Profile> profiles = extender_.profiles();
-    std::ranges::find(profiles, odd, &Profile::name)->role = Role::holdout;
-    const FittedModel others = fitted_to(problem_, profiles, shown_);
-    const Dictionary dictionary =
-        make_dictionary(others.model, problem_, others.fit.linear.prior_rows.rows());
-    for (const AcceptedEffect& effect : shown_effects(problem_, others, dictionary))
-      for (const CorrectedBlunder& each :
-           find_blunders_of_time(as_the_others_show(extender_.base(), others, effect), odd))
-        if (const auto left = left_by(each, effect)) found_.emplace_back(*left, each.blunder);
+  /// Holds each profile out that has a clock.
+  void try_all() {
+    for (const Observation* const observation : fitted_observations(extender_.base().model))
+      if (observation->profile->setup.cut_direction) try_profile(observation->profile->name);
   }
 
   /// Those that leave the least, one of a kind in each profile. A start may be any: where one
@@ -123,7 +118,35 @@ class TimeFinder {
     return out;
   }
 
+  /// The best that cost no more.
+  [[nodiscard]] std::vector<Blunder> best_below(double cost) {
+    std::erase_if(found_, [&](const auto& each) { return each.first > cost; });
+    return best();
+  }
+
+  /// The best, unless a model of the profiles as they are costs less.
+  [[nodiscard]] std::vector<Blunder> best_instead_of(const std::vector<AcceptedEffect>& effects) {
+    const Whitened data(extender_.extended(effects).fit.linear, noise_);
+    double cost = data.residual().squaredNorm();
+    for (const AcceptedEffect& each : effects)
+      cost += penalty(data, *each.candidate, each.candidate->amplitudes());
+    return best_below(cost - std::log(static_cast<double>(data.values())));  // of the start
+  }
+
  private:
+  void try_profile(const std::string& odd) {
+    extender_.limit().check();
+    std::vector<Profile> profiles = extender_.profiles();
+    std::ranges::find(profiles, odd, &Profile::name)->role = Role::holdout;
+    const FittedModel others = fitted_to(problem_, profiles, shown_);
+    const Dictionary dictionary =
+        make_dictionary(others.model, problem_, others.fit.linear.prior_rows.rows());
+    for (const AcceptedEffect& effect : shown_effects(problem_, others, dictionary))
+      for (const CorrectedBlunder& each :
+           find_blunders_of_time(as_the_others_show(extender_.base(), others, effect), odd))
+        if (const auto left = left_by(each, effect)) found_.emplace_back(*left, each.blunder);
+  }
+
   /// Square of the white residual of all profiles, one of them corrected, with the effect and its
   /// price; nothing where that is still more than noise.
   [[nodiscard]] std::optional<double> left_by(const CorrectedBlunder& corrected,
@@ -148,41 +171,75 @@ class TimeFinder {
   std::vector<std::pair<double, Blunder>> found_;
 };
 
-/// Whether the declared model leaves more than noise of the profiles, the sign of one of them
-/// turned.
-bool leaves_structure_with_sign(const Problem& problem, ModelExtender& extender,
-                                const std::vector<ShownEffect>& shown, const std::string& turned) {
+/// The declared model of the profiles, the sign of one of them turned.
+struct Turned {
+  double cost = 0.0;  // square of the white residual
+  bool is_noise = true;
+  bool agrees = true;  // no two profiles differ by more than noise
+};
+
+Turned with_sign_turned(const Problem& problem, ModelExtender& extender,
+                        const std::vector<ShownEffect>& shown, const std::string& which) {
   extender.limit().check();
   std::vector<Profile> profiles = extender.profiles();
-  for (double& value : std::ranges::find(profiles, turned, &Profile::name)->values) value = -value;
+  for (double& value : std::ranges::find(profiles, which, &Profile::name)->values) value = -value;
   const FittedModel fitted = fitted_to(problem, profiles, shown);
+  const Linearisation& linear = fitted.fit.linear;
   const Gates& gates = problem.trace.gates;
-  return lack_of_fit(fitted.fit.linear, noise_beside(fitted.fit.linear, gates), gates)
-      .significant(gates);
+  Turned out;
+  out.cost =
+      Whitened(linear, noise_beside(extender.base().fit.linear, gates)).residual().squaredNorm();
+  out.is_noise = !lack_of_fit(linear, noise_beside(linear, gates), gates).significant(gates);
+  out.agrees = disagreement(fitted, noise_of_each(linear, fitted.fit.noise, gates)).p_value >=
+               gates.disagreement_p;
+  return out;
+}
+
+bool can_tell(const ModelExtender& extender) {
+  const std::size_t fitted = fitted_observations(extender.base().model).size();
+  return fitted >= 3 && fitted <= kMostHeldOut;
 }
 
 }  // namespace
 
 std::vector<Blunder> find_time_blunders(const Problem& problem, ModelExtender& extender,
                                         const std::vector<ShownEffect>& shown) {
-  const std::vector<const Observation*> fitted = fitted_observations(extender.base().model);
-  if (fitted.size() < 3 || fitted.size() > kMostHeldOut) return {};
+  if (!can_tell(extender)) return {};
   TimeFinder finder(problem, extender, shown);
-  for (const Observation* const observation : fitted) {
-    extender.limit().check();
-    if (observation->profile->setup.cut_direction) finder.try_profile(observation->profile->name);
-  }
+  finder.try_all();
   return finder.best();
+}
+
+std::vector<Blunder> time_blunders_instead(const std::vector<AcceptedEffect>& effects,
+                                           const Problem& problem, ModelExtender& extender,
+                                           const std::vector<ShownEffect>& shown) {
+  const auto of_all_in_time = [](const AcceptedEffect& each) {
+    return each.candidate->term.profiles.empty() && is_of_time(*each.candidate->term.effect);
+  };
+  const auto of_some = [](const AcceptedEffect& each) {
+    return !each.candidate->term.profiles.empty() && !is_kinematic(*each.candidate);
+  };
+  if (std::ranges::none_of(effects, of_all_in_time) || std::ranges::none_of(effects, of_some) ||
+      !can_tell(extender))
+    return {};
+  TimeFinder finder(problem, extender, shown);
+  finder.try_all();
+  return finder.best_instead_of(effects);
 }
 
 std::vector<Blunder> held_against_time(std::vector<Blunder> found, const Problem& problem,
                                        ModelExtender& extender,
                                        const std::vector<ShownEffect>& shown) {
-  if (found.empty() || found.front().what != BlunderKind::sign ||
-      !leaves_structure_with_sign(problem, extender, shown, found.front().profile))
-    return found;
-  std::vector<Blunder> of_time = find_time_blunders(problem, extender, shown);
-  return of_time.empty() ? found : of_time;
+  if (found.empty() || found.front().what != BlunderKind::sign || !can_tell(extender)) return found;
+  const Gates& gates = problem.trace.gates;
+  const bool is_sure = found.front().left <= gates.blunder_left * gates.blunder_left;
+  const Turned turned = with_sign_turned(problem, extender, shown, found.front().profile);
+  if (turned.is_noise && is_sure) return found;
+  TimeFinder finder(problem, extender, shown);
+  finder.try_all();
+  std::vector<Blunder> of_time = turned.is_noise ? finder.best_below(turned.cost) : finder.best();
+  if (of_time.empty() && (is_sure || turned.is_noise || turned.agrees)) return found;
+  return of_time;
 }
 
 }  // namespace slideway

@@ -64,8 +64,11 @@ class Loop {
     Selection selection = blunders.empty() ? select_effects(problem_, statistics_, gates, progress_)
                                            : nothing_selected(extender_, gates);
     judge(selection, blunders.empty());
-    if (blunders.empty() && profiles_differ() &&
-        !limit_.allows([&] { blunders = find_time_blunders(problem_, extender_, shown_); }))
+    if (blunders.empty() && !limit_.allows([&] {
+          blunders = profiles_differ()
+                         ? find_time_blunders(problem_, extender_, shown_)
+                         : time_blunders_instead(selection.effects, problem_, extender_, shown_);
+        }))
       out.not_looked_at.emplace_back("another direction or start of one cut");
     if (!blunders.empty()) selection = nothing_selected(extender_, gates);
     tell_rounds(selection.effects);
@@ -170,8 +173,9 @@ class Loop {
 
   /// Whether an effect of all profiles leaves less of the residual than the blunder that leaves
   /// least, or leaves no profile that disagrees: the sign of a drift, too, turns with the direction
-  /// of the cut.
+  /// of the cut. None outweighs a trace that is as long as no other, and as some in another unit.
   bool explained_by_an_effect(const std::vector<Blunder>& blunders) {
+    if (is_of_positions(blunders.front().what)) return false;
     const SearchRound& round = extender_.search({});
     const double square = round.data.residual().squaredNorm();
     const auto noise = static_cast<double>(round.data.values());

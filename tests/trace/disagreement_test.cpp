@@ -171,6 +171,64 @@ TEST(Disagreement, AStartThatExplainsAllIsSaidInsteadOfASign) {
   EXPECT_EQ(found.profile, "cut1");
 }
 
+// The shares of a cut that are tried first are halves and quarters: 6.2 of 13 minutes is none.
+TEST(Disagreement, AStartNobodyWouldGuessIsNamedWithItsCut) {
+  Problem problem = cases::problem(Lever::paper, 1,
+                                   {cases::effect("squareness"), cases::effect("straightness", 3)});
+  problem.trace.candidates = effect_names();
+  std::vector<Profile> cuts = warmed(std::nullopt, 7);
+  cuts[2].setup.start_s = 372.0;
+  const Closed result = closed(problem, cuts);
+  SCOPED_TRACE(story(result));
+  ASSERT_FALSE(result.blunders.empty());
+  EXPECT_EQ(result.blunders.front().profile, "cut3");
+  EXPECT_EQ(result.blunders.front().what, BlunderKind::clock);
+  EXPECT_THAT(named(result), ::testing::IsEmpty());
+}
+
+/// The same with a bow of 1.6 µm instead.
+std::vector<Profile> bowed() {
+  std::vector<Profile> out = warmed(std::nullopt, 7, 0.0);
+  for (Profile& profile : out)
+    for (std::size_t i = 0; i < profile.values.size(); ++i)
+      profile.values[i] += 1e-6 * std::pow(profile.positions[i], 2);
+  return out;
+}
+
+// One cut has a crater of its own, too: more than noise is left and the cuts disagree once the sign
+// of another is right, but nothing else turns a bow upside down.
+TEST(Disagreement, ASignBeyondDoubtStandsBesideAnotherFault) {
+  std::vector<Profile> cuts = bowed();
+  for (std::size_t i = 0; i < cuts[0].values.size(); ++i)
+    cuts[0].values[i] += 5e-5 * std::exp(-std::pow((cuts[0].positions[i] - 20.0) / 3.0, 2));
+  for (double& value : cuts[2].values) value = -value;
+  Problem problem = cases::problem(Lever::paper, 1,
+                                   {cases::effect("squareness"), cases::effect("straightness", 3)});
+  problem.trace.candidates = effect_names();
+  const Closed result = closed(problem, cuts);
+  SCOPED_TRACE(story(result));
+  ASSERT_FALSE(result.blunders.empty());
+  EXPECT_EQ(result.blunders.front().profile, "cut3");
+  EXPECT_EQ(result.blunders.front().what, BlunderKind::sign);
+}
+
+// Metres declared as millimetres: the whole bow lies within 40 µm of the axis, where a narrow form
+// of all cuts would hide it.
+TEST(Disagreement, NoEffectOutweighsAnotherUnitOfThePositions) {
+  Problem problem = cases::problem(Lever::paper, 1,
+                                   {cases::effect("squareness"), cases::effect("straightness", 3)});
+  problem.trace.candidates = effect_names();
+  std::vector<Profile> cuts = bowed();
+  for (double& position : cuts[1].positions) position /= 1000.0;
+  cuts[1].setup.first_mm /= 1000.0;
+  cuts[1].setup.last_mm /= 1000.0;
+  const Closed result = closed(problem, cuts);
+  SCOPED_TRACE(story(result));
+  ASSERT_FALSE(result.blunders.empty());
+  EXPECT_EQ(result.blunders.front().profile, "cut2");
+  EXPECT_EQ(result.blunders.front().what, BlunderKind::position_metre);
+}
+
 TEST(Disagreement, ASignThatExplainsAllStands) {
   std::vector<Profile> cuts = warmed(std::nullopt, 7, 0.0);
   for (double& value : cuts[2].values) value = -value;
