@@ -6,6 +6,8 @@
 namespace slideway {
 namespace {
 
+constexpr double kOtherFeed = 1.1;  // marks a fifth deeper
+
 bool lies_beside(const LineBand& line, const LineBand& other, const Gates& gates) {
   const double distance = std::max({other.low - line.high, line.low - other.high, 0.0});
   return distance <= std::min(gates.modulation_widths, gates.modulation_share * line.low);
@@ -47,6 +49,39 @@ bool lie_on_feed_marks(const Profile& profile, const Effect& effect,
         return true;
     return false;
   });
+}
+
+double feed_per_turn(const Setup& setup) { return *setup.feed_mm_per_min / *setup.spindle_rpm; }
+
+/// Whether cuts of different feeds show a wave for certain, and one serves all cuts as well as one
+/// of its own in each would. Feed marks of another feed are of another depth, f²/(8 r), and begin
+/// elsewhere.
+bool is_one_wave(const std::vector<const Observation*>& observations, const Whitened& data,
+                 const Refined& refined, const Eigen::VectorXd& fitted, const Gates& gates) {
+  const ModelTerm& own = refined.candidate->term;
+  std::vector<double> feeds;
+  std::vector<std::size_t> cuts;
+  for (std::size_t i = 0; i < observations.size(); ++i) {
+    const Setup& setup = observations[i]->profile->setup;
+    if (!own.acts_on(*observations[i]->profile)) continue;
+    if (!setup.feed_mm_per_min || !setup.spindle_rpm) return false;
+    cuts.push_back(i);
+    if (fitted.segment(data.first_row(i), data.count(i)).norm() > gates.size)
+      feeds.push_back(feed_per_turn(setup));
+  }
+  if (feeds.size() < 2 || std::ranges::max(feeds) < kOtherFeed * std::ranges::min(feeds))
+    return false;
+  const Eigen::Index a = refined.columns.cols();
+  Eigen::MatrixXd apart = Eigen::MatrixXd::Zero(refined.columns.rows(), a * std::ssize(cuts));
+  Eigen::Index column = 0;
+  for (const std::size_t i : cuts) {
+    const Eigen::Index first = data.first_row(i), count = data.count(i);
+    apart.block(first, column, count, a) = refined.columns.middleRows(first, count);
+    column += a;
+  }
+  const Projection each = project(data, apart);
+  return each.gain - refined.projection.gain <
+         penalty(data, each.rank - refined.projection.rank) + gates.tie_bic;
 }
 
 }  // namespace
@@ -92,7 +127,8 @@ bool is_of_feed_marks(const Model& model, const Whitened& data, const Refined& r
     else
       elsewhere += fitted.segment(data.first_row(i), data.count(i)).squaredNorm();
   }
-  return folded_in_one && elsewhere < model.gates.size * model.gates.size;
+  return folded_in_one && elsewhere < model.gates.size * model.gates.size &&
+         !is_one_wave(observations, data, refined, fitted, model.gates);
 }
 
 }  // namespace slideway

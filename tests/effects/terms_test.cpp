@@ -291,6 +291,19 @@ TEST(SpindleRunout, AFaceKnowsNoDrift) {
   EXPECT_TRUE(make("spindle_runout")->applies_to(all_cases()[0].setup));
 }
 
+// At 0.99 cycles a turn a line goes round once in a hundred turns, 550 of them here, counted to
+// half a turn.
+TEST(Periodic, ALineNearOneCycleATurnIsSlow) {
+  Case diameter = face(spaced(-10, 10, 2001));
+  diameter.setup.first_mm = -10.0;
+  const Stations stations(diameter.positions, diameter.setup, lathe());
+  const std::vector<double> rate{0.99};
+  const std::vector<LineBand> lines = make("revolution_periodic")->lines(stations, rate);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_NEAR(lines[0].low, 5.5, 0.006);
+  EXPECT_NEAR(lines[0].high, 5.5, 0.006);
+}
+
 TEST(SearchRange, StaysWithinWhatTheProfileShows) {
   const Case profile = face(spaced(0, 10, 1001));  // 0.01 mm, 0.3 s, 0.55 turns a step; 300 s
   const Stations stations(profile.positions, profile.setup, lathe());
@@ -303,6 +316,12 @@ TEST(SearchRange, StaysWithinWhatTheProfileShows) {
   near(make("thermal_drift")->search_range(0, stations), 1.2, 3000.0);
   near(make("slide_periodic")->search_range(0, stations), 0.1, 10.0);
   near(make("revolution_periodic")->search_range(0, stations), 1.0 / 1100.0, 1.0 / 2.2);
+  // A diameter has two grooves a turn, so a line up to one cycle a turn is itself; two periods of
+  // it on either half.
+  Case diameter = face(spaced(-10, 10, 2001));
+  diameter.setup.first_mm = -10.0;
+  const Stations both(diameter.positions, diameter.setup, lathe());
+  near(make("revolution_periodic")->search_range(0, both), 1.0 / 1100.0, 1.0 - 2.0 / 550.0);
   // One groove per turn samples a face: another speed would be another alias.
   near(make("spindle_runout")->search_range(0, stations), 110.0, 110.0);
   near(make("step")->search_range(0, stations), 0.01, 9.99);

@@ -1,5 +1,6 @@
 // A line faster than the low band can show is folded by it to a slow one.
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -55,6 +56,76 @@ TEST(FoldedLine, IsNoEffect) {
                   300.0 / period_mm, 0.5);
     }
   }
+}
+
+/// Distance of a rate in cycles a sample from the nearest whole one.
+double folded(double cycles) { return std::abs(cycles - std::round(cycles)); }
+
+// Sixteen harmonics of the feed marks, folded, lie near any line of a cut. But marks of another
+// feed are of another depth: a wave that is one in time in cuts of different feeds is none of them.
+TEST(FoldedLine, OneWaveOfCutsOfDifferentFeedsIsAnEffect) {
+  constexpr int kSamples = 700;
+  constexpr double kApart = 40.0 / kSamples, kSpeed = 389.9;
+  const std::vector<std::pair<double, CutDirection>> cuts{
+      {2.0, CutDirection::inward}, {5.0, CutDirection::inward}, {3.0, CutDirection::outward}};
+  const auto lies_on_marks = [&](double period_s, double feed) {
+    for (int m = 1; m <= 16; ++m)
+      if (std::abs(kApart * 60.0 / (feed * period_s) - folded(m * kApart * kSpeed / feed)) *
+              kSamples <
+          1.0)
+        return true;
+    return false;
+  };
+  double period_s = 20.0;
+  while (!std::ranges::all_of(cuts,
+                              [&](const auto& cut) { return lies_on_marks(period_s, cut.first); }))
+    period_s += 0.05;
+  ASSERT_LT(period_s, 300.0);
+  std::vector<Profile> profiles;
+  for (const auto& [feed, direction] : cuts) {
+    Profile& profile = profiles.emplace_back();
+    profile.name = "cut" + std::to_string(profiles.size());
+    RandomStream random(11, profile.name);
+    for (int i = 0; i < kSamples; ++i) {
+      const double r = kApart * (i + 1);
+      const double t = (direction == CutDirection::inward ? 40.0 - r : r) / feed * 60.0;
+      profile.positions.push_back(r);
+      profile.values.push_back(
+          kMicrometre * (0.02 * r + 0.1 * std::cos(kTurn * t / period_s) + 0.01 * random.normal()));
+    }
+    slideway::Setup& setup = profile.setup;
+    setup.kind = Kind::face;
+    setup.feed_mm_per_min = feed;
+    setup.spindle_rpm = kSpeed;
+    setup.cut_direction = direction;
+    setup.cut_radius_mm = 40.0;
+    setup.first_mm = profile.positions.front();
+    setup.last_mm = profile.positions.back();
+  }
+  const Closed result = closed(problem_of({"time_periodic", "slide_periodic", "step"}), profiles);
+  SCOPED_TRACE(story(result));
+  ASSERT_THAT(named(result), ::testing::ElementsAre("time_periodic"));
+  expect_within_4u(result.rounds.front().parameters, "time_periodic.period_s", period_s);
+}
+
+// One cycle a turn and a little more turns its sign from one half of a diameter to the other. Read
+// there, it is the alias 2 - ν.
+TEST(FoldedLine, OfOneCycleATurnIsTheSpindlesOnADiameter) {
+  constexpr double kCyclesPerTurn = 1.01, kSize = 1e-4;
+  turning::Hidden hidden;
+  hidden.name = "line";
+  hidden.tool = [](const turning::ToolPoint& tool) {
+    return kSize * std::cos(kTurn * kCyclesPerTurn * tool.k + 0.5);
+  };
+  const Closed result = closed(problem_of({"revolution_periodic", "slide_periodic", "time_periodic",
+                                           "centre_step", "traverse_periodic", "traverse_datum"}),
+                               quarter_faces(hidden, 3, kBlunt, 5));
+  SCOPED_TRACE(story(result));
+  ASSERT_THAT(named(result), ::testing::ElementsAre("revolution_periodic"));
+  const TraceRound* round = round_of(result, "revolution_periodic");
+  EXPECT_THAT(round->ambiguous_with, ::testing::IsEmpty());
+  expect_within_4u(round->parameters, "revolution_periodic.cycles_per_revolution",
+                   2.0 - kCyclesPerTurn);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "../groove.hpp"
 #include "../periodic_effect.hpp"
@@ -7,19 +8,49 @@
 namespace slideway {
 namespace {
 
-// One groove per turn samples a face: above half a cycle per turn everything is an alias. There
-// other laws make lines as well: four values a period, as of those.
+// Four values a period, as of the other laws that make lines.
+double most_cycles(const Stations& stations) {
+  return 0.25 / range_of(stations, revolution_of).step;
+}
+
+// One groove per turn samples a radius: above half a cycle per turn everything is an alias. A
+// diameter has two, so what turns its sign from one half to the other lies below one cycle per
+// turn; with fewer than two periods it would be any form of that sign.
 std::pair<double, double> revolution_periodic_search(const Stations& stations) {
   const VariableRange range = range_of(stations, revolution_of);
-  const bool is_face = stations.setup().kind == Kind::face;
-  return {0.5 / range.extent(), is_face ? std::min(0.25 / range.step, 0.5) : 0.5 / range.step};
+  const double least = 0.5 / range.extent();
+  if (stations.setup().kind != Kind::face) return {least, 0.5 / range.step};
+  if (crosses_the_axis(stations.setup())) return {least, 1.0 - 4.0 * least};
+  return {least, std::min(most_cycles(stations), 0.5)};
 }
+
+class RevolutionPeriodic final : public PeriodicEffect {
+ public:
+  using PeriodicEffect::PeriodicEffect;
+
+  // Between the slow lines of both signs the readings of a face resolve none.
+  [[nodiscard]] double resolution(int shape, double value,
+                                  const Stations& stations) const override {
+    const double step = PeriodicEffect::resolution(shape, value, stations);
+    if (stations.setup().kind != Kind::face) return step;
+    const double most = most_cycles(stations);
+    const bool resolved = value + step <= most || value >= 1.0 - most;
+    return resolved ? step : std::max(step, 1.0 - most - value);
+  }
+
+  [[nodiscard]] std::vector<LineBand> lines(const Stations& stations,
+                                            std::span<const double> shape) const override {
+    if (stations.setup().kind != Kind::face) return PeriodicEffect::lines(stations, shape);
+    const double seen = std::abs(shape[0] - std::round(shape[0]));
+    return PeriodicEffect::lines(stations, {&seen, 1});
+  }
+};
 
 }  // namespace
 
 std::unique_ptr<Effect> make_revolution_periodic(const Request& request) {
   request.accept_only({});
-  return std::make_unique<PeriodicEffect>(PeriodicSpec{
+  return std::make_unique<RevolutionPeriodic>(PeriodicSpec{
       .description =
           {.name = "revolution_periodic",
            .plain_name = "axial spindle motion",
@@ -31,8 +62,8 @@ std::unique_ptr<Effect> make_revolution_periodic(const Request& request) {
            .typical = "5 to 30 nm",
            .variable = IndependentVariable::revolution,
            .confounded_with = "slide_periodic, time_periodic and traverse_periodic at one "
-                              "feed and one traverse speed; on a face ν stands for all its "
-                              "aliases ν + 1, ν + 2, ...",
+                              "feed and one traverse speed; on a radius ν stands for all its "
+                              "aliases ν + 1, ν + 2, ..., on a diameter for 2 - ν, ν + 2, ...",
            .confounded_effects = {"slide_periodic", "time_periodic", "traverse_periodic"},
            .separated_by = "a second feed (the wavelength on the face is the feed per turn "
                            "over ν) and a change of spindle speed by 1 % (the alias jumps)"},
