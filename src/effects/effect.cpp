@@ -1,8 +1,22 @@
 #include "slideway/effects/effect.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace slideway {
+
+double FaceSlope::at(double radius_mm) const {
+  const auto last = static_cast<double>(values.size() - 1);
+  const double place = std::min(radius_mm / spacing_mm, last);
+  const auto below = static_cast<std::size_t>(std::min(std::floor(place), last - 1.0));
+  return std::lerp(values[below], values[below + 1], place - static_cast<double>(below));
+}
+
+double FaceSlope::rms() const {
+  double square = 0.0;
+  for (const double value : values) square += value * value;
+  return std::sqrt(square / static_cast<double>(values.size()));
+}
 
 std::pair<double, double> Effect::search_range(int shape, const Stations& /*stations*/) const {
   const Parameter& parameter = parameters()[shapes()[shape].parameter];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "face_slope.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/identify/left_out.hpp"
 #include "slideway/identify/noise_model.hpp"
@@ -246,6 +247,10 @@ FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes)
                                                   noise.standard_deviation()));
   }
   if (more) found = fit(model, found.estimate.shapes);
+  const bool is_known = model.range.face_slope != nullptr;
+  model.range.face_slope = face_slope(model, found.estimate);
+  if (!is_known && model.range.face_slope && follow_face(model))
+    found = fit(model, found.estimate.shapes);
   return {std::move(model), std::move(found)};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "face_slope.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
 #include "slideway/base/random.hpp"
@@ -67,9 +68,8 @@ std::vector<Profile> empty_profiles(const Problem& problem) {
   return profiles;
 }
 
-/// Adds an effect with given parameter values (0 where none is) to every profile.
-void add_effect(const Model& model, const ModelTerm& term,
-                const std::map<std::string, double>& parameters, std::vector<Profile>& profiles) {
+/// Amplitudes and shapes of an effect with given parameter values, 0 where none is.
+Eigen::VectorXd inner_of(const ModelTerm& term, const std::map<std::string, double>& parameters) {
   const std::vector<Parameter>& known = term.effect->parameters();
   Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(known.size()));
   for (std::size_t p = 0; p < known.size(); ++p) {
@@ -79,7 +79,12 @@ void add_effect(const Model& model, const ModelTerm& term,
   for (const Shape& shape : term.effect->shapes())
     if (!parameters.contains(known[shape.parameter].name))
       throw UsageError("truth: effect '" + term.name + "' needs " + known[shape.parameter].name);
-  const Eigen::VectorXd inner = term.effect->from_parameters(values);
+  return term.effect->from_parameters(values);
+}
+
+/// Adds an effect to every profile.
+void add_effect(const Model& model, const ModelTerm& term, const Eigen::VectorXd& inner,
+                std::vector<Profile>& profiles) {
   const Eigen::VectorXd amplitudes = inner.head(term.effect->amplitudes());
   const std::vector<double> shape(inner.data() + amplitudes.size(), inner.data() + inner.size());
   for (Profile& profile : profiles) {
@@ -178,12 +183,27 @@ std::vector<Profile> simulate(const Problem& problem) {
   for (Profile& profile : frame)
     profile.low_band = LowBandOptions{.level = 0};  // effects are wanted here
   Model model = build_model(problem, frame);
+  std::vector<std::map<std::string, double>> values;
   for (const ModelTerm& term : model.terms)
-    add_effect(model, term, parameters_of(*problem.truth, term.name), profiles);
+    values.push_back(parameters_of(*problem.truth, term.name));
   for (const Truth::HiddenEffect& hidden : problem.truth->effects) {
     append_term(model, {hidden.name, hidden.options, {}}, model.range);
-    add_effect(model, model.terms.back(), hidden.parameters, profiles);
+    values.push_back(hidden.parameters);
   }
+  Estimate truth{Eigen::VectorXd(model.amplitudes()), Eigen::VectorXd(model.shapes()), {}, {}};
+  std::vector<Eigen::VectorXd> inner;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const ModelTerm& term = model.terms[i];
+    inner.push_back(inner_of(term, values[i]));
+    truth.amplitudes.segment(term.first_amplitude, term.effect->amplitudes()) =
+        inner.back().head(term.effect->amplitudes());
+    truth.shapes.segment(term.first_shape, std::ssize(term.effect->shapes())) =
+        inner.back().tail(std::ssize(term.effect->shapes()));
+  }
+  model.range.face_slope = face_slope(model, truth);
+  follow_face(model);
+  for (std::size_t i = 0; i < inner.size(); ++i)
+    add_effect(model, model.terms[i], inner[i], profiles);
   for (Profile& profile : profiles) add_noise(*problem.truth, profile);
   return profiles;
 }

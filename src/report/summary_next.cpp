@@ -45,6 +45,13 @@ const DetectionLimit* worst_unseen(const TraceResult& trace) {
   return worst;
 }
 
+/// By how much that is: "2.6 µm/m". REQUIRES one.
+std::string most_unseen(const TraceResult& trace) {
+  return one_with(MotionError::squareness, trace).empty()
+             ? number(*worst_unseen(trace)->squareness_rad / kMicroradian, 2) + " µm/m"
+             : "any amount";
+}
+
 /// Whether what the data do not show may move the squareness by more than its U.
 bool may_be_moved_unseen(const Analysis& analysis) {
   const FittedParameter* const p = squareness_parameter(analysis.result);
@@ -130,7 +137,8 @@ std::string next_step(const Analysis& analysis) {
   if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
   if (std::string next = next_of_loop(analysis); !next.empty()) return next;
   return may_be_moved_unseen(analysis)
-             ? "slideway plan: cuts that show what may have moved the squareness"
+             ? "slideway plan: unseen effects may move the squareness by " +
+                   most_unseen(*analysis.trace)
              : kNothingToDo;
 }
 

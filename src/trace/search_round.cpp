@@ -156,15 +156,25 @@ bool TestedCandidate::is_possible() const {
   return refined.projection.rank > 0 && folded.empty() && implausible(refined).empty();
 }
 
+double SearchRound::least_of_effect(const TestedCandidate& part) const {
+  double least = part.refined.delta_bic;
+  if (part.refined.candidate->term.profiles.empty()) return least;
+  for (const TestedCandidate& each : tested)
+    if (each.refined.candidate->effect_name() == part.refined.candidate->effect_name() &&
+        each.refined.candidate->term.profiles.empty())
+      least = std::min(least, each.refined.delta_bic);
+  return least;
+}
+
 const TestedCandidate* SearchRound::choice(const Gates& gates,
                                            const std::vector<std::string>& excluded) const {
   for (auto each = tested.begin(); each != tested.end(); ++each) {
     if (!each->refused(gates).empty() || std::ranges::count(excluded, each->name()) > 0) continue;
+    const double least = least_of_effect(*each);
     const auto stands_before = [&](const TestedCandidate& better) {
       return better.folded.empty() && std::ranges::count(excluded, better.name()) == 0 &&
              better.refined.candidate->effect_name() != each->refined.candidate->effect_name() &&
-             better.refined.delta_bic < each->refined.delta_bic - gates.tie_bic &&
-             alike(better, *each, gates);
+             better.refined.delta_bic < least - gates.tie_bic && alike(better, *each, gates);
     };
     if (std::none_of(tested.begin(), each, stands_before)) {
       const TestedCandidate* measured = measured_instead(*each, gates, excluded);

@@ -53,6 +53,10 @@ struct SearchRound {
                                                               const Gates& gates) const;
 
  private:
+  /// The least difference in BIC of an effect of some profiles and the same effect of all: what one
+  /// size in all of them explains too badly may still be in each.
+  [[nodiscard]] double least_of_effect(const TestedCandidate& part) const;
+
   [[nodiscard]] std::vector<const TestedCandidate*> as_good_as(const TestedCandidate& chosen,
                                                                const Gates& gates) const;
 };

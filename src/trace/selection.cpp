@@ -122,9 +122,11 @@ class Selector {
     for (const TestedCandidate& each : round.tested) {
       if (each.refined.candidate->effect_name() != last.refined.candidate->effect_name() ||
           each.refined.candidate->term.profiles.empty() || !each.refused(gates_).empty() ||
+          std::ranges::count(ruled_out_, each.name()) > 0 ||
           each.refined.projection.gain < last.refined.projection.gain - gates_.exchange_bic)
         continue;
       out_.effects.back() = accepted(round, each);
+      ruled_out_.push_back(last.name());
       return;
     }
   }

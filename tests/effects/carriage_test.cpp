@@ -21,7 +21,7 @@ Eigen::VectorXd unit(Eigen::Index size, Eigen::Index at, double value = 1.0) {
   return Eigen::VectorXd::Unit(size, at) * value;
 }
 
-constexpr TravelRange kShort{.slide_min = 0.0, .slide_max = 10.0, .z_min = 0.0, .z_max = 80.0};
+const TravelRange kShort{.slide_min = 0.0, .slide_max = 10.0, .z_min = 0.0, .z_max = 80.0};
 
 TEST(Straightness, WithOneLeverXColumnOfBkIsOneMinusKTimesXToTheK) {
   // Eq. (16) with p_x = x: x^k - k x^(k-1) x = (1 - k) x^k; b_1 vanishes identically.

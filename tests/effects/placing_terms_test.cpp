@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "effects/heights.hpp"
 
@@ -98,6 +99,27 @@ TEST(Centring, IsAConeOffTheCentre) {
     }
   }
   EXPECT_FALSE(make("centring")->applies_to(face({0.0}).setup));
+}
+
+// Off the centre by X0 a parabola z = a r² has a X0² - 2 a X0 X more: a tilt. Of a slope that grows
+// from 0 at the axis as 2 a r, the column is -2 a r sgn X in proportion.
+TEST(Centring, GoesWithTheSlopeOfTheFace) {
+  FaceSlope parabola;
+  parabola.spacing_mm = 1.0;
+  for (int r = 0; r <= 10; ++r) parabola.values.push_back(2.0 * r);
+  EXPECT_DOUBLE_EQ(parabola.at(2.5), 5.0);
+  EXPECT_DOUBLE_EQ(parabola.at(12.0), 20.0);
+  EXPECT_DOUBLE_EQ(parabola.rms(), 2.0 * std::sqrt(385.0 / 11.0));  // of 0, 1, ..., 10
+  TravelRange range;
+  range.face_slope = std::make_shared<const FaceSlope>(parabola);
+  const Case diameter{"", setup_of(Kind::face, Quantity::height, -10, 10), {-5.0, -2.5, 2.5, 10.0}};
+  const auto effect = make_effect("centring", {}, lathe(), range);
+  const Eigen::VectorXd z = signal(*effect, diameter, values({1.0, 0.5})) / kMicrometre;
+  const double whole = parabola.rms();
+  EXPECT_NEAR(z[0], -10.0 / whole, 1e-14);
+  EXPECT_NEAR(z[1], -5.0 / whole, 1e-14);
+  EXPECT_NEAR(z[2], 5.0 / whole, 1e-14);
+  EXPECT_NEAR(z[3], 20.0 / whole, 1e-14);
 }
 
 TEST(Centring, WithoutAnOffsetIsTheCentreStep) {

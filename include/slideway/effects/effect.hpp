@@ -70,6 +70,8 @@ struct Description {
   bool measured = false;
   /// An error of what measures: each instrument has a size of its own, which its traces share.
   bool of_instrument = false;
+  /// Its form is that of the face it is in: TravelRange::face_slope.
+  bool of_face = false;
   /// Every cut has it, by the kinematics: not whether it is there is in question, but its size.
   /// What has no name is no rival of it.
   bool kinematic = false;
@@ -94,6 +96,16 @@ struct ParameterValues {
   Eigen::MatrixXd jacobian;  // #parameters by (#amplitudes + #shapes)
 };
 
+/// z'(r) of a face that crosses the spindle axis, as the errors of the carriages make it.
+struct FaceSlope {
+  double spacing_mm = 1.0;
+  std::vector<double> values;  // rad, at r = 0, spacing, 2 spacing, ...; at least two
+
+  /// Straight between the values. REQUIRES radius_mm >= 0.
+  [[nodiscard]] double at(double radius_mm) const;
+  [[nodiscard]] double rms() const;
+};
+
 /// What an effect must know of all profiles together before it can choose its inner basis.
 struct TravelRange {
   double slide_min = 0.0, slide_max = 1.0;  // mm, over all profiles
@@ -101,6 +113,7 @@ struct TravelRange {
   double coarsest_feed_mm = 0.0;            // largest feed per turn; 0: unknown
   double beam_span_mm = 0.0;                // between the supports of the cross-beam; 0: unknown
   double read_from_s = 0.0;                 // earliest reading time; 0: unknown
+  std::shared_ptr<const FaceSlope> face_slope = nullptr;  // as a fit has it; null: unknown
 };
 
 /// How the form of a slide is described.

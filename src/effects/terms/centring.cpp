@@ -27,28 +27,65 @@ std::pair<double, double> centring_search(const Stations& stations) {
   return {-farthest, farthest};
 }
 
+// The step of a cone, in proportion to the slope of the face.
+class Centring final : public SingleAmplitude {
+ public:
+  Centring(SingleAmplitudeSpec spec, std::shared_ptr<const FaceSlope> slope)
+      : SingleAmplitude(std::move(spec)), slope_(std::move(slope)) {
+    if (slope_ && slope_->rms() == 0.0) slope_ = nullptr;
+  }
+
+  void columns(const Stations& stations, std::span<const double> shape,
+               Eigen::Ref<Eigen::MatrixXd> out) const override {
+    SingleAmplitude::columns(stations, shape, out);
+    in_proportion(stations, out);
+  }
+
+  void columns_of_shapes(const Stations& stations, std::span<const std::vector<double>> shapes,
+                         Eigen::Ref<Eigen::MatrixXd> out) const override {
+    SingleAmplitude::columns_of_shapes(stations, shapes, out);
+    in_proportion(stations, out);
+  }
+
+  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+                   Eigen::Ref<Eigen::MatrixXd> out) const override {
+    SingleAmplitude::derivatives(stations, shape, which, out);
+    in_proportion(stations, out);
+  }
+
+ private:
+  void in_proportion(const Stations& stations, Eigen::Ref<Eigen::MatrixXd> out) const {
+    if (!slope_) return;
+    const double whole = slope_->rms();
+    for (Eigen::Index i = 0; i < stations.size(); ++i)
+      out.row(i) *= slope_->at(stations.radius(i)) / whole;
+  }
+
+  std::shared_ptr<const FaceSlope> slope_;
+};
+
 }  // namespace
 
 std::unique_ptr<Effect> make_centring(const Request& request) {
   request.accept_only({});
-  return std::make_unique<SingleAmplitude>(SingleAmplitudeSpec{
+  SingleAmplitudeSpec spec{
       .description =
           {.name = "centring",
            .plain_name = "trace off centre",
            .standard_name = "trace off the centre of the face (ISO 12781)",
-           .formula = "A (|X| - |X - X0|)/X0; A = -Θ X0 of a face with the slope Θ: A sgn X "
-                      "where |X| > |X0|",
-           .source = "the form at |X - X0| less that at |X|: of a cone Θ r this, of a parabola a "
-                     "tilt, which levelling takes",
+           .formula = "-X0 z'(r) sgn X: A z'(r)/z'_rms (|X| - |X - X0|)/X0, A = -X0 z'_rms, z' the "
+                      "slope of the face as the carriages make it",
+           .source = "the form z at |X - X0| less that at |X|, to first order; of a cone exactly",
            .cause = "center_mm is not where the spindle axis lies in the trace",
            .typical = "X0 is 1 to 50 µm, up to 1 mm where a trace was trimmed by hand: 10 nm at "
                       "50 µm on a face that slopes by 200 µrad",
            .variable = IndependentVariable::trace,
            .confounded_with = "centre_step if X0 is not resolved",
            .confounded_effects = {"centre_step"},
-           .separated_by = "center_mm from the nub or from the edges of the face; -A/X0 is the "
-                           "slope of the face, whose squareness tells it; traces at three or more "
-                           "azimuths: a step of the spindle goes with the azimuth"},
+           .separated_by =
+               "center_mm from the nub or from the edges of the face; traces at three or "
+               "more azimuths: a step of the spindle goes with the azimuth",
+           .of_face = true},
       .amplitude = {"height_um", "A", "µm", 0.01},
       .reading = [](const Stations& stations, Eigen::Index i) { return stations.trace(i); },
       .value = centring_value,
@@ -57,7 +94,8 @@ std::unique_ptr<Effect> make_centring(const Request& request) {
       .shape = ShapeSpec{.parameter = {"offset_mm", "X0", "mm", 0.05, -1e3, 1e3},
                          .shape = {.parameter = 1, .logarithmic = false, .stepwise = false},
                          .derivative = centring_derivative,
-                         .range = centring_search}});
+                         .range = centring_search}};
+  return std::make_unique<Centring>(std::move(spec), request.range.face_slope);
 }
 
 }  // namespace slideway
