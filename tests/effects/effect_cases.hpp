@@ -74,8 +74,7 @@ inline const Machine& lathe(Lever lever = Lever::paper) {
   return lever == Lever::paper ? kPaper : kSplit;
 }
 
-inline const TravelRange kTravel{
-    .slide_min = 0.0, .slide_max = 600.0, .z_min = 0.0, .z_max = 80.0};
+inline const TravelRange kTravel{.slide_min = 0.0, .slide_max = 600.0, .z_min = 0.0, .z_max = 80.0};
 
 // The effect with the options it needs, and no others.
 inline std::unique_ptr<Effect> make(const std::string& name, const TravelRange& range = kTravel,
