@@ -111,15 +111,15 @@ TEST(FoldedLine, OneWaveOfCutsOfDifferentFeedsIsAnEffect) {
 // One cycle a turn and a little more turns its sign from one half of a diameter to the other. Read
 // there, it is the alias 2 - ν.
 TEST(FoldedLine, OfOneCycleATurnIsTheSpindlesOnADiameter) {
-  constexpr double kCyclesPerTurn = 1.01, kSize = 1e-4;
-  turning::Hidden hidden;
-  hidden.name = "line";
-  hidden.tool = [](const turning::ToolPoint& tool) {
-    return kSize * std::cos(kTurn * kCyclesPerTurn * tool.k + 0.5);
+  constexpr double kCyclesPerTurn = 1.01, kLineSize = 1e-4;
+  turning::Hidden line;
+  line.name = "line";
+  line.tool = [](const turning::ToolPoint& tool) {
+    return kLineSize * std::cos(kTurn * kCyclesPerTurn * tool.k + 0.5);
   };
   const Closed result = closed(problem_of({"revolution_periodic", "slide_periodic", "time_periodic",
                                            "centre_step", "traverse_periodic", "traverse_datum"}),
-                               quarter_faces(hidden, 3, kBlunt, 5));
+                               quarter_faces(line, 3, kBlunt, 5));
   SCOPED_TRACE(story(result));
   ASSERT_THAT(named(result), ::testing::ElementsAre("revolution_periodic"));
   const TraceRound* round = round_of(result, "revolution_periodic");

@@ -1,6 +1,7 @@
 // What the place of a trace on the workpiece decides: lobes between azimuths, a centre that is not
 // where center_mm says.
 
+#include <algorithm>
 #include <cmath>
 
 #include "slideway/base/text.hpp"
@@ -132,6 +133,20 @@ TEST(Placing, ACurvedFaceOffTheCentreIsNoStepOfTheSpindle) {
   const TraceRound* round = round_of(result, "centring");
   ASSERT_NE(round, nullptr);
   EXPECT_THAT(round->ambiguous_with, Not(Contains("centre_step")));
+}
+
+// One offset for all serves best and predicts the others worse; so each cut has its own.
+TEST(Placing, EachCutMayBeOffItsCentreByAnother) {
+  std::vector<Profile> profiles =
+      at_azimuths([](double x, double /*azimuth*/) { return 4e-4 * std::abs(x); }, 6);
+  const std::vector<double> off{0.3, -0.5, 0.4};
+  for (std::size_t i = 0; i < off.size(); ++i) profiles[i].setup.center_mm -= off[i];
+  const Closed result =
+      closed(problem_of({"centre_step", "centring", "traverse_periodic"}), profiles);
+  SCOPED_TRACE(story(result));
+  const std::vector<std::string> names = named(result);
+  EXPECT_EQ(std::ranges::count(names, "centring") + std::ranges::count(names, "centre_step"), 3);
+  EXPECT_EQ(names.size(), 3U);
 }
 
 // 0.1 mm: lower on one side of the axis and higher on the other, as is a step of the spindle.
