@@ -9,11 +9,14 @@ namespace {
 
 /// Whether an effect of the model leaves a candidate nothing to say: it is the same effect and acts
 /// in all profiles, or in one of the candidate's. In all profiles, the candidate may still be the
-/// better name for what others hold; in one, it may have a freer form.
+/// better name for what others hold; in one, it may have a freer form, or be the place of one
+/// trace, which others share by chance.
 bool says_the_same(const Candidate& in_model, const Candidate& candidate) {
   const std::vector<std::string>&p = in_model.term.profiles, &q = candidate.term.profiles;
   if (in_model.effect_name() != candidate.effect_name()) return false;
-  if (p.empty()) return q.empty() || candidate.amplitudes() <= in_model.amplitudes();
+  if (p.empty())
+    return q.empty() || (candidate.amplitudes() <= in_model.amplitudes() &&
+                         !candidate.term.effect->description().of_face);
   return std::ranges::find_first_of(p, q) != p.end();
 }
 

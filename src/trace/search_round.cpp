@@ -158,7 +158,7 @@ bool TestedCandidate::is_possible() const {
 
 double SearchRound::least_of_effect(const TestedCandidate& part) const {
   double least = part.refined.delta_bic;
-  if (part.refined.candidate->term.profiles.empty()) return least;
+  if (!part.refined.candidate->term.effect->description().of_face) return least;
   for (const TestedCandidate& each : tested)
     if (each.refined.candidate->effect_name() == part.refined.candidate->effect_name() &&
         each.refined.candidate->term.profiles.empty())

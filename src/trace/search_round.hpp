@@ -53,8 +53,8 @@ struct SearchRound {
                                                               const Gates& gates) const;
 
  private:
-  /// The least difference in BIC of an effect of some profiles and the same effect of all: what one
-  /// size in all of them explains too badly may still be in each.
+  /// The least difference in BIC of an effect and, where it is one of the place of each trace, of
+  /// the same effect of all: each has its own, though one for all may explain more than any.
   [[nodiscard]] double least_of_effect(const TestedCandidate& part) const;
 
   [[nodiscard]] std::vector<const TestedCandidate*> as_good_as(const TestedCandidate& chosen,
