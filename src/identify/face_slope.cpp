@@ -10,10 +10,7 @@ namespace {
 constexpr Eigen::Index kPlaces = 256;  // a polynomial of degree 20 is straight between them
 
 bool crosses_axis(const Profile& profile) {
-  const Setup& setup = profile.setup;
-  return profile.role == Role::fit && setup.kind == Kind::face &&
-         setup.quantity == Quantity::height && setup.first_mm < setup.center_mm &&
-         setup.center_mm < setup.last_mm;
+  return profile.role == Role::fit && specimen("centring").applies_to(profile.setup);
 }
 
 }  // namespace
@@ -49,10 +46,9 @@ std::shared_ptr<const FaceSlope> face_slope(const Model& model, const Estimate& 
 
 bool follow_face(Model& model) {
   bool any = false;
-  for (ModelTerm& term : model.terms) {
+  for (const ModelTerm& term : model.terms) {
     if (!term.effect->description().of_face) continue;
-    term.effect = make_effect(term.effect->description().name, {.profiles = term.profiles},
-                              model.machine, model.range);
+    remake_term(model, term.name, {.profiles = term.profiles});
     any = true;
   }
   return any;

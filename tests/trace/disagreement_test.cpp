@@ -130,11 +130,17 @@ std::vector<Profile> warmed(std::optional<std::size_t> swapped, unsigned seed,
   return out;
 }
 
-// No effect of time is declared: only what the other cuts show of one tells the direction.
-TEST(Disagreement, AWrongDirectionOfOneCutIsNamedWithItsCut) {
+/// The carriages alone, every effect of the catalogue a candidate.
+Problem of_carriages() {
   Problem problem = cases::problem(Lever::paper, 1,
                                    {cases::effect("squareness"), cases::effect("straightness", 3)});
   problem.trace.candidates = effect_names();
+  return problem;
+}
+
+// No effect of time is declared: only what the other cuts show of one tells the direction.
+TEST(Disagreement, AWrongDirectionOfOneCutIsNamedWithItsCut) {
+  const Problem problem = of_carriages();
   for (const std::size_t swapped : {0U, 1U, 2U}) {
     const Closed result = closed(problem, warmed(swapped, 7));
     SCOPED_TRACE(story(result));
@@ -150,9 +156,7 @@ TEST(Disagreement, AWrongDirectionOfOneCutIsNamedWithItsCut) {
 
 /// What is said in the place of a turned sign of one cut.
 Blunder instead_of_sign(const std::string& turned, const std::vector<Profile>& cuts) {
-  Problem problem = cases::problem(Lever::paper, 1,
-                                   {cases::effect("squareness"), cases::effect("straightness", 3)});
-  problem.trace.candidates = effect_names();
+  const Problem problem = of_carriages();
   const FittedModel declared = fit_declared(problem, cuts);
   const TimeLimit limit(std::nullopt);
   const std::vector<ShownEffect> shown;
@@ -173,9 +177,7 @@ TEST(Disagreement, AStartThatExplainsAllIsSaidInsteadOfASign) {
 
 // The shares of a cut that are tried first are halves and quarters: 6.2 of 13 minutes is none.
 TEST(Disagreement, AStartNobodyWouldGuessIsNamedWithItsCut) {
-  Problem problem = cases::problem(Lever::paper, 1,
-                                   {cases::effect("squareness"), cases::effect("straightness", 3)});
-  problem.trace.candidates = effect_names();
+  const Problem problem = of_carriages();
   std::vector<Profile> cuts = warmed(std::nullopt, 7);
   cuts[2].setup.start_s = 372.0;
   const Closed result = closed(problem, cuts);
@@ -202,9 +204,7 @@ TEST(Disagreement, ASignBeyondDoubtStandsBesideAnotherFault) {
   for (std::size_t i = 0; i < cuts[0].values.size(); ++i)
     cuts[0].values[i] += 5e-5 * std::exp(-std::pow((cuts[0].positions[i] - 20.0) / 3.0, 2));
   for (double& value : cuts[2].values) value = -value;
-  Problem problem = cases::problem(Lever::paper, 1,
-                                   {cases::effect("squareness"), cases::effect("straightness", 3)});
-  problem.trace.candidates = effect_names();
+  const Problem problem = of_carriages();
   const Closed result = closed(problem, cuts);
   SCOPED_TRACE(story(result));
   ASSERT_FALSE(result.blunders.empty());
@@ -215,9 +215,7 @@ TEST(Disagreement, ASignBeyondDoubtStandsBesideAnotherFault) {
 // Metres declared as millimetres: the whole bow lies within 40 µm of the axis, where a narrow form
 // of all cuts would hide it.
 TEST(Disagreement, NoEffectOutweighsAnotherUnitOfThePositions) {
-  Problem problem = cases::problem(Lever::paper, 1,
-                                   {cases::effect("squareness"), cases::effect("straightness", 3)});
-  problem.trace.candidates = effect_names();
+  const Problem problem = of_carriages();
   std::vector<Profile> cuts = bowed();
   for (double& position : cuts[1].positions) position /= 1000.0;
   cuts[1].setup.first_mm /= 1000.0;
