@@ -9,15 +9,19 @@ namespace {
 
 constexpr Eigen::Index kPlaces = 256;  // a polynomial of degree 20 is straight between them
 
-bool crosses_axis(const Profile& profile) {
-  return profile.role == Role::fit && specimen("centring").applies_to(profile.setup);
+bool may_go_with_face(const Profile& profile) {
+  return profile.role == Role::fit &&
+         std::ranges::any_of(effect_names(), [&](const std::string& name) {
+           const Effect& effect = specimen(name);
+           return effect.description().of_face && effect.applies_to(profile.setup);
+         });
 }
 
 }  // namespace
 
 std::shared_ptr<const FaceSlope> face_slope(const Model& model, const Estimate& estimate) {
   const auto shown = std::ranges::find_if(
-      model.observations, [](const Observation& each) { return crosses_axis(*each.profile); });
+      model.observations, [](const Observation& each) { return may_go_with_face(*each.profile); });
   if (shown == model.observations.end()) return nullptr;
   const Setup& setup = shown->profile->setup;
   const double farthest =
