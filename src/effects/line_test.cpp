@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -12,8 +13,10 @@ namespace slideway {
 namespace {
 
 constexpr std::array<int, 12> kBeside{-9, -8, -7, -6, -5, -4, 4, 5, 6, 7, 8, 9};  // cycles
-constexpr double kIndependent = 8.0;  // of them under a Hann window: its noise is 1.5 bins wide
-constexpr Eigen::Index kTerms = 4;    // of a cubic
+constexpr double kFarthestBeside = 12.0;  // with the width of a line
+constexpr double kIndependent = 8.0;      // of them under a Hann window: its noise is 1.5 bins wide
+constexpr double kMostReached = 0.01;  // of the square of a line beside, by the line itself folded
+constexpr Eigen::Index kTerms = 4;     // of a cubic
 
 }  // namespace
 
@@ -54,24 +57,42 @@ Eigen::MatrixXd LineTest::columns(const std::vector<Eigen::VectorXd>& phases) co
   return out;
 }
 
-double LineTest::gain(const Eigen::VectorXd& phase) const {
-  const Eigen::MatrixX2d own = columns(phase);
+double LineTest::gain(const Eigen::MatrixX2d& own) const {
   const Eigen::Matrix2d gram = own.transpose() * own;
   const Eigen::Vector2d products = own.transpose() * values_;
   const Eigen::FullPivLU<Eigen::Matrix2d> lu(gram);
   return lu.isInvertible() ? products.dot(lu.solve(products)) : 0.0;
 }
 
-double LineTest::gain_beside(const Eigen::VectorXd& phase) const {
-  double out = 0.0;
-  for (const int cycles : kBeside) out += gain(phase + cycles * turn_);
-  return out / static_cast<double>(kBeside.size());
+LineTest::Beside LineTest::gain_beside(const Eigen::VectorXd& phase) const {
+  const std::vector<Eigen::VectorXd> own{phase};
+  Beside out;
+  for (const int cycles : kBeside) {
+    const Eigen::VectorXd other = phase + cycles * turn_;
+    if (!stands_apart(other, own, kMostReached)) continue;
+    out.mean += gain(columns(other));
+    out.count += 1.0;
+  }
+  out.mean /= std::max(out.count, 1.0);
+  return out;
 }
 
 double LineTest::p_value(const Eigen::VectorXd& phase) const {
-  const double own = gain(phase), beside = gain_beside(phase);
-  if (!(beside > 0.0)) return own > 0.0 ? 0.0 : 1.0;
-  return std::pow(1.0 + own / beside / kIndependent, -kIndependent);
+  const double own = gain(columns(phase));
+  const Beside beside = gain_beside(phase);
+  if (beside.count == 0.0) return 1.0;
+  if (!(beside.mean > 0.0)) return own > 0.0 ? 0.0 : 1.0;
+  const double independent = kIndependent * beside.count / std::ssize(kBeside);
+  return std::pow(1.0 + own / beside.mean / independent, -independent);
+}
+
+bool LineTest::is_fast(const Eigen::VectorXd& phase) const {
+  const Eigen::Index steps = phase.size() - 1;
+  const auto turns = [&](const Eigen::VectorXd& angle) -> Eigen::ArrayXd {
+    return (angle.tail(steps) - angle.head(steps)).array() / (2.0 * kPi);
+  };
+  const Eigen::ArrayXd own = turns(phase);
+  return (own - own.round()).abs().mean() > kFarthestBeside * turns(turn_).abs().mean();
 }
 
 bool LineTest::stands_apart(const Eigen::VectorXd& phase,
@@ -94,7 +115,7 @@ LineTest::Amplitudes LineTest::amplitudes(const std::vector<Eigen::VectorXd>& ph
       gram.solve(Eigen::MatrixXd::Identity(all.cols(), all.cols())).diagonal().cwiseSqrt();
   for (Eigen::Index k = 0; k < std::ssize(phases); ++k)  // a gain has two degrees of freedom
     out.uncertainties.segment(2 * k, 2) *=
-        std::sqrt(0.5 * gain_beside(phases[static_cast<std::size_t>(k)]));
+        std::sqrt(0.5 * gain_beside(phases[static_cast<std::size_t>(k)]).mean);
   return out;
 }
 

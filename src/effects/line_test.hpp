@@ -22,6 +22,9 @@ class LineTest {
   // Probability that noise makes a line as strong. `phase` (rad), one for each value.
   [[nodiscard]] double p_value(const Eigen::VectorXd& phase) const;
 
+  // Whether the lines beside it are faster than what the form and a slow noise leave.
+  [[nodiscard]] bool is_fast(const Eigen::VectorXd& phase) const;
+
   // Of lines: amplitudes of the cosine and the sine of each, fitted together, and their standard
   // uncertainties by the spectrum beside each of them.
   struct Amplitudes {
@@ -38,8 +41,13 @@ class LineTest {
   [[nodiscard]] Eigen::MatrixXd weighted(const Eigen::MatrixXd& columns) const;
   [[nodiscard]] Eigen::MatrixX2d columns(const Eigen::VectorXd& phase) const;
   [[nodiscard]] Eigen::MatrixXd columns(const std::vector<Eigen::VectorXd>& phases) const;
-  [[nodiscard]] double gain(const Eigen::VectorXd& phase) const;
-  [[nodiscard]] double gain_beside(const Eigen::VectorXd& phase) const;
+  [[nodiscard]] double gain(const Eigen::MatrixX2d& own) const;
+  // Mean of the lines beside a line, and how many of them it does not reach, folded.
+  struct Beside {
+    double mean = 0.0;
+    double count = 0.0;
+  };
+  [[nodiscard]] Beside gain_beside(const Eigen::VectorXd& phase) const;
 
   Eigen::VectorXd window_;
   Eigen::MatrixXd form_;    // orthonormal: the cubic under the window

@@ -1,11 +1,9 @@
 #include "dictionary.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
-#include <tuple>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/parallel.hpp"
@@ -101,8 +99,7 @@ class Viewer {
 };
 
 /// What the problem lacks for an effect to be looked for, or nothing.
-/// @return  and whether it is nothing but that the effect acts in one profile only
-std::pair<std::string, bool> needs(const Model& model, const ModelTerm& term) {
+std::string needs(const Model& model, const ModelTerm& term) {
   std::vector<const Setup*> shown;
   std::vector<std::string> keys;
   for (const Observation& observation : model.observations) {
@@ -112,12 +109,8 @@ std::pair<std::string, bool> needs(const Model& model, const ModelTerm& term) {
     for (const std::string& key : term.effect->lacking(setup))
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
   }
-  if (!keys.empty()) return {joined(keys), false};
-  if (shown.empty()) return {"a reading that shows it", false};
-  const auto alone = [&](const Setup* setup) {
-    return term.effect->lacking_together({setup}).empty();
-  };
-  return {joined(term.effect->lacking_together(shown)), std::ranges::all_of(shown, alone)};
+  if (!keys.empty()) return joined(keys);
+  return shown.empty() ? "a reading that shows it" : joined(term.effect->lacking_together(shown));
 }
 
 void lay_out(const Viewer& viewer, ShapeLattice grid, Candidate& candidate) {
@@ -155,9 +148,8 @@ std::vector<EffectOptions> hypotheses_of(const Effect& effect, const EffectOptio
 
 /// The hypotheses about an effect: it is missing, or it needs more terms than the one declared of
 /// that name. None where the problem declares several of it.
-/// @param apart  those that can only be of one profile each
 void add_hypotheses(const Model& model, const Problem& problem, const std::string& name,
-                    const Viewer& viewer, Dictionary& out, std::vector<Candidate>& apart) {
+                    const Viewer& viewer, Dictionary& out) {
   const auto of_name = [&](const DeclaredEffect& effect) { return effect.name == name; };
   const auto declared = std::ranges::find_if(problem.effects, of_name);
   const bool any = declared != problem.effects.end();
@@ -175,28 +167,18 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
     candidate.options = options;
     candidate.options.above.reset();
     candidate.raises_degree = any;
-    bool one_profile = false;
     try {
       candidate.term.effect = make_effect(name, options, model.machine, model.range);
-      std::tie(missing, one_profile) = needs(model, candidate.term);
+      missing = needs(model, candidate.term);
     } catch (const UsageError& error) {  // the machine lacks what the effect needs
       missing = error.what();
     }
-    if (!missing.empty() && !one_profile) continue;
+    if (!missing.empty()) continue;
     lay_out(model, viewer, candidate);
-    (missing.empty() ? out.candidates : apart).push_back(std::move(candidate));
+    out.candidates.push_back(std::move(candidate));
     added = true;
   }
   if (!added && !missing.empty()) out.not_testable.push_back({name, missing});
-}
-
-/// Whether sampling folds a column of a candidate of one profile onto another, or onto what is free
-/// in the trace.
-bool is_folded(const Model& model, const Candidate& candidate) {
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(model.gates.rank_tolerance);
-  qr.compute(levelled(*fitted_observations(model)[*candidate.only], candidate.columns_of(0, 1)));
-  return qr.rank() < candidate.amplitudes();
 }
 
 /// An effect that is looked for with the options the problem gives it.
@@ -208,7 +190,7 @@ void add_own(const Model& model, const Problem& problem, const DeclaredEffect& o
   candidate.term.profiles = own.options.profiles;
   candidate.options = own.options;
   candidate.term.effect = make_effect(own.name, own.options, model.machine, model.range);
-  const std::string missing = needs(model, candidate.term).first;
+  const std::string missing = needs(model, candidate.term);
   if (!missing.empty()) return out.not_testable.push_back({candidate.term.name, missing});
   lay_out(model, viewer, candidate);
   out.candidates.push_back(std::move(candidate));
@@ -290,12 +272,9 @@ void lay_out(const Model& model, Eigen::Index prior_rows, ShapeLattice grid, Can
 Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows) {
   Dictionary out;
   const Viewer viewer(model, prior_rows);
-  std::vector<Candidate> apart, alone;
+  std::vector<Candidate> alone;
   for (const std::string& name : problem.trace.candidates)
-    add_hypotheses(model, problem, name, viewer, out, apart);
-  for (const Candidate& each : apart)
-    std::ranges::move(in_one_profile(model, each), std::back_inserter(alone));
-  std::erase_if(alone, [&](const Candidate& each) { return is_folded(model, each); });
+    add_hypotheses(model, problem, name, viewer, out);
   for (const DeclaredEffect& own : problem.trace.own) add_own(model, problem, own, viewer, out);
   for (const Candidate& whole : out.candidates) {
     std::ranges::move(in_one_profile(model, whole), std::back_inserter(alone));

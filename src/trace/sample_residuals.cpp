@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "dictionary.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
@@ -49,11 +50,12 @@ bool SampleResiduals::have(const Refined& effect) const {
   for (const Trace& trace : traces_) {
     if (!term.acts_on(*trace.profile)) continue;
     const auto lines = term.effect->lines(trace.profile->stations(model_.machine), effect.shape);
-    const bool is_fast = std::ranges::any_of(lines, [&](const LineBand& line) {
-      return line.low > static_cast<double>(model_.amplitudes());
-    });
+    const bool may_be_folded =
+        is_kinematic(*effect.candidate) || std::ranges::any_of(lines, [&](const LineBand& line) {
+          return line.low > static_cast<double>(model_.amplitudes());
+        });
     const double square = trace.residual.squaredNorm();
-    if (!is_fast || square == 0.0) continue;
+    if (!may_be_folded || square == 0.0) continue;
     const Eigen::VectorXd signal = trace.levelled(
         effect_signal(model_, term, *trace.profile, effect.projection.amplitudes, effect.shape));
     fall += (2.0 * trace.residual.dot(signal) - signal.squaredNorm()) / square;

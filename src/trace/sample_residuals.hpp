@@ -16,9 +16,9 @@ class SampleResiduals {
   SampleResiduals(const Model& model, const Solution& fit);
 
   /// Whether the square of the residual, a sum over all profiles in which the effect shows lines,
-  /// falls with the effect as the low band has it. True for an effect without lines, for lines of
-  /// fewer cycles than the model has amplitudes, which follow them, and where the low band is the
-  /// samples.
+  /// falls with the effect as the low band has it; so for feed marks. True for any other effect
+  /// without lines, for lines of fewer cycles than the model has amplitudes, which follow them, and
+  /// where the low band is the samples.
   [[nodiscard]] bool have(const Refined& effect) const;
 
  private:

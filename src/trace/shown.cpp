@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "dictionary.hpp"
 #include "search.hpp"
@@ -20,22 +21,31 @@ ModelTerm term_of(const Model& model, const std::string& name, const EffectOptio
           {}};
 }
 
-/// What each of some parameters does to the low band of a profile, one column each.
+/// What each of some parameters does to the low band of a profile, one column each: its value, and
+/// behind those its standard uncertainty.
 Eigen::MatrixXd images(const Model& model, const ModelTerm& term, const std::vector<Prior>& values,
                        const Observation& observation) {
   const Eigen::MatrixXd columns = low_band_columns(model, term, observation, {});
-  Eigen::VectorXd of_parameters(std::ssize(values));
-  for (std::size_t p = 0; p < values.size(); ++p)
-    of_parameters[static_cast<Eigen::Index>(p)] = values[p].value;
-  return columns * term.effect->from_parameters(of_parameters).asDiagonal();
+  Eigen::VectorXd of_values(std::ssize(values)), of_uncertainties(std::ssize(values));
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const auto k = static_cast<Eigen::Index>(p);
+    of_values[k] = values[p].value;
+    of_uncertainties[k] = values[p].standard_uncertainty;
+  }
+  Eigen::MatrixXd out(columns.rows(), 2 * columns.cols());
+  out << columns * term.effect->from_parameters(of_values).asDiagonal(),
+      columns * term.effect->from_parameters(of_uncertainties).asDiagonal();
+  return out;
 }
 
 /// What the low band of a profile shows beside the model.
 struct Beside {
-  Eigen::MatrixXd images;
-  // Of what is faster than slow cosines: the square without and with the images, what the columns
-  // of the effect without options take of it, and their number.
-  double before = 0.0, after = 0.0, taken_by_whole = 0.0, columns_of_whole = 0.0;
+  Eigen::MatrixXd images;  // of the values of parameters, and behind those of their uncertainties
+  // Of what is faster than slow cosines: the square without and with the images, that of their sum,
+  // its product with the values, what the columns of the effect without options take, and their
+  // number.
+  double before = 0.0, after = 0.0, of_sum = 0.0, shared = 0.0;
+  double taken_by_whole = 0.0, columns_of_whole = 0.0;
   double degrees = 0.0;  // of freedom of what is fast
 
   Beside(const Model& model, const Estimate& estimate, const Observation& observation,
@@ -53,12 +63,22 @@ struct Beside {
     all -= slow * (slow.transpose() * all).eval();
     const Eigen::VectorXd values = all.col(parts + of_whole.cols());
     const Eigen::MatrixXd whole = orthonormal(all.middleCols(parts, of_whole.cols()));
+    const Eigen::VectorXd sum = all.leftCols(parts / 2).rowwise().sum();
     before = values.squaredNorm();
-    after = (values - all.leftCols(parts).rowwise().sum()).squaredNorm();
+    shared = values.dot(sum);
+    of_sum = sum.squaredNorm();
+    after = (values - sum).squaredNorm();
     taken_by_whole = (whole.transpose() * values).squaredNorm();
     columns_of_whole = static_cast<double>(whole.cols());
     degrees = static_cast<double>(n - observation.left_out() - form.cols() - slow.cols() -
                                   std::ssize(observation.nuisance_names));
+  }
+
+  /// Of the images together, to be expected.
+  [[nodiscard]] double square() const {
+    const Eigen::Index parameters = images.cols() / 2;
+    return images.leftCols(parameters).rowwise().sum().squaredNorm() +
+           images.rightCols(parameters).squaredNorm();
   }
 };
 
@@ -69,12 +89,26 @@ bool whole_takes_as_much(const Beside& beside) {
          beside.taken_by_whole - noise * beside.columns_of_whole * std::log(beside.degrees);
 }
 
+constexpr double kLeast = 0.5;    // of the noise of a value, or of what the samples say
+constexpr double kCertain = 2.0;  // standard uncertainties
+
+/// Whether the image is not far below the noise of the low band, and what is fast in that does not
+/// have for certain less than half of it.
+bool has_image(const Beside& beside) {
+  const double noise = beside.after / beside.degrees;
+  return beside.square() >= kLeast * kLeast * beside.degrees * noise &&
+         beside.shared + kCertain * std::sqrt(noise * beside.of_sum) >= kLeast * beside.of_sum;
+}
+
 /// The harmonics whose image in the low band is not below its noise.
 std::vector<std::size_t> seen_in(const Beside& beside) {
   std::vector<std::size_t> out;
   const double noise = beside.after / beside.degrees;
-  for (Eigen::Index h = 0; 2 * h < beside.images.cols(); ++h)
-    if (beside.images.middleCols(2 * h, 2).squaredNorm() >= noise)
+  const Eigen::Index parameters = beside.images.cols() / 2;
+  for (Eigen::Index h = 0; 2 * h < parameters; ++h)
+    if (beside.images.middleCols(2 * h, 2).squaredNorm() +
+            beside.images.middleCols(parameters + 2 * h, 2).squaredNorm() >=
+        noise)
       out.push_back(static_cast<std::size_t>(h));
   return out;
 }
@@ -95,16 +129,17 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
                       images(model, term_of(model, name, options), seen->values, observation),
                       low_band_columns(model, term_of(model, name, whole), observation, {}));
   if (beside.degrees < 1.0) return std::nullopt;
-  ShownEffect out{{name, whole, {}}, seen->p_value, 0.0};
+  ShownEffect out{{name, whole, {}}, seen->p_value};
   for (const Prior& value : seen->values) out.depth += kMicrometre * std::abs(value.value);
+  if (!has_image(beside)) return std::nullopt;
   if (whole_takes_as_much(beside)) return out;
-  if (beside.after > 0.5 * beside.before) return std::nullopt;
   for (const std::size_t h : seen_in(beside)) {
     out.effect.options.harmonics.push_back(options.harmonics[h]);
     out.effect.priors.push_back(seen->values[2 * h]);
     out.effect.priors.push_back(seen->values[2 * h + 1]);
   }
-  if (!out.is_settled()) return std::nullopt;
+  out.is_settled = !out.effect.priors.empty();
+  if (!out.is_settled) return std::nullopt;
   return out;
 }
 
@@ -170,8 +205,12 @@ std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedMo
   std::vector<ShownEffect> out;
   for (const std::string& name : problem.trace.candidates) {
     if (std::ranges::count(problem.effects, name, &DeclaredEffect::name) > 0) continue;
+    const std::size_t first = out.size();
     for (const Observation* observation : declared.fit.linear.observations)
       if (auto shown = shown_in(declared, name, *observation)) out.push_back(*std::move(shown));
+    const std::span<ShownEffect> own(out.begin() + static_cast<std::ptrdiff_t>(first), out.end());
+    const bool any = std::ranges::any_of(own, &ShownEffect::is_settled);
+    for (ShownEffect& each : own) each.is_settled = any;  // none of all profiles beside one
   }
   return out;
 }
@@ -185,9 +224,9 @@ ShownModel with_shown(const FittedModel& declared, const std::vector<ShownEffect
     append_term(model, each.effect, model.range);
     FittedModel with = fit_model(std::move(model));
     const ValueIndices ends = ends_beside(with, each);
-    Model rest = each.is_settled() ? with.model : without.model;
+    Model rest = each.is_settled ? with.model : without.model;
     const bool fewer = leave_out(observation_of(rest, each), ends);
-    if (each.is_settled()) {
+    if (each.is_settled) {
       if (fewer) with = fit_model(std::move(rest));
       rounds.push_back(round_of(each, without, with));
       last.emplace(std::move(with));

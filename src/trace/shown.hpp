@@ -10,13 +10,12 @@ namespace slideway {
 /// An effect of one profile that its samples show for certain (Effect::shown_by()), and its low
 /// band, too.
 struct ShownEffect {
-  DeclaredEffect effect;  // with the values of the samples as priors, if it is settled
+  DeclaredEffect effect;  // as the low band has it; harmonics with the values of the samples
   double p_value = 1.0;   // of the samples
   double depth = 0.0;     // sum of its amplitudes, mm
-
-  /// Whether the samples say what the low band has of it. Where the effect without options explains
-  /// as much, its form is a matter of the search.
-  [[nodiscard]] bool is_settled() const { return !effect.priors.empty(); }
+  /// Whether it is in the model before the search. Where the effect without options explains as
+  /// much in each profile that shows it, one of all profiles is a matter of the search.
+  bool is_settled = false;
 };
 
 /// Those of the candidates. Feed marks that samples resolve and the low band folds would else be a
@@ -24,8 +23,8 @@ struct ShownEffect {
 ///
 /// Its parameters have the values of the samples as priors: the low band, which folds and damps
 /// them, knows them less. Those whose image in the low band is below its noise are left out. None
-/// is taken where they are less than half of what the low band has faster than slow cosines, which
-/// is a matter of the search.
+/// is taken where all together are below half the noise of a value, or where what the low band has
+/// faster than slow cosines holds less than half of them.
 std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedModel& declared);
 
 /// The model with those of these effects that are settled, fitted, and a round for each of them as

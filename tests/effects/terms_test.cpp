@@ -1,5 +1,6 @@
 // What the carriage model lacks: each effect against its formula's numbers, worked out by hand or
 // taken from the literature of the project (R = 10 mm, 110 rpm, feeds of 2 and 8 mm/min).
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -132,6 +133,41 @@ TEST(FeedMarks, AreSeenInSamplesWithTheHarmonicsOfAParabola) {
     EXPECT_NEAR(cosine.value, truth, 5.0 * cosine.standard_uncertainty) << h;
     EXPECT_LT(cosine.standard_uncertainty, 0.01) << h;
   }
+}
+
+// Read at the rate of the fifth harmonic, a wave of 0.5 µm: that of a parabola has 0.03 µm, and no
+// convex edge leaves twice as much.
+TEST(FeedMarks, HaveNoHarmonicThatAConvexEdgeCannotLeave) {
+  const Case here = face(spaced(0.3, 9.7, 760), 6.1);
+  std::vector<double> values = marked(here, 2.0, 7);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] += 0.5e-3 * std::cos(2.0 * kPi * 5.0 * here.positions[i] * 110.0 / 6.1);
+  const auto shown =
+      specimen("feed_marks").shown_by({here.positions, here.setup, lathe()}, values, 1e-3);
+  ASSERT_TRUE(shown);
+  EXPECT_THAT(shown->options.harmonics, ::testing::IsSupersetOf({1, 2, 3}));
+  EXPECT_THAT(shown->options.harmonics, ::testing::Not(::testing::Contains(5)));
+}
+
+// A groove every 2.017 samples: the line lies 3.3 cycles below half the sampling rate, and its
+// mirror image as many above.
+TEST(FeedMarks, AreSeenNearHalfTheSamplingRate) {
+  const Case here = face(spaced(0.3, 9.7, 760), 2.7474);
+  const double amplitude = 2.0;
+  const auto shown =
+      specimen("feed_marks")
+          .shown_by({here.positions, here.setup, lathe()}, marked(here, amplitude, 7), 1e-3);
+  ASSERT_TRUE(shown);
+  EXPECT_EQ(shown->options.harmonics.front(), 1);
+  EXPECT_NEAR(shown->values[0].value, -4.0 * amplitude / (kPi * kPi), 0.1 * amplitude);
+}
+
+// A groove in 0.993 of the distance of two samples: five cycles over the trace, where the form and
+// slow effects are.
+TEST(FeedMarks, AreNotSeenWhereSamplingFoldsThemToASlowWave) {
+  const Case here = face(spaced(0.3, 9.7, 760), 1.3533);
+  EXPECT_FALSE(specimen("feed_marks")
+                   .shown_by({here.positions, here.setup, lathe()}, marked(here, 2.0, 7), 1e-3));
 }
 
 TEST(FeedMarks, AreNotSeenInNoise) {

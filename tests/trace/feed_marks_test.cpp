@@ -2,6 +2,7 @@
 // phase differs from cut to cut; deep ones stand far above the noise.
 
 #include <array>
+#include <cmath>
 
 #include "slideway/base/units.hpp"
 #include "trace/faces.hpp"
@@ -23,8 +24,9 @@ using Designs = std::array<Design, 3>;
 /// Radii of three cuts read at one place in 44 µm, noise of 20 nm. Where each cut began is not
 /// known to a groove.
 /// `walk`: standard deviation of the steps of a random walk of the instrument, mm.
+/// `error`: of the tool, beside those of the carriage.
 std::vector<Profile> read(const Designs& designs, double nose_mm, std::uint64_t seed,
-                          double walk = 0.0) {
+                          double walk = 0.0, const turning::Error& error = {}) {
   const turning::Carriage carriage{{0.0, 0.0, 2e-7, -6e-9}, {}, turning::kFaceSquareness};
   std::vector<Profile> out;
   for (const Design& design : designs) {
@@ -34,8 +36,9 @@ std::vector<Profile> read(const Designs& designs, double nose_mm, std::uint64_t 
     cut.spindle_rpm = 110.0;
     cut.inward = design.inward;
     cut.nose_radius_mm = nose_mm;
-    const turning::Face face(
-        cut, [&](const turning::ToolPoint& p) { return turning::one_lever(carriage, p); });
+    const turning::Face face(cut, [&](const turning::ToolPoint& p) {
+      return turning::one_lever(carriage, p) + (error ? error(p) : 0.0);
+    });
     turning::Stylus stylus;
     stylus.noise = {.white = 2e-5};
     Profile& profile = out.emplace_back();
@@ -89,6 +92,25 @@ TEST(FeedMarks, OfAnOrdinaryFeedAreTakenFromTheSamples) {
     EXPECT_TRUE(result.blunders.empty());
     EXPECT_EQ(result.verdict, TraceVerdict::explained);
     EXPECT_EQ(named(result), std::vector<std::string>());
+    expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
+  }
+}
+
+// 71, 176 and 71 µm a turn, grooves of 0.4 to 2.6 µm. Read every 44 µm and averaged by fours, those
+// of the second cut return as a wave of a few cycles: only the samples tell how large it is.
+TEST(FeedMarks, OfWhichTheLowBandHasASlowWaveAreTakenFromTheSamples) {
+  const Designs designs{{{7.77, 20.0031, true}, {19.38, 20.0173, true}, {7.77, 20.0, false}}};
+  const auto running_in = [](const turning::ToolPoint& p) {
+    return 0.4e-3 * -std::expm1(-p.s / 4e3);
+  };
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Problem problem = problem_of();
+    problem.low_band.level = 2;
+    const Closed result = closed(problem, read(designs, 1.5, seed, 0.0, running_in));
+    SCOPED_TRACE(story(result));
+    EXPECT_EQ(result.verdict, TraceVerdict::explained);
+    EXPECT_EQ(named(result), std::vector<std::string>{"tool_running_in"});
+    expect_within_4u(result.final.parameters, "tool_running_in.amplitude_um", 0.4);
     expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
   }
 }

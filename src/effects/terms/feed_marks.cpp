@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <functional>
 
@@ -17,6 +18,7 @@ constexpr Eigen::Index kMostSamples = 4096;  // looked at for lines
 constexpr Eigen::Index kLeastSamples = 64;
 constexpr double kEnds = 2.0;        // grooves at the axis and at the rim, which have another form
 constexpr double kMostShared = 0.9;  // of the square of a harmonic with others, folded
+constexpr double kCertain = 2.0;     // standard uncertainties
 
 Description describe_feed_marks() {
   return {.name = "feed_marks",
@@ -48,6 +50,54 @@ double scallop(const Stations& stations, Eigen::Index i) {
   return 4.0 * u * u - 1.0 / 3.0;
 }
 
+struct Harmonic {
+  int order = 1;
+  Eigen::Vector2d values, uncertainties;  // of the cosine and the sine, mm
+};
+
+/// The edge of a tool is convex and leaves a ridge, where the slope jumps: a harmonic of its groove
+/// is at most twice that of a parabola, which goes with 1/h².
+double most_of_first(int order) { return 2.0 / (order * order); }
+
+/// The harmonics of known phase 2πu, from the first one on, that stand out of the spectrum and that
+/// a groove can have.
+std::vector<Harmonic> resolved(const LineTest& lines, const Eigen::VectorXd& phase,
+                               double significance) {
+  std::vector<int> orders;
+  std::vector<Eigen::VectorXd> phases;
+  for (int h = 1; h <= kMostHarmonics; ++h) {
+    const Eigen::VectorXd own = h * phase;
+    if (h > 1 && (!lines.is_fast(own) || lines.p_value(own) > significance)) continue;
+    if (!lines.stands_apart(own, phases, kMostShared)) continue;
+    phases.push_back(own);
+    orders.push_back(h);
+  }
+  const auto fitted = [&] {
+    const LineTest::Amplitudes of = lines.amplitudes(phases);
+    std::vector<Harmonic> out;
+    for (std::size_t k = 0; k < orders.size(); ++k) {
+      const auto at = 2 * static_cast<Eigen::Index>(k);
+      out.push_back({orders[k], of.values.segment<2>(at), of.uncertainties.segment<2>(at)});
+    }
+    return out;
+  };
+  const std::vector<Harmonic> all = fitted();
+  for (std::size_t k = all.size(); k-- > 1;) {
+    const double certain = all[k].values.norm() - kCertain * all[k].uncertainties.norm();
+    if (certain <= most_of_first(all[k].order) * all[0].values.norm()) continue;
+    phases.erase(phases.begin() + static_cast<std::ptrdiff_t>(k));
+    orders.erase(orders.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  return fitted();
+}
+
+/// A harmonic of which only the first one is known: any part of that of a parabola, with any phase,
+/// as the nose and the stylus round the ridge.
+Harmonic within_parabola(const Harmonic& first, int order) {
+  const double most = first.values.norm() / (order * order);
+  return {order, Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(most / std::sqrt(3.0))};
+}
+
 std::vector<Parameter> parameters_of(const std::vector<int>& harmonics) {
   std::vector<Parameter> list;
   for (const int h : harmonics) {
@@ -77,20 +127,10 @@ class FeedMarks : public LinearEffect {
       out(i, 0) = part * part * scallop(stations, i);
   }
 
-  // Besides: in one cut, with the harmonics the data ask for.
-  [[nodiscard]] std::vector<EffectOptions> hypotheses(
-      const EffectOptions* declared) const override {
-    if (declared) return {};
-    std::vector<EffectOptions> out(1);
-    for (const int last : {1, 2, 3, 4, 6, 8}) {
-      std::vector<int>& harmonics = out.emplace_back().harmonics;
-      for (int h = 1; h <= last; ++h) harmonics.push_back(h);
-    }
-    return out;
-  }
-
   // The harmonics that stand out of the spectrum of the samples, where the first one is one of
-  // them: sampling may have folded them, but the grooves of a cut lie where its feed says.
+  // them: sampling may have folded them, but the grooves of a cut lie where its feed says. Of those
+  // it has folded to slow waves, which no spectrum tells from other errors, the first one is a
+  // bound.
   [[nodiscard]] std::optional<ShownBySamples> shown_by(const Stations& stations,
                                                        std::span<const double> values,
                                                        double significance) const override {
@@ -109,21 +149,18 @@ class FeedMarks : public LinearEffect {
         values.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)), radii,
         weights);
     ShownBySamples out{.options = {}, .values = {}, .p_value = lines.p_value(phase)};
-    if (out.p_value > significance) return std::nullopt;
-    std::vector<Eigen::VectorXd> shown;
-    for (int h = 1; h <= kMostHarmonics; ++h) {
-      const Eigen::VectorXd own = h * phase;
-      if (h > 1 && lines.p_value(own) > significance) continue;
-      if (!lines.stands_apart(own, shown, kMostShared)) continue;
-      shown.push_back(own);
-      out.options.harmonics.push_back(h);
-    }
-    const auto [amplitudes, uncertainties] = lines.amplitudes(shown);
+    if (out.p_value > significance || !lines.is_fast(phase)) return std::nullopt;
+    std::vector<Harmonic> harmonics = resolved(lines, phase, significance);
+    for (int h = 2; h <= kMostHarmonics; ++h)
+      if (!lines.is_fast(h * phase)) harmonics.push_back(within_parabola(harmonics[0], h));
+    std::ranges::sort(harmonics, {}, &Harmonic::order);
+    for (const Harmonic& each : harmonics) out.options.harmonics.push_back(each.order);
     const std::vector<Parameter> parameters = parameters_of(out.options.harmonics);
     for (std::size_t p = 0; p < parameters.size(); ++p) {
-      const auto k = static_cast<Eigen::Index>(p);
+      const Harmonic& each = harmonics[p / 2];
+      const auto k = static_cast<Eigen::Index>(p % 2);
       out.values.push_back(
-          {parameters[p].name, amplitudes[k] / kMicrometre, uncertainties[k] / kMicrometre});
+          {parameters[p].name, each.values[k] / kMicrometre, each.uncertainties[k] / kMicrometre});
     }
     return out;
   }
