@@ -18,6 +18,15 @@ constexpr double kIndependent = 8.0;      // of them under a Hann window: its no
 constexpr double kMostReached = 0.01;  // of the square of a line beside, by the line itself folded
 constexpr Eigen::Index kTerms = 4;     // of a cubic
 
+bool are_apart(const Eigen::MatrixX2d& own, const Eigen::HouseholderQR<Eigen::MatrixXd>& others,
+               double share) {
+  const Eigen::MatrixXd inside = others.householderQ().transpose() * own;
+  for (Eigen::Index j = 0; j < 2; ++j)
+    if (!(inside.col(j).head(others.cols()).squaredNorm() < share * own.col(j).squaredNorm()))
+      return false;
+  return true;
+}
+
 }  // namespace
 
 LineTest::LineTest(std::span<const double> values, const Eigen::VectorXd& places,
@@ -64,13 +73,14 @@ double LineTest::gain(const Eigen::MatrixX2d& own) const {
   return lu.isInvertible() ? products.dot(lu.solve(products)) : 0.0;
 }
 
-LineTest::Beside LineTest::gain_beside(const Eigen::VectorXd& phase) const {
-  const std::vector<Eigen::VectorXd> own{phase};
+LineTest::Beside LineTest::gain_beside(const Eigen::VectorXd& phase,
+                                       const Eigen::MatrixX2d& own) const {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> line(own);
   Beside out;
   for (const int cycles : kBeside) {
-    const Eigen::VectorXd other = phase + cycles * turn_;
-    if (!stands_apart(other, own, kMostReached)) continue;
-    out.mean += gain(columns(other));
+    const Eigen::MatrixX2d other = columns(phase + cycles * turn_);
+    if (!are_apart(other, line, kMostReached)) continue;
+    out.mean += gain(other);
     out.count += 1.0;
   }
   out.mean /= std::max(out.count, 1.0);
@@ -78,8 +88,9 @@ LineTest::Beside LineTest::gain_beside(const Eigen::VectorXd& phase) const {
 }
 
 double LineTest::p_value(const Eigen::VectorXd& phase) const {
-  const double own = gain(columns(phase));
-  const Beside beside = gain_beside(phase);
+  const Eigen::MatrixX2d line = columns(phase);
+  const double own = gain(line);
+  const Beside beside = gain_beside(phase, line);
   if (beside.count == 0.0) return 1.0;
   if (!(beside.mean > 0.0)) return own > 0.0 ? 0.0 : 1.0;
   const double independent = kIndependent * beside.count / std::ssize(kBeside);
@@ -99,12 +110,7 @@ bool LineTest::stands_apart(const Eigen::VectorXd& phase,
                             const std::vector<Eigen::VectorXd>& others, double share) const {
   const Eigen::MatrixX2d own = columns(phase);
   if (others.empty()) return own.squaredNorm() > 0.0;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns(others));
-  const Eigen::MatrixXd inside = qr.householderQ().transpose() * own;
-  const Eigen::Index known = 2 * std::ssize(others);
-  for (Eigen::Index j = 0; j < 2; ++j)
-    if (!(inside.col(j).head(known).squaredNorm() < share * own.col(j).squaredNorm())) return false;
-  return true;
+  return are_apart(own, Eigen::HouseholderQR<Eigen::MatrixXd>(columns(others)), share);
 }
 
 LineTest::Amplitudes LineTest::amplitudes(const std::vector<Eigen::VectorXd>& phases) const {
@@ -114,8 +120,8 @@ LineTest::Amplitudes LineTest::amplitudes(const std::vector<Eigen::VectorXd>& ph
   out.uncertainties =
       gram.solve(Eigen::MatrixXd::Identity(all.cols(), all.cols())).diagonal().cwiseSqrt();
   for (Eigen::Index k = 0; k < std::ssize(phases); ++k)  // a gain has two degrees of freedom
-    out.uncertainties.segment(2 * k, 2) *=
-        std::sqrt(0.5 * gain_beside(phases[static_cast<std::size_t>(k)]).mean);
+    out.uncertainties.segment(2 * k, 2) *= std::sqrt(
+        0.5 * gain_beside(phases[static_cast<std::size_t>(k)], all.middleCols(2 * k, 2)).mean);
   return out;
 }
 

@@ -37,8 +37,7 @@ std::unique_ptr<SearchBand> search_band(const Problem& problem,
   std::vector<Profile> thin;
   for (const Profile& profile : profiles) thin.push_back(thinned(problem, profile, most));
   Model model = build_model(problem, thin, most);  // points into the profiles
-  for (const ShownEffect& each : shown)
-    if (each.is_settled) append_term(model, each.effect, model.range);
+  append_settled(model, shown);
   FittedModel fitted = fit_model(std::move(model));
   return std::make_unique<SearchBand>(SearchBand{std::move(thin), std::move(fitted)});
 }

@@ -138,8 +138,8 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
     out.effect.priors.push_back(seen->values[2 * h]);
     out.effect.priors.push_back(seen->values[2 * h + 1]);
   }
-  out.is_settled = !out.effect.priors.empty();
-  if (!out.is_settled) return std::nullopt;
+  if (out.effect.priors.empty()) return std::nullopt;
+  out.is_settled = true;
   return out;
 }
 
@@ -213,6 +213,11 @@ std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedMo
     for (ShownEffect& each : own) each.is_settled = any;  // none of all profiles beside one
   }
   return out;
+}
+
+void append_settled(Model& model, const std::vector<ShownEffect>& shown) {
+  for (const ShownEffect& each : shown)
+    if (each.is_settled) append_term(model, each.effect, model.range);
 }
 
 ShownModel with_shown(const FittedModel& declared, const std::vector<ShownEffect>& shown) {

@@ -27,6 +27,9 @@ struct ShownEffect {
 /// faster than slow cosines holds less than half of them.
 std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedModel& declared);
 
+/// Adds those that are settled, with their priors.
+void append_settled(Model& model, const std::vector<ShownEffect>& shown);
+
 /// The model with those of these effects that are settled, fitted, and a round for each of them as
 /// if they had been added one after the other. The ends of the cuts, of those that are not as well,
 /// are left out. REQUIRES one of them.

@@ -33,8 +33,7 @@ FittedModel fitted_to(const Problem& problem, const std::vector<Profile>& profil
                       const std::vector<ShownEffect>& shown) {
   const auto most = static_cast<std::size_t>(problem.trace.gates.search_values);
   Model model = build_model(problem, profiles, most);
-  for (const ShownEffect& each : shown)
-    if (each.is_settled) append_term(model, each.effect, model.range);
+  append_settled(model, shown);
   return fit_model(std::move(model));
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "effects/heights.hpp"
 #include "slideway/base/random.hpp"
@@ -115,13 +116,17 @@ std::vector<double> marked(const Case& here, double amplitude_um, std::uint64_t 
   return out;
 }
 
+std::optional<ShownBySamples> marks_shown(const Case& here, const std::vector<double>& values,
+                                          double significance = 1e-3) {
+  return specimen("feed_marks")
+      .shown_by({here.positions, here.setup, lathe()}, values, significance);
+}
+
 TEST(FeedMarks, AreSeenInSamplesWithTheHarmonicsOfAParabola) {
   // 4u² - 1/3 = Σ_h 4 (-1)^h / (π² h²) cos 2πhu; grooves of 55 µm read every 12.4 µm.
   const Case here = face(spaced(0.3, 9.7, 760), 6.1);
   const double amplitude = 2.0;
-  const auto shown =
-      specimen("feed_marks")
-          .shown_by({here.positions, here.setup, lathe()}, marked(here, amplitude, 7), 1e-3);
+  const auto shown = marks_shown(here, marked(here, amplitude, 7));
   ASSERT_TRUE(shown);
   ASSERT_GE(shown->options.harmonics.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -142,8 +147,7 @@ TEST(FeedMarks, HaveNoHarmonicThatAConvexEdgeCannotLeave) {
   std::vector<double> values = marked(here, 2.0, 7);
   for (std::size_t i = 0; i < values.size(); ++i)
     values[i] += 0.5e-3 * std::cos(2.0 * kPi * 5.0 * here.positions[i] * 110.0 / 6.1);
-  const auto shown =
-      specimen("feed_marks").shown_by({here.positions, here.setup, lathe()}, values, 1e-3);
+  const auto shown = marks_shown(here, values);
   ASSERT_TRUE(shown);
   EXPECT_THAT(shown->options.harmonics, ::testing::IsSupersetOf({1, 2, 3}));
   EXPECT_THAT(shown->options.harmonics, ::testing::Not(::testing::Contains(5)));
@@ -154,9 +158,7 @@ TEST(FeedMarks, HaveNoHarmonicThatAConvexEdgeCannotLeave) {
 TEST(FeedMarks, AreSeenNearHalfTheSamplingRate) {
   const Case here = face(spaced(0.3, 9.7, 760), 2.7474);
   const double amplitude = 2.0;
-  const auto shown =
-      specimen("feed_marks")
-          .shown_by({here.positions, here.setup, lathe()}, marked(here, amplitude, 7), 1e-3);
+  const auto shown = marks_shown(here, marked(here, amplitude, 7));
   ASSERT_TRUE(shown);
   EXPECT_EQ(shown->options.harmonics.front(), 1);
   EXPECT_NEAR(shown->values[0].value, -4.0 * amplitude / (kPi * kPi), 0.1 * amplitude);
@@ -166,17 +168,14 @@ TEST(FeedMarks, AreSeenNearHalfTheSamplingRate) {
 // slow effects are.
 TEST(FeedMarks, AreNotSeenWhereSamplingFoldsThemToASlowWave) {
   const Case here = face(spaced(0.3, 9.7, 760), 1.3533);
-  EXPECT_FALSE(specimen("feed_marks")
-                   .shown_by({here.positions, here.setup, lathe()}, marked(here, 2.0, 7), 1e-3));
+  EXPECT_FALSE(marks_shown(here, marked(here, 2.0, 7)));
 }
 
 TEST(FeedMarks, AreNotSeenInNoise) {
   const Case here = face(spaced(0.3, 9.7, 760), 6.1);
   int alarms = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed)
-    alarms += specimen("feed_marks")
-                  .shown_by({here.positions, here.setup, lathe()}, marked(here, 0.0, seed), 0.01)
-                  .has_value();
+    alarms += marks_shown(here, marked(here, 0.0, seed), 0.01).has_value();
   EXPECT_LE(alarms, 12);  // of 4 expected; more in 3e-4 of all choices of the seeds
 }
 
