@@ -250,6 +250,18 @@ std::vector<Candidate> on_one_surface(const Model& model, const Candidate& whole
   return out;
 }
 
+/// Whether the parts act, together, on every fitted profile that the whole acts on.
+bool has_all_profiles_of(const Model& model, const Candidate& whole,
+                         const std::vector<Candidate>& parts) {
+  return !parts.empty() &&
+         std::ranges::all_of(fitted_observations(model), [&](const Observation* observation) {
+           const Profile& profile = *observation->profile;
+           return !whole.term.acts_on(profile) ||
+                  std::ranges::any_of(
+                      parts, [&](const Candidate& part) { return part.term.acts_on(profile); });
+         });
+}
+
 }  // namespace
 
 Eigen::MatrixXd Candidate::columns_around(Eigen::Index atom) const {
@@ -276,9 +288,11 @@ Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::In
   for (const std::string& name : problem.trace.candidates)
     add_hypotheses(model, problem, name, viewer, out);
   for (const DeclaredEffect& own : problem.trace.own) add_own(model, problem, own, viewer, out);
-  for (const Candidate& whole : out.candidates) {
+  for (Candidate& whole : out.candidates) {
     std::ranges::move(in_one_profile(model, whole), std::back_inserter(alone));
-    for (Candidate& each : on_one_surface(model, whole)) {
+    std::vector<Candidate> of_surfaces = on_one_surface(model, whole);
+    whole.is_searched = !has_all_profiles_of(model, whole, of_surfaces);
+    for (Candidate& each : of_surfaces) {
       lay_out(model, viewer, each);
       alone.push_back(std::move(each));
     }

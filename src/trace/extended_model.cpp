@@ -122,7 +122,7 @@ FittedModel ModelExtender::in_declared_band(const std::vector<AcceptedEffect>& e
 Candidates ModelExtender::candidates_beside(const std::vector<AcceptedEffect>& effects) const {
   Candidates out;
   for (const Candidate& candidate : dictionary_.candidates)
-    if (std::ranges::none_of(effects, [&](const AcceptedEffect& effect) {
+    if (candidate.is_searched && std::ranges::none_of(effects, [&](const AcceptedEffect& effect) {
           return says_the_same(*effect.candidate, candidate);
         }))
       out.push_back(&candidate);

@@ -348,8 +348,9 @@ class Loop {
         inseparable(fitted.model, fitted.fit, data, extender_.candidates_beside(selection.effects));
     if (!extender_.calibration()) return;
     const FittedModel& base = extender_.base();
-    Candidates everywhere = extender_.candidates_beside({});
-    std::erase_if(everywhere, [](const Candidate* each) { return !each->term.profiles.empty(); });
+    Candidates everywhere;
+    for (const Candidate& each : extender_.dictionary().candidates)
+      if (each.term.profiles.empty()) everywhere.push_back(&each);
     const std::vector<Noise>&searched = own_noise_ ? *own_noise_ : data.noise(),
           &of_fit = own_noise_ ? *own_noise_ : fitted.fit.noise;
     out.detection_limits = detection_limits(base, {base.fit.linear, searched}, of_fit, everywhere,
