@@ -193,8 +193,8 @@ void explain_left_out(const Model& model, ModelResult& out) {
                       std::to_string(observation.values.size()));
   if (!parts.empty())
     out.notes.push_back(
-        "low-band values are left out that lie in a gap, within a groove of the spindle axis, or "
-        "where a tool's nose cannot follow: " +
+        "low-band values are left out that lie beyond an end of the trace, in a gap, within a "
+        "groove of the spindle axis, or where a tool's nose cannot follow: " +
         joined(parts));
 }
 

@@ -136,13 +136,18 @@ Eigen::MatrixXd nuisance_columns(const Profile& profile, const LowBand& low_band
 Observation observe(const Profile& profile, const LowBandOptions& options,
                     std::size_t most_values) {
   LowBand low_band(with_at_most(options, profile.positions.size(), most_values), profile.positions);
+  if (std::ssize(low_band.unmeasured()) == low_band.values())
+    throw DataError("low band: " + std::to_string(profile.positions.size()) + " samples, " +
+                    options.wavelet + " at level " + std::to_string(low_band.options().level) +
+                    " leave no value inside the trace; accepted: a lower level, a shorter wavelet "
+                    "or more samples");
   const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
     rows = Eigen::Map<const Eigen::VectorXd>(profile.values.data() + first, rows.rows());
   };
   Eigen::VectorXd values = apply_in_parts(low_band, std::ssize(profile.values), 1, fill);
   Observation out{&profile, std::move(low_band), std::move(values), {}, {}};
   out.nuisances = nuisance_columns(profile, out.low_band, out.nuisance_names);
-  leave_out(out, out.low_band.hollow());
+  leave_out(out, out.low_band.unmeasured());
   return out;
 }
 

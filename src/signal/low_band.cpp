@@ -16,6 +16,10 @@ namespace {
 constexpr double kUniform = 1e-3;    // of the mean step
 constexpr double kMostFilled = 4.0;  // grid points per sample; beyond it gaps are the rule
 
+// Of the weight of a coefficient. Interpolated points vary less than readings, so half a gap does
+// no harm; a reading that the extension repeats counts twice: a quarter makes the variance 1.5.
+constexpr double kMostInGaps = 0.5, kMostBeyond = 0.25;
+
 double mean_step(std::span<const double> positions) {
   return (positions.back() - positions.front()) / static_cast<double>(positions.size() - 1);
 }
@@ -115,10 +119,14 @@ LowBand::LowBand(const LowBandOptions& options, std::span<const double> position
   for (int level = 0; level < options.level; ++level)
     values_ = static_cast<Eigen::Index>(
         dwt_length(static_cast<std::size_t>(values_), wavelet_.taps(), options.boundary));
-  if (!uniform) lay_grid(positions);
+  std::vector<char> is_unmeasured(static_cast<std::size_t>(values_), 0);
+  find_beyond_ends(is_unmeasured);
+  if (!uniform) find_in_gaps(lay_grid(positions), is_unmeasured);
+  for (Eigen::Index j = 0; j < values_; ++j)
+    if (is_unmeasured[static_cast<std::size_t>(j)] != 0) unmeasured_.push_back(j);
 }
 
-void LowBand::lay_grid(std::span<const double> positions) {
+std::vector<double> LowBand::lay_grid(std::span<const double> positions) {
   const std::size_t n = positions.size();
   const double step =
       std::abs(positions.back() - positions.front()) / static_cast<double>(samples_ - 1);
@@ -134,16 +142,37 @@ void LowBand::lay_grid(std::span<const double> positions) {
     if (cell > kGapSteps * step && std::min(inside, cell - inside) > 0.5 * step)
       inside_gaps[i] = 1.0;
   }
-  if (std::ranges::find(inside_gaps, 1.0) != inside_gaps.end()) find_hollow(inside_gaps);
+  return inside_gaps;
 }
 
-void LowBand::find_hollow(const std::vector<double>& inside_gaps) {
+std::vector<double> LowBand::shares(const std::vector<double>& samples, Boundary boundary) const {
   Workspace workspace;
-  std::vector<double> share(static_cast<std::size_t>(values_));
-  transform(inside_gaps, share, workspace);
-  const double whole = std::pow(2.0, 0.5 * options_.level);
+  const std::span<const double> sums = transform(samples, boundary, workspace);
+  std::vector<double> out(sums.begin(), sums.end());
+  for (double& share : out) share *= std::pow(0.5, 0.5 * options_.level);
+  return out;
+}
+
+void LowBand::find_in_gaps(const std::vector<double>& inside_gaps,
+                           std::vector<char>& is_unmeasured) const {
+  if (std::ranges::find(inside_gaps, 1.0) == inside_gaps.end()) return;
+  const std::vector<double> share = shares(inside_gaps, options_.boundary);
   for (std::size_t j = 0; j < share.size(); ++j)
-    if (share[j] > 0.5 * whole) hollow_.push_back(static_cast<Eigen::Index>(j));
+    is_unmeasured[j] |= static_cast<char>(share[j] > kMostInGaps);
+}
+
+// What a signal of ones gives that is zero beyond its ends. A short one has the ends of a long one:
+// only the remainder of its length by 2^level matters.
+void LowBand::find_beyond_ends(std::vector<char>& is_unmeasured) const {
+  if (options_.boundary == Boundary::periodization) return;  // orthonormal
+  const auto block = std::size_t{1} << options_.level, n = static_cast<std::size_t>(samples_);
+  const auto taps = static_cast<std::size_t>(wavelet_.taps());
+  const std::size_t both_ends = n / block > 4 * taps ? 4 * taps * block + n % block : n;
+  const std::vector<double> share = shares(std::vector<double>(both_ends, 1.0), Boundary::zero);
+  const std::size_t ends = share.size() / 2;
+  for (std::size_t j = 0; j < share.size(); ++j)
+    if (share[j] < 1.0 - kMostBeyond)
+      is_unmeasured[j < ends ? j : is_unmeasured.size() - share.size() + j] = 1;
 }
 
 void LowBand::apply(std::span<const double> signal, std::span<double> coefficients,
@@ -152,17 +181,17 @@ void LowBand::apply(std::span<const double> signal, std::span<double> coefficien
     interpolate(cell_, weight_, signal, workspace.grid);
     signal = workspace.grid;
   }
-  transform(signal, coefficients, workspace);
+  std::ranges::copy(transform(signal, options_.boundary, workspace), coefficients.begin());
 }
 
-void LowBand::transform(std::span<const double> grid, std::span<double> coefficients,
-                        Workspace& workspace) const {
+std::span<const double> LowBand::transform(std::span<const double> grid, Boundary boundary,
+                                           Workspace& workspace) const {
   workspace.levels.resize(static_cast<std::size_t>(options_.level));
   for (Band& low : workspace.levels) {
-    dwt(wavelet_, options_.boundary, grid, low, nullptr);
+    dwt(wavelet_, boundary, grid, low, nullptr);
     grid = low;
   }
-  std::ranges::copy(grid, coefficients.begin());
+  return grid;
 }
 
 void LowBand::apply(std::span<const double> signal, std::span<double> coefficients) const {

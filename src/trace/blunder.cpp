@@ -258,7 +258,7 @@ class Finder {
     if (rescaled == list.end()) return out;
     out.profile = &*rescaled->profile;
     out.nuisances.conservativeResize(Eigen::NoChange, std::ssize(out.nuisance_names));
-    leave_out(out, out.low_band.hollow());
+    leave_out(out, out.low_band.unmeasured());
     leave_out(out, values_at_axis(out, model_.machine));
     out.profile = &own;
     return out;

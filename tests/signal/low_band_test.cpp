@@ -60,8 +60,8 @@ TEST(LowBand, IsTheLastApproximationOfTheDecomposition) {
 }
 
 // With samples missing the rest keeps its grid: where none is missing, the coefficients are those
-// of the whole profile; a coefficient whose 32 samples are all gone is hollow, one that lost one is
-// not.
+// of the whole profile; a coefficient whose 32 samples are all gone is unmeasured, one that lost
+// one is not.
 TEST(LowBand, GapsLeaveTheOtherCoefficientsAlone) {
   const std::vector<double> positions = uniform(640);
   const std::vector<double> signal = white_noise(640, "gaps");
@@ -74,7 +74,7 @@ TEST(LowBand, GapsLeaveTheOtherCoefficientsAlone) {
   const LowBand whole({}, positions), gapped({}, kept_positions);
   EXPECT_EQ(gapped.samples(), 640);
   ASSERT_EQ(gapped.values(), whole.values());
-  EXPECT_THAT(gapped.hollow(), testing::ElementsAre(6, 7));
+  EXPECT_THAT(gapped.unmeasured(), testing::ElementsAre(6, 7));
   const std::vector<double> expected = applied(whole, signal);
   const std::vector<double> found = applied(gapped, kept_signal);
   for (std::size_t j = 0; j < expected.size(); ++j)
@@ -84,6 +84,54 @@ TEST(LowBand, GapsLeaveTheOtherCoefficientsAlone) {
   // A straight line is what interpolation keeps.
   const std::vector<double> line = applied(gapped, kept_positions);
   EXPECT_THAT(line, Pointwise(DoubleNear(1e-10), applied(whole, positions)));
+}
+
+// Near the ends a symmetric boundary gives values that repeat others or stand for one reading.
+// Those that are measured keep white noise white: the eigenvalues of their covariance, that of the
+// rows of the transform, are near 1. 1.75 is a last value of db8, of which the extension makes a
+// quarter.
+TEST(LowBand, WhiteNoiseStaysWhiteInTheMeasuredValues) {
+  for (const LowBandOptions& options :
+       {LowBandOptions{"db1", 3}, {"db1", 5}, {"db2", 3}, {"db4", 2}, {"db4", 3}, {"db8", 2}})
+    for (const std::size_t n : {320, 321, 323, 326, 335}) {
+      const LowBand low_band(options, uniform(n));
+      const auto size = static_cast<Eigen::Index>(n);
+      const Eigen::MatrixXd rows =
+          low_band.apply(Eigen::MatrixXd(Eigen::MatrixXd::Identity(size, size)));
+      std::vector<Eigen::Index> measured;
+      for (Eigen::Index j = 0; j < low_band.values(); ++j)
+        if (std::ranges::count(low_band.unmeasured(), j) == 0) measured.push_back(j);
+      EXPECT_GE(std::ssize(measured), (size >> options.level) - 1) << options.wavelet << ' ' << n;
+      const Eigen::MatrixXd kept = rows(measured, Eigen::all);
+      const Eigen::VectorXd variances =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(kept * kept.transpose()).eigenvalues();
+      EXPECT_GT(variances.minCoeff(), 0.65) << options.wavelet << ' ' << n;
+      EXPECT_LT(variances.maxCoeff(), 1.8) << options.wavelet << ' ' << n;
+    }
+}
+
+// 103 samples of db1 at level 3: the last of 13 values has 7 of its 8 samples; of 97 it has one.
+TEST(LowBand, ValueMostlyBeyondTheEndIsUnmeasured) {
+  EXPECT_THAT(LowBand({"db1", 3, Boundary::symmetric}, uniform(103)).unmeasured(),
+              testing::IsEmpty());
+  EXPECT_THAT(LowBand({"db1", 3, Boundary::symmetric}, uniform(97)).unmeasured(),
+              testing::ElementsAre(12));
+  EXPECT_THAT(LowBand({"db4", 3, Boundary::periodization}, uniform(96)).unmeasured(),
+              testing::IsEmpty());
+}
+
+// The ends of a long signal are found on a short one with the same ends.
+TEST(LowBand, UnmeasuredValuesDoNotDependOnTheLength) {
+  for (const std::size_t n : {0, 1, 5, 7}) {
+    const LowBand one({"db4", 3, Boundary::symmetric}, uniform(248 + n)),
+        longer({"db4", 3, Boundary::symmetric}, uniform(2480 + n));
+    std::vector<Eigen::Index> from_end, of_longer;
+    for (const Eigen::Index j : one.unmeasured())
+      from_end.push_back(2 * j < one.values() ? j : j - one.values());
+    for (const Eigen::Index j : longer.unmeasured())
+      of_longer.push_back(2 * j < longer.values() ? j : j - longer.values());
+    EXPECT_EQ(from_end, of_longer) << n;
+  }
 }
 
 TEST(LowBand, ReconstructsTheApproximationAtFullLength) {

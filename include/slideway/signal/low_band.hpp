@@ -29,7 +29,8 @@ LowBandOptions with_at_most(LowBandOptions options, std::size_t samples, std::si
 /// Positions that are not uniform (spacing off by more than 1e-3 of the mean step) are first
 /// brought to a uniform grid by linear interpolation: of the step they have but for their gaps,
 /// where every step is a multiple of it, else of as many samples. Data and columns are interpolated
-/// alike, so that a gap bends nothing; but what stands in it is no observation: see hollow().
+/// alike, so that a gap bends nothing; but what stands in it is no observation, nor is what the
+/// boundary adds beyond the ends: see unmeasured().
 class LowBand {
  public:
   /// @throws DataError  fewer samples than 2^level
@@ -40,8 +41,9 @@ class LowBand {
   [[nodiscard]] Eigen::Index values() const { return values_; }    // approximation coefficients
   [[nodiscard]] bool resampled() const { return !cell_.empty(); }
 
-  /// Coefficients more than half of which comes from the inside of gaps.
-  [[nodiscard]] const std::vector<Eigen::Index>& hollow() const { return hollow_; }
+  /// Coefficients more than half of which comes from the inside of gaps, or more than a quarter
+  /// from beyond the ends, rising.
+  [[nodiscard]] const std::vector<Eigen::Index>& unmeasured() const { return unmeasured_; }
 
   /// Samples -> #values coefficients. Scaled as the orthonormal transform has it: white noise
   /// keeps its standard deviation, a constant c becomes c * sqrt(2)^level.
@@ -60,10 +62,13 @@ class LowBand {
   struct Workspace;
   void apply(std::span<const double> signal, std::span<double> coefficients,
              Workspace& workspace) const;
-  void transform(std::span<const double> grid, std::span<double> coefficients,
-                 Workspace& workspace) const;
-  void lay_grid(std::span<const double> positions);
-  void find_hollow(const std::vector<double>& inside_gaps);
+  std::span<const double> transform(std::span<const double> grid, Boundary boundary,
+                                    Workspace& workspace) const;
+  [[nodiscard]] std::vector<double> shares(const std::vector<double>& samples,
+                                           Boundary boundary) const;
+  std::vector<double> lay_grid(std::span<const double> positions);
+  void find_in_gaps(const std::vector<double>& inside_gaps, std::vector<char>& is_unmeasured) const;
+  void find_beyond_ends(std::vector<char>& is_unmeasured) const;
 
   Wavelet wavelet_;
   LowBandOptions options_;
@@ -71,7 +76,7 @@ class LowBand {
   Eigen::Index values_ = 0;
   std::vector<Eigen::Index> cell_;  // left neighbour of each grid point; empty on a uniform grid
   std::vector<double> weight_;      // of the right neighbour
-  std::vector<Eigen::Index> hollow_;
+  std::vector<Eigen::Index> unmeasured_;
 };
 
 }  // namespace slideway
