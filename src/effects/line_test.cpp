@@ -27,13 +27,24 @@ bool are_apart(const Eigen::MatrixX2d& own, const Eigen::HouseholderQR<Eigen::Ma
   return true;
 }
 
+/// Phase of one cycle over places.
+Eigen::VectorXd turn_over(const Eigen::VectorXd& places) {
+  const double first = places.minCoeff(), extent = places.maxCoeff() - first;
+  return 2.0 * kPi * (places.array() - first) / extent;
+}
+
+/// Of a phase from value to value, in cycles.
+Eigen::ArrayXd steps_of(const Eigen::VectorXd& phase) {
+  const Eigen::Index steps = phase.size() - 1;
+  return (phase.tail(steps) - phase.head(steps)).array() / (2.0 * kPi);
+}
+
 }  // namespace
 
 LineTest::LineTest(std::span<const double> values, const Eigen::VectorXd& places,
-                   const Eigen::VectorXd& weights) {
+                   const Eigen::VectorXd& radii, const Eigen::VectorXd& weights)
+    : turn_(turn_over(places)), turn_of_form_(steps_of(turn_over(radii)).abs().mean()) {
   const auto count = static_cast<Eigen::Index>(values.size());
-  const double first = places.minCoeff(), extent = places.maxCoeff() - first;
-  turn_ = 2.0 * kPi * (places.array() - first) / extent;
   const Eigen::ArrayXd at =
       Eigen::ArrayXd::LinSpaced(count, 0.5, static_cast<double>(count) - 0.5) /
       static_cast<double>(count);
@@ -98,12 +109,8 @@ double LineTest::p_value(const Eigen::VectorXd& phase) const {
 }
 
 bool LineTest::is_fast(const Eigen::VectorXd& phase) const {
-  const Eigen::Index steps = phase.size() - 1;
-  const auto turns = [&](const Eigen::VectorXd& angle) -> Eigen::ArrayXd {
-    return (angle.tail(steps) - angle.head(steps)).array() / (2.0 * kPi);
-  };
-  const Eigen::ArrayXd own = turns(phase);
-  return (own - own.round()).abs().mean() > kFarthestBeside * turns(turn_).abs().mean();
+  const Eigen::ArrayXd own = steps_of(phase);
+  return (own - own.round()).abs().mean() > kFarthestBeside * turn_of_form_;
 }
 
 bool LineTest::stands_apart(const Eigen::VectorXd& phase,

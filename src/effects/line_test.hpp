@@ -14,10 +14,10 @@ namespace slideway {
 // distribution of 2 and 2 m degrees of freedom, so p = (1 + ratio / m)^-m.
 class LineTest {
  public:
-  // REQUIRES 16 values at least, as many places and weights as values. A weight of 0 leaves one
-  // out.
+  // `places` of the values along the trace; `radii`, of which their form is a function. A weight of
+  // 0 leaves a value out. REQUIRES 16 values at least, as many places, radii and weights.
   LineTest(std::span<const double> values, const Eigen::VectorXd& places,
-           const Eigen::VectorXd& weights);
+           const Eigen::VectorXd& radii, const Eigen::VectorXd& weights);
 
   // Probability that noise makes a line as strong. `phase` (rad), one for each value.
   [[nodiscard]] double p_value(const Eigen::VectorXd& phase) const;
@@ -54,6 +54,7 @@ class LineTest {
   Eigen::MatrixXd form_;    // orthonormal: the cubic under the window
   Eigen::VectorXd values_;  // what it leaves of them
   Eigen::VectorXd turn_;    // phase of one cycle over the places
+  double turn_of_form_;     // of one cycle over the radii, from value to value, in cycles
 };
 
 }  // namespace slideway

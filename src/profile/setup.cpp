@@ -2,7 +2,16 @@
 
 #include <algorithm>
 
+#include "slideway/base/units.hpp"
+
 namespace slideway {
+
+std::optional<double> largest_feed_mark(const Setup& setup, int harmonic) {
+  if (!setup.feed_mm_per_min || !setup.spindle_rpm || !setup.nose_radius_mm) return std::nullopt;
+  const double feed = *setup.feed_mm_per_min / *setup.spindle_rpm;
+  const double height = feed * feed / (8.0 * *setup.nose_radius_mm);
+  return harmonic == 1 ? height / 2.0 : 8.0 * height / (kPi * kPi * harmonic * harmonic);
+}
 
 std::string_view symbol(IndependentVariable variable) {
   switch (variable) {

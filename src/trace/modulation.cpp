@@ -26,14 +26,22 @@ bool lie_beside(const std::vector<LineBand>& lines, const std::vector<LineBand>&
 /// Distance from the nearest whole number: a rate in cycles a sample as sampling folds it.
 double folded(double cycles) { return std::abs(cycles - std::round(cycles)); }
 
-/// Whether lines of an effect in one face lie where sampling folds a harmonic of its feed marks to,
-/// nearer than the gate folded_widths.
-bool lie_on_feed_marks(const Profile& profile, const Effect& effect,
+/// Amplitude of the wave whose root mean square the effect has over a profile, mm.
+double amplitude_on(const Model& model, const Refined& refined, const Profile& profile) {
+  const Eigen::VectorXd signal = effect_signal(model, refined.candidate->term, profile,
+                                               refined.projection.amplitudes, refined.shape);
+  return std::sqrt(2.0 * signal.squaredNorm() / static_cast<double>(signal.size()));
+}
+
+/// Largest amplitude, mm, that feed marks can have where the lines of an effect in one face lie:
+/// that of the lowest harmonic that sampling folds there, nearer than the gate folded_widths.
+/// Infinite where the nose is not known, 0 where no harmonic is near.
+double largest_mark_at(const Profile& profile, const Effect& effect,
                        const std::vector<LineBand>& lines, const Gates& gates) {
   const Setup& setup = profile.setup;
   const auto samples = static_cast<double>(profile.positions.size());
   if (setup.kind != Kind::face || !setup.feed_mm_per_min || !setup.spindle_rpm || samples < 2.0)
-    return false;
+    return 0.0;
   const double trace = setup.last_mm - setup.first_mm, spacing = trace / (samples - 1.0);
   const double radius = std::max(setup.last_mm - setup.center_mm, setup.center_mm - setup.first_mm);
   const IndependentVariable variable = effect.description().variable;
@@ -42,13 +50,16 @@ bool lie_on_feed_marks(const Profile& profile, const Effect& effect,
           ? trace
           : radius;
   const double marks = spacing * *setup.spindle_rpm / *setup.feed_mm_per_min;  // cycles a sample
-  return std::ranges::all_of(lines, [&](const LineBand& line) {
+  const auto at = [&](const LineBand& line) {
     for (int m = 1; m <= static_cast<int>(gates.feed_harmonics); ++m)
       if (std::abs(folded(line.low * spacing / extent) - folded(m * marks)) * samples <=
           gates.folded_widths)
-        return true;
-    return false;
-  });
+        return largest_feed_mark(setup, m).value_or(INFINITY);
+    return 0.0;
+  };
+  double out = INFINITY;
+  for (const LineBand& line : lines) out = std::min(out, at(line));
+  return out;
 }
 
 double feed_per_turn(const Setup& setup) { return *setup.feed_mm_per_min / *setup.spindle_rpm; }
@@ -122,7 +133,8 @@ bool is_of_feed_marks(const Model& model, const Whitened& data, const Refined& r
     if (!own.acts_on(profile)) continue;
     const auto lines = own.effect->lines(profile.stations(model.machine), refined.shape);
     if (lines.empty()) return false;
-    if (lie_on_feed_marks(profile, *own.effect, lines, model.gates))
+    const double most = largest_mark_at(profile, *own.effect, lines, model.gates);
+    if (most > 0.0 && amplitude_on(model, refined, profile) <= most)
       folded_in_one = true;
     else
       elsewhere += fitted.segment(data.first_row(i), data.count(i)).squaredNorm();

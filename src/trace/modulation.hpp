@@ -13,9 +13,10 @@ namespace slideway {
 std::string part_of_a_line(const Model& model, const Eigen::VectorXd& shapes,
                            const Refined& refined);
 
-/// Whether sampling folds harmonics of the feed marks to where the lines of an effect of faces are:
-/// in all of them but those that together do not show it for certain (Gates::size). Not where one
-/// wave serves cuts of different feeds: their marks are of different depths.
+/// Whether sampling folds harmonics of the feed marks that can be as large to where the lines of an
+/// effect of faces are: in all of them but those that together do not show it for certain
+/// (Gates::size). Not where one wave serves cuts of different feeds: their marks are of different
+/// depths.
 /// @param fitted  what the effect takes of the white residual
 bool is_of_feed_marks(const Model& model, const Whitened& data, const Refined& refined,
                       const Eigen::VectorXd& fitted);

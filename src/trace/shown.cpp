@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
 
 #include "dictionary.hpp"
@@ -47,9 +48,10 @@ struct Beside {
   double before = 0.0, after = 0.0, of_sum = 0.0, shared = 0.0;
   double taken_by_whole = 0.0, columns_of_whole = 0.0;
   double degrees = 0.0;  // of freedom of what is fast
+  double noise = 0.0;    // variance of a value, where other effects do not raise it
 
   Beside(const Model& model, const Estimate& estimate, const Observation& observation,
-         const Eigen::MatrixXd& of_parts, const Eigen::MatrixXd& of_whole) {
+         const Eigen::MatrixXd& of_parts, const Eigen::MatrixXd& of_whole, double noise_of_fit) {
     const Eigen::Index n = observation.values.size(), parts = of_parts.cols();
     const Eigen::MatrixXd linear = linear_columns(model, estimate, observation);
     Eigen::MatrixXd all(n, parts + of_whole.cols() + 1 + linear.cols());
@@ -72,6 +74,7 @@ struct Beside {
     columns_of_whole = static_cast<double>(whole.cols());
     degrees = static_cast<double>(n - observation.left_out() - form.cols() - slow.cols() -
                                   std::ssize(observation.nuisance_names));
+    noise = std::min(after / degrees, noise_of_fit * noise_of_fit);
   }
 
   /// Of the images together, to be expected.
@@ -95,26 +98,39 @@ constexpr double kCertain = 2.0;  // standard uncertainties
 /// Whether the image is not far below the noise of the low band, and what is fast in that does not
 /// have for certain less than half of it.
 bool has_image(const Beside& beside) {
-  const double noise = beside.after / beside.degrees;
-  return beside.square() >= kLeast * kLeast * beside.degrees * noise &&
-         beside.shared + kCertain * std::sqrt(noise * beside.of_sum) >= kLeast * beside.of_sum;
+  const double rest = beside.after / beside.degrees;
+  return beside.square() >= kLeast * kLeast * beside.degrees * beside.noise &&
+         beside.shared + kCertain * std::sqrt(rest * beside.of_sum) >= kLeast * beside.of_sum;
 }
 
-/// The harmonics whose image in the low band is not below its noise.
-std::vector<std::size_t> seen_in(const Beside& beside) {
-  std::vector<std::size_t> out;
-  const double noise = beside.after / beside.degrees;
+constexpr double kTenth = 0.01;  // of the square
+constexpr std::size_t kMostBounded = 4;
+
+/// The harmonics whose image in the low band stands out of its noise, which may hold what is
+/// missing, or is a tenth of that of all; of those whose values are not known but bounded, the most
+/// visible ones.
+std::vector<std::size_t> seen_in(const Beside& beside, const std::vector<Prior>& values) {
   const Eigen::Index parameters = beside.images.cols() / 2;
-  for (Eigen::Index h = 0; 2 * h < parameters; ++h)
-    if (beside.images.middleCols(2 * h, 2).squaredNorm() +
-            beside.images.middleCols(parameters + 2 * h, 2).squaredNorm() >=
-        noise)
-      out.push_back(static_cast<std::size_t>(h));
+  const auto image = [&](std::size_t h) {
+    const auto column = 2 * static_cast<Eigen::Index>(h);
+    return beside.images.middleCols(column, 2).squaredNorm() +
+           beside.images.middleCols(parameters + column, 2).squaredNorm();
+  };
+  std::vector<std::size_t> out, bounded;
+  for (std::size_t h = 0; 2 * h < values.size(); ++h) {
+    if (image(h) < std::min(kCertain * kCertain * beside.noise, kTenth * beside.square())) continue;
+    const bool is_bounded = values[2 * h].value == 0.0 && values[2 * h + 1].value == 0.0;
+    (is_bounded ? bounded : out).push_back(h);
+  }
+  std::ranges::stable_sort(bounded, std::greater(), image);
+  bounded.resize(std::min(bounded.size(), kMostBounded));
+  out.insert(out.end(), bounded.begin(), bounded.end());
+  std::ranges::sort(out);
   return out;
 }
 
 std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::string& name,
-                                    const Observation& observation) {
+                                    const Observation& observation, const Noise& noise) {
   const Model& model = declared.model;
   const Profile& profile = *observation.profile;
   const Effect& effect = specimen(name);
@@ -127,13 +143,15 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
   options.profiles = whole.profiles = {profile.name};
   const Beside beside(model, declared.fit.estimate, observation,
                       images(model, term_of(model, name, options), seen->values, observation),
-                      low_band_columns(model, term_of(model, name, whole), observation, {}));
+                      low_band_columns(model, term_of(model, name, whole), observation, {}),
+                      noise.standard_deviation());
   if (beside.degrees < 1.0) return std::nullopt;
   ShownEffect out{{name, whole, {}}, seen->p_value};
-  for (const Prior& value : seen->values) out.depth += kMicrometre * std::abs(value.value);
+  for (const Prior& value : seen->values)
+    out.depth += kMicrometre * std::max(std::abs(value.value), value.standard_uncertainty);
   if (!has_image(beside)) return std::nullopt;
-  if (whole_takes_as_much(beside)) return out;
-  for (const std::size_t h : seen_in(beside)) {
+  if (seen->may_be_whole && whole_takes_as_much(beside)) return out;
+  for (const std::size_t h : seen_in(beside, seen->values)) {
     out.effect.options.harmonics.push_back(options.harmonics[h]);
     out.effect.priors.push_back(seen->values[2 * h]);
     out.effect.priors.push_back(seen->values[2 * h + 1]);
@@ -145,17 +163,21 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
 
 constexpr double kVisible = 0.25;  // of the noise of a value: several of them show together
 
-/// The values into which the low band carries what the first and the last turn leave at the rim and
-/// at the axis: as much as the marks, within one feed, by more than kVisible of the noise. A
-/// wavelet of many taps carries it further than one value. None where they are most of the profile.
+/// The values into which the low band carries what the first and the last turn leave within one
+/// feed of the rim and of the axis, by more than kVisible of the noise: as much as the marks, at
+/// the axis as much as one groove leaves a feed beside it, f²/(2 r_ε). A wavelet of many taps
+/// carries it further than one value. None where they are most of the profile.
 ValueIndices ends_of(const Observation& observation, const ShownEffect& shown,
                      const Machine& machine, const Gates& gates, double noise) {
   const Setup& setup = observation.profile->setup;
   const double feed = *setup.feed_mm_per_min / *setup.spindle_rpm;
   const Stations stations = observation.profile->stations(machine);
   Eigen::MatrixXd ends = Eigen::MatrixXd::Zero(stations.size(), 1);
+  const double at_axis = std::max(shown.depth, 8.0 * largest_feed_mark(setup, 1).value_or(0.0));
   for (Eigen::Index i = 0; i < stations.size(); ++i)
-    if (const double r = stations.radius(i); r <= feed || r >= *setup.cut_radius_mm - feed)
+    if (const double r = stations.radius(i); r <= feed)
+      ends(i, 0) = at_axis;
+    else if (r >= *setup.cut_radius_mm - feed)
       ends(i, 0) = shown.depth;
   const Eigen::VectorXd carried = observation.low_band.apply(ends);
   ValueIndices out;
@@ -206,8 +228,10 @@ std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedMo
   for (const std::string& name : problem.trace.candidates) {
     if (std::ranges::count(problem.effects, name, &DeclaredEffect::name) > 0) continue;
     const std::size_t first = out.size();
-    for (const Observation* observation : declared.fit.linear.observations)
-      if (auto shown = shown_in(declared, name, *observation)) out.push_back(*std::move(shown));
+    for (std::size_t i = 0; i < declared.fit.noise.size(); ++i)
+      if (auto shown =
+              shown_in(declared, name, *declared.fit.linear.observations[i], declared.fit.noise[i]))
+        out.push_back(*std::move(shown));
     const std::span<ShownEffect> own(out.begin() + static_cast<std::ptrdiff_t>(first), out.end());
     const bool any = std::ranges::any_of(own, &ShownEffect::is_settled);
     for (ShownEffect& each : own) each.is_settled = any;  // none of all profiles beside one

@@ -22,9 +22,9 @@ struct ShownEffect {
 /// noise or lines that nothing makes.
 ///
 /// Its parameters have the values of the samples as priors: the low band, which folds and damps
-/// them, knows them less. Those whose image in the low band is below its noise are left out. None
-/// is taken where all together are below half the noise of a value, or where what the low band has
-/// faster than slow cosines holds less than half of them.
+/// them, knows them less. Those whose image neither stands out of its noise nor is a tenth of that
+/// of all are left out. None is taken where all together are below half the noise of a value, or
+/// where what the low band has faster than slow cosines holds less than half of them.
 std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedModel& declared);
 
 /// Adds those that are settled, with their priors.

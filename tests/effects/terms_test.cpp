@@ -165,10 +165,36 @@ TEST(FeedMarks, AreSeenNearHalfTheSamplingRate) {
 }
 
 // A groove in 0.993 of the distance of two samples: five cycles over the trace, where the form and
-// slow effects are.
-TEST(FeedMarks, AreNotSeenWhereSamplingFoldsThemToASlowWave) {
-  const Case here = face(spaced(0.3, 9.7, 760), 1.3533);
+// slow effects are. The samples do not tell how large it is; a nose radius is a bound,
+// H = f²/(8 r_ε) deep: f = 1.3533/110 mm, r_ε = 0.4 mm, H = 47.3 nm.
+TEST(FeedMarks, AreBoundedByTheNoseWhereSamplingFoldsThemToASlowWave) {
+  Case here = face(spaced(0.3, 9.7, 760), 1.3533);
   EXPECT_FALSE(marks_shown(here, marked(here, 2.0, 7)));
+  here.setup.nose_radius_mm = 0.4;
+  EXPECT_FALSE(marks_shown(here, marked(here, 0.0, 7)));
+  const auto shown = marks_shown(here, marked(here, 2.0, 7));
+  ASSERT_TRUE(shown);
+  ASSERT_EQ(shown->options.harmonics.front(), 1);
+  EXPECT_EQ(shown->values[0].value, 0.0);
+  EXPECT_NEAR(shown->values[0].standard_uncertainty, 0.0473 / 2.0 / std::sqrt(3.0), 1e-4);
+}
+
+// Grooves as wide as a twelfth of the trace are a matter of the search: nothing folds them.
+TEST(FeedMarks, AreNotBoundedWhereTheyAreWide) {
+  Case here = face(spaced(0.3, 9.7, 760), 110.0);
+  here.setup.nose_radius_mm = 0.4;
+  EXPECT_FALSE(marks_shown(here, marked(here, 2.0, 7)));
+}
+
+// Over a diameter, across which the grooves of the far half lie half a turn apart, the lines beside
+// one are those of the whole trace: half of a Hann window, from the axis on, would leak 5 % of it
+// into them; the four grooves that are left out at the axis, 0.4 % of the trace, leak twice that.
+TEST(FeedMarks, DoNotLeakBesideThemselvesOnADiameter) {
+  Case here = face(spaced(0.0, 20.0, 760), 2.0);
+  here.setup.center_mm = 10.0;
+  const auto shown = marks_shown(here, marked(here, 2.0, 7));
+  ASSERT_TRUE(shown);
+  EXPECT_LT(shown->values[0].standard_uncertainty, 0.015 * std::abs(shown->values[0].value));
 }
 
 TEST(FeedMarks, AreNotSeenInNoise) {

@@ -11,6 +11,7 @@ namespace slideway {
 namespace {
 
 using namespace faces;  // NOLINT(google-build-using-namespace)
+using ::testing::AnyOf;
 using ::testing::Each;
 using ::testing::Eq;
 using ::testing::SizeIs;
@@ -111,6 +112,33 @@ TEST(FeedMarks, OfWhichTheLowBandHasASlowWaveAreTakenFromTheSamples) {
     EXPECT_EQ(result.verdict, TraceVerdict::explained);
     EXPECT_EQ(named(result), std::vector<std::string>{"tool_running_in"});
     expect_within_4u(result.final.parameters, "tool_running_in.amplitude_um", 0.4);
+    expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
+  }
+}
+
+// 43.86, 110 and 43.86 µm a turn, read every 43.7 µm: those of the first and the third cut are
+// waves of 1.6 cycles over the trace, H = 0.3 µm deep at most, as large as the wave of the slide.
+// What the nose can leave is in the model, so the slide's wave keeps its size, and its names: along
+// one radius it may be the floor's, too.
+TEST(FeedMarks, FoldedToASlowWaveDoNotHideAWaveOfTheSlide) {
+  const Designs designs{{{4.861, 20.0031, true}, {12.1, 20.0173, true}, {4.861, 20.0, false}}};
+  const auto wave = [](const turning::ToolPoint& p) {
+    return 0.2e-3 * std::cos(2.0 * kPi * p.r / 3.0);
+  };
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Problem problem = problem_of();
+    problem.low_band.level = 2;
+    std::vector<Profile> profiles = read(designs, 0.8, seed, 0.0, wave);
+    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    const Closed result = closed(problem, profiles);
+    SCOPED_TRACE(story(result));
+    ASSERT_THAT(named(result), SizeIs(1));
+    const std::string name = named(result).front();
+    EXPECT_THAT(name, AnyOf("slide_periodic", "traverse_periodic"));
+    const FittedParameter* amplitude = find(result.final.parameters, name + ".amplitude_um");
+    ASSERT_NE(amplitude, nullptr);
+    // The fourth harmonics, which are left out, are a sixteenth of the first ones: 8 nm.
+    EXPECT_NEAR(*amplitude->value, 0.2, 0.008);
     expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
   }
 }

@@ -159,6 +159,7 @@ struct ShownBySamples {
   EffectOptions options;
   std::vector<Prior> values;  // of its parameters, by the samples
   double p_value = 1.0;       // that noise does so
+  bool may_be_whole = false;  // whether the effect without options may have made them
 };
 
 /// Rates between which a line of an effect lies, in cycles over one profile: the resolution of the

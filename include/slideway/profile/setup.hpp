@@ -53,6 +53,12 @@ struct Setup {
   double last_mm = 0.0;
 };
 
+/// Largest amplitude, mm, of a harmonic of the grooves that the nose of a tool leaves, H = f²/(8
+/// r_ε) deep: of the first one H/2, that of the wave a stylus makes of ridges as round as the
+/// grooves; of the others 8 H/(π h)², twice that of parabolas, as the edge of a tool is convex.
+/// None where feed per turn or nose radius is not known.
+std::optional<double> largest_feed_mark(const Setup& setup, int harmonic);
+
 /// The independent variable of an effect: what its form is a function of, one per kind of cause.
 enum class IndependentVariable {
   radius,

@@ -13,10 +13,12 @@
 namespace slideway {
 namespace {
 
-constexpr int kMostHarmonics = 16;
+constexpr int kMostHarmonics = 32;           // the last one a thousandth of the first
+constexpr int kMostTested = 16;              // by the samples
 constexpr Eigen::Index kMostSamples = 4096;  // looked at for lines
 constexpr Eigen::Index kLeastSamples = 64;
 constexpr double kEnds = 2.0;        // grooves at the axis and at the rim, which have another form
+constexpr double kUnfolded = 0.5;    // cycles a sample
 constexpr double kMostShared = 0.9;  // of the square of a harmonic with others, folded
 constexpr double kCertain = 2.0;     // standard uncertainties
 
@@ -59,20 +61,29 @@ struct Harmonic {
 /// is at most twice that of a parabola, which goes with 1/h².
 double most_of_first(int order) { return 2.0 / (order * order); }
 
-/// The harmonics of known phase 2πu, from the first one on, that stand out of the spectrum and that
-/// a groove can have.
-std::vector<Harmonic> resolved(const LineTest& lines, const Eigen::VectorXd& phase,
-                               double significance) {
+/// What the samples show of a groove's harmonics.
+struct Spectrum {
+  std::vector<Harmonic> harmonics;
+  std::vector<int> bounded;  // orders of those that it does not tell from noise or other errors
+};
+
+/// The harmonics of known phase 2πu that stand out of the spectrum and that a groove can have, the
+/// first one among them unless it is slow: then it is at most `most_of_slow`.
+Spectrum resolved(const LineTest& lines, const Eigen::VectorXd& phase, double significance,
+                  double most_of_slow) {
   std::vector<int> orders;
   std::vector<Eigen::VectorXd> phases;
+  Spectrum out;
   for (int h = 1; h <= kMostHarmonics; ++h) {
     const Eigen::VectorXd own = h * phase;
-    if (h > 1 && (!lines.is_fast(own) || lines.p_value(own) > significance)) continue;
-    if (!lines.stands_apart(own, phases, kMostShared)) continue;
-    phases.push_back(own);
-    orders.push_back(h);
+    bool is_seen = h <= kMostTested && lines.is_fast(own);
+    if (is_seen && !lines.stands_apart(own, phases, kMostShared)) continue;
+    is_seen = is_seen && (h == 1 || lines.p_value(own) <= significance);
+    if (is_seen) phases.push_back(own);
+    (is_seen ? orders : out.bounded).push_back(h);
   }
-  const auto fitted = [&] {
+  const auto fitted = [&]() -> std::vector<Harmonic> {
+    if (phases.empty()) return {};
     const LineTest::Amplitudes of = lines.amplitudes(phases);
     std::vector<Harmonic> out;
     for (std::size_t k = 0; k < orders.size(); ++k) {
@@ -82,19 +93,22 @@ std::vector<Harmonic> resolved(const LineTest& lines, const Eigen::VectorXd& pha
     return out;
   };
   const std::vector<Harmonic> all = fitted();
-  for (std::size_t k = all.size(); k-- > 1;) {
+  const bool has_first = !all.empty() && all[0].order == 1;
+  const double first = has_first ? all[0].values.norm() : most_of_slow;
+  for (std::size_t k = all.size(); k-- > (has_first ? 1 : 0);) {
     const double certain = all[k].values.norm() - kCertain * all[k].uncertainties.norm();
-    if (certain <= most_of_first(all[k].order) * all[0].values.norm()) continue;
+    if (certain <= most_of_first(all[k].order) * first) continue;
     phases.erase(phases.begin() + static_cast<std::ptrdiff_t>(k));
     orders.erase(orders.begin() + static_cast<std::ptrdiff_t>(k));
   }
-  return fitted();
+  out.harmonics = fitted();
+  return out;
 }
 
-/// A harmonic of which only the first one is known: any part of that of a parabola, with any phase,
-/// as the nose and the stylus round the ridge.
-Harmonic within_parabola(const Harmonic& first, int order) {
-  const double most = first.values.norm() / (order * order);
+/// A harmonic of which only the first one, or a bound of it, is known: any part of that of a
+/// parabola, with any phase, as the nose and the stylus round the ridge.
+Harmonic within_parabola(double first, int order) {
+  const double most = first / (order * order);
   return {order, Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(most / std::sqrt(3.0))};
 }
 
@@ -129,8 +143,8 @@ class FeedMarks : public LinearEffect {
 
   // The harmonics that stand out of the spectrum of the samples, where the first one is one of
   // them: sampling may have folded them, but the grooves of a cut lie where its feed says. Of those
-  // it has folded to slow waves, which no spectrum tells from other errors, the first one is a
-  // bound.
+  // that do not, and of those that it has folded to slow waves, which no spectrum tells from other
+  // errors, the first one is a bound; of the first one itself, the nose radius.
   [[nodiscard]] std::optional<ShownBySamples> shown_by(const Stations& stations,
                                                        std::span<const double> values,
                                                        double significance) const override {
@@ -138,21 +152,26 @@ class FeedMarks : public LinearEffect {
     const Eigen::Index all = stations.size(), count = std::min(all, kMostSamples);
     if (!applies_to(setup) || !has_grooves(setup) || count < kLeastSamples) return std::nullopt;
     const Eigen::Index first = (all - count) / 2;
-    Eigen::VectorXd radii(count), phase(count), weights(count);
-    const double ends = kEnds * *setup.feed_mm_per_min / *setup.spindle_rpm;
+    Eigen::VectorXd places(count), radii(count), phase(count), weights(count);
+    const double feed = *setup.feed_mm_per_min / *setup.spindle_rpm, ends = kEnds * feed;
     for (Eigen::Index i = 0; i < count; ++i) {
+      places[i] = stations.trace(first + i);
       radii[i] = stations.radius(first + i);
       phase[i] = 2.0 * kPi * groove_at(stations, first + i).across;
       weights[i] = radii[i] > ends && radii[i] < *setup.cut_radius_mm - ends ? 1.0 : 0.0;
     }
     const LineTest lines(
-        values.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)), radii,
-        weights);
-    ShownBySamples out{.options = {}, .values = {}, .p_value = lines.p_value(phase)};
-    if (out.p_value > significance || !lines.is_fast(phase)) return std::nullopt;
-    std::vector<Harmonic> harmonics = resolved(lines, phase, significance);
-    for (int h = 2; h <= kMostHarmonics; ++h)
-      if (!lines.is_fast(h * phase)) harmonics.push_back(within_parabola(harmonics[0], h));
+        values.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)), places,
+        radii, weights);
+    ShownBySamples out{.p_value = lines.p_value(phase)};
+    const bool is_slow = !lines.is_fast(phase);
+    const std::optional<double> most = largest_feed_mark(setup, 1);
+    out.may_be_whole = std::abs(stations.trace(all - 1) - stations.trace(0)) <
+                       kUnfolded * static_cast<double>(all - 1) * feed;
+    if (out.p_value > significance || (is_slow && (out.may_be_whole || !most))) return std::nullopt;
+    auto [harmonics, bounded] = resolved(lines, phase, significance, most.value_or(0.0));
+    const double largest = is_slow ? *most : harmonics[0].values.norm();
+    for (const int h : bounded) harmonics.push_back(within_parabola(largest, h));
     std::ranges::sort(harmonics, {}, &Harmonic::order);
     for (const Harmonic& each : harmonics) out.options.harmonics.push_back(each.order);
     const std::vector<Parameter> parameters = parameters_of(out.options.harmonics);
