@@ -80,6 +80,10 @@ const BadInput kAmounts[] = {
         {"problem.toml: profile 'face'", "64 samples, level 7 needs at least 128",
          "accepted: level <= 6"},
         {.low_band = "[low_band]\nlevel = 7\n"}),
+    bad("LowBandBeyondTheEnds", face_csv(64),
+        {"problem.toml: profile 'face'", "64 samples, db19 at level 6 leave no value inside",
+         "a shorter wavelet"},
+        {.low_band = "[low_band]\nwavelet = \"db19\"\nlevel = 6\n"}),
     // b0 ... b9, and the offset and tilt that are free by default
     bad("FewerSamplesThanParameters", face_csv(8),
         {"problem.toml: the profiles have 7 low-band values for 12 parameters",
