@@ -13,7 +13,8 @@ struct Source {
 };
 
 /// In coordinates in which all information is the unit matrix the information of a source is also
-/// its part of the covariance.
+/// its part of the covariance. That of the noise's own uncertainty may be negative, where the mean
+/// over the noises that the data allow is smaller: the sources before it share it in proportion.
 std::vector<Source> sources_of(const Solution& fit) {
   const Eigen::Index r = fit.rank.basis.cols();
   std::vector<Source> out;
@@ -56,9 +57,14 @@ std::vector<Budget> uncertainty_budget(const Model& model, const Solution& fit,
       const Parameter& parameter = term.effect->parameters()[p];
       const Eigen::RowVectorXd row = fit.parameters.jacobian.row(index) * fit.uncertainty.basis;
       Budget budget{term.name + "." + parameter.name, parameter.unit, {}};
+      double sum = 0.0;
       for (const Source& source : sources) {
         const double variance = (row * source.covariance * row.transpose()).value();
+        if (variance < 0.0 && sum > 0.0)
+          for (BudgetLine& line : budget.lines)
+            line.standard_uncertainty *= std::sqrt(std::max(1.0 + variance / sum, 0.0));
         budget.lines.push_back({source.name, source.type, std::sqrt(std::max(variance, 0.0))});
+        sum += variance;
       }
       if (more)
         budget.lines.push_back({"other explanations", EvaluationType::type_a,

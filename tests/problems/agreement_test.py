@@ -144,8 +144,9 @@ class Agreement(unittest.TestCase):
         for row, budget in zip(page.table("Uncertainty budget"), final["uncertainty_budget"]):
             parameter = next(p for p in final["parameters"] if p["name"] == budget["parameter"])
             u = parameter["standard_uncertainty"]
-            # Two digits, rounded up: a tenth at most.
-            self.assertAlmostEqual(float(row[-1]), u, delta=0.1 * u)
+            self.assertAlmostEqual(float(row[-1]), u, delta=0.06 * u)
+            squares = sum(line["standard_uncertainty"] ** 2 for line in budget["lines"])
+            self.assertAlmostEqual(squares / u**2, 1.0, delta=1e-9, msg=budget["parameter"])
         for row, known in zip(page.table("What the data determine instead"),
                               final["identifiability"]["determined"]):
             self.same(row[1], known)

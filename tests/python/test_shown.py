@@ -30,7 +30,7 @@ def test_a_notebook_shows_a_table_and_a_picture(report):
     for parameter in report.parameters:
         assert parameter.name in shown
     drift = next(p for p in report.parameters if p.name == "thermal_drift.amplitude_um")
-    assert f"{drift.value:.3f} ± " in shown and "not determined" in shown
+    assert f"{drift.value:.3f} ± {drift.expanded_uncertainty:.3f}" in shown and "not determined" in shown
     xml.etree.ElementTree.fromstring(report._repr_svg_())
     assert report._repr_svg_() in shown
 
