@@ -12,24 +12,26 @@ namespace slideway {
 SampleResiduals::Trace::Trace(const Observation& observation) : profile(observation.profile) {
   const std::vector<double>& positions = profile->positions;
   const LowBand& low_band = observation.low_band;
-  const double step =
-      (positions.back() - positions.front()) / static_cast<double>(low_band.samples() - 1);
-  const double half = std::ldexp(0.5 * step, low_band.options().level);
-  const std::vector<double> places = low_band.positions(positions);
   std::vector<Eigen::Index> undescribed;
   std::ranges::set_difference(left_out_values(observation), low_band.unmeasured(),
                               std::back_inserter(undescribed));
-  for (const Eigen::Index value : undescribed) {
+  if (!undescribed.empty()) {
+    const double step =
+        (positions.back() - positions.front()) / static_cast<double>(low_band.samples() - 1);
+    const double half = std::ldexp(0.5 * step, low_band.options().level);
+    const std::vector<double> places = low_band.positions(positions);
     const auto at = [&](double place) {
       return std::ranges::lower_bound(positions, place) - positions.begin();
     };
-    const double place = places[static_cast<std::size_t>(value)];
-    left_out.emplace_back(at(place - half), at(place + half) - at(place - half));
+    for (const Eigen::Index value : undescribed) {
+      const double place = places[static_cast<std::size_t>(value)];
+      left_out.emplace_back(at(place - half), at(place + half) - at(place - half));
+    }
   }
   const auto count = std::ssize(positions);
   level.resize(count, 2);
   level.col(0).setOnes();
-  level.col(1) = Eigen::Map<const Eigen::VectorXd>(profile->positions.data(), count);
+  level.col(1) = Eigen::Map<const Eigen::VectorXd>(positions.data(), count);
   for (const auto& [first, those] : left_out) level.middleRows(first, those).setZero();
   level = orthonormal(std::move(level));
 }

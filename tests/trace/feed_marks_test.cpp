@@ -116,8 +116,8 @@ TEST(FeedMarks, OfWhichTheLowBandHasASlowWaveAreTakenFromTheSamples) {
   }
 }
 
-// 43.86, 110 and 43.86 µm a turn, read every 43.7 µm: those of the first and the third cut are
-// waves of 1.6 cycles over the trace, H = 0.3 µm deep at most, as large as the wave of the slide.
+// 44.19, 110 and 44.19 µm a turn, read every 43.7 µm: those of the first and the third cut are
+// waves of 5 cycles over the trace, H = 0.3 µm deep at most, as large as the wave of the slide.
 // What the nose can leave is in the model, so the slide's wave keeps its size, and its names: along
 // one radius it may be the floor's, too.
 TEST(FeedMarks, FoldedToASlowWaveDoNotHideAWaveOfTheSlide) {
