@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "heat.hpp"
 #include "local_forms.hpp"
 #include "process.hpp"
 #include "structure.hpp"
@@ -76,6 +77,8 @@ std::vector<UnnamedRival> unnamed_rivals(ModelExtender& extender, const Effects&
       out.push_back({"a process in " + variable.symbol, absent, true,
                      0.5 * gain - best_process(data, variable).log_evidence});
     }
+    out.push_back({"heat that lifts and tilts the slide", absent, false,
+                   0.5 * gain - heat_lifts_and_tilts(fitted.model, data, linear)});
     if (is_way && shows_slide_only(linear)) continue;
     if (absent.size() == 1 || absent.size() == members.size())
       out.push_back(

@@ -41,7 +41,9 @@ Eigen::MatrixXd images(const Model& model, const ModelTerm& term, const std::vec
 
 /// What the low band of a profile shows beside the model.
 struct Beside {
-  Eigen::MatrixXd images;  // of the values of parameters, and behind those of their uncertainties
+  // Of the values of parameters, and behind those of their uncertainties. What the form of one
+  // profile can take is in them: other profiles share that form, and not the marks.
+  Eigen::MatrixXd images;
   // Of what is faster than slow cosines: the square without and with the images, that of their sum,
   // its product with the values, what the columns of the effect without options take, and their
   // number.
@@ -57,9 +59,9 @@ struct Beside {
     Eigen::MatrixXd all(n, parts + of_whole.cols() + 1 + linear.cols());
     all << of_parts, of_whole, observation.values, linear;
     all = levelled(observation, std::move(all));
+    images = all.leftCols(parts);
     const Eigen::MatrixXd form = orthonormal(all.rightCols(linear.cols()));
     all -= form * (form.transpose() * all).eval();
-    images = all.leftCols(parts);
     const Eigen::MatrixXd slow =
         orthonormal(levelled(observation, slow_cosines(n, slow_cosine_count(n, model.gates))));
     all -= slow * (slow.transpose() * all).eval();

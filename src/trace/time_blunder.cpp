@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "disagreement.hpp"
+#include "heat.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/noise_model.hpp"
@@ -93,10 +94,18 @@ class TimeFinder {
         shown_(shown),
         noise_(noise_beside(extender.base().fit.linear, problem.trace.gates)) {}
 
-  /// Holds each profile out that has a clock.
+  /// Holds each profile out that has a clock. Heat that tilts the slide shows in each cut in
+  /// another way: a wrong clock that explains less is none.
   void try_all() {
-    for (const Observation* const observation : fitted_observations(extender_.base().model))
+    const FittedModel& base = extender_.base();
+    for (const Observation* const observation : fitted_observations(base.model))
       if (observation->profile->setup.cut_direction) try_profile(observation->profile->name);
+    if (found_.empty()) return;
+    const Whitened data(base.fit.linear, noise_);
+    const double heat = data.residual().squaredNorm() -
+                        2.0 * heat_lifts_and_tilts(base.model, data, base.fit.linear);
+    const auto costs_more = [&](const auto& each) { return each.first > heat; };
+    if (std::ranges::all_of(found_, costs_more)) found_.clear();
   }
 
   /// Those that leave the least, one of a kind in each profile. A start may be any: where one

@@ -143,6 +143,25 @@ TEST(FeedMarks, FoldedToASlowWaveDoNotHideAWaveOfTheSlide) {
   }
 }
 
+// 145.5, 145.5 and 364 µm a turn, read every 43.7 µm: the tenth harmonic, 27 nm, is a wave of 0.8
+// cycle over the first and the second trace, turned round by half a period of it. The polynomial
+// of one cut could take it, but that of the slide is the same for all, and the marks are not.
+TEST(FeedMarks, OfHighOrderFoldedToASlowWaveAreNoOtherEffect) {
+  const Designs designs{
+      {{16.0138, 20.0031, true}, {16.0138, 20.01037, true}, {40.01, 20.0173, true}}};
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    Problem problem = problem_of();
+    problem.low_band.level = 3;
+    std::vector<Profile> profiles = read(designs, 0.4, seed);
+    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.4;
+    const Closed result = closed(problem, profiles);
+    SCOPED_TRACE(story(result));
+    EXPECT_EQ(result.verdict, TraceVerdict::explained);
+    EXPECT_EQ(named(result), std::vector<std::string>());
+    expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
+  }
+}
+
 // Under a random walk cuts differ by more than the noise of each says, so the verdict may be
 // unnamed; the marks are taken all the same, and nothing else has a name.
 TEST(FeedMarks, AreTakenFromTheSamplesBesideARandomWalk) {
