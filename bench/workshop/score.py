@@ -100,6 +100,12 @@ def limit(report: Record, hidden: Hidden) -> float | None:
     return math.exp(points[0][1] if at < points[0][0] else points[-1][1])
 
 
+def unseen(report: Record) -> float:
+    """By how much what the data do not show may move Δβxz, rad: the largest the report states."""
+    moved = [x["squareness_rad"] for x in report["trace"].get("detection_limits", [])]
+    return max((abs(x) for x in moved if x is not None), default=0.0)
+
+
 def size_of(report: Record, hidden: Hidden) -> Record | None:
     """Size of the effect where it was accepted under its own name."""
     if not hidden.parameter:
@@ -128,6 +134,8 @@ def judge(report: Record, case: Case) -> Record:
             "limit": limit(report, hidden) if hidden.parameter else None,
             "found": size_of(report, hidden)})
     dbeta = within(parameter(report, "squareness.dbeta_xz"), case.shop.squareness)
+    if dbeta is not None:
+        dbeta["unseen"] = unseen(report)
     return {"verdict": report["trace"]["verdict"], "names": names, "wrong": wrong, "dbeta": dbeta,
             "hidden": hidden_ones}
 

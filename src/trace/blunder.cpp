@@ -32,7 +32,8 @@ constexpr std::array<std::pair<BlunderKind, double>, 4> kPositionFactors{
      {BlunderKind::position_metre, 1000.0},
      {BlunderKind::position_per_metre, 1e-3}}};
 // Of the time of the cut: a start that was forgotten, or is one of another cut.
-constexpr std::array<double, 8> kShifts{-2.0, -1.0, -0.5, -0.25, 0.25, 0.5, 1.0, 2.0};
+constexpr std::array<double, 12> kShifts{-2.0,   -1.0,  -0.5, -0.25, -0.125, -0.0625,
+                                         0.0625, 0.125, 0.25, 0.5,   1.0,    2.0};
 constexpr int kHalvings = 6;  // of the step in which the best of these is moved
 
 double length_of(const Profile& profile) { return profile.setup.last_mm - profile.setup.first_mm; }
@@ -168,8 +169,9 @@ class Finder {
   [[nodiscard]] std::vector<Blunder> find() const {
     std::vector<Blunder> out;
     for (std::size_t i = 0; i < noise_.size(); ++i)
-      try_profile(i, hypotheses_of(i),
-                  [&](const Blunder& each, const Hypothesis&) { out.push_back(each); });
+      try_profile(i, hypotheses_of(i), [&](const Blunder& each, const Hypothesis&) {
+        if (each.left <= model_.gates.blunder_left) out.push_back(each);
+      });
     std::ranges::stable_sort(out, {}, &Blunder::delta_bic);
     if (noise_.size() > 2)  // two that disagree do not say which of them is wrong
       std::erase_if(out, [&](const Blunder& each) {
@@ -189,10 +191,11 @@ class Finder {
       });
       std::optional<CorrectedBlunder> start;
       const auto tell = [&](const Blunder& each, const Hypothesis& by) {
-        if (each.what != BlunderKind::clock)
+        if (each.what == BlunderKind::clock) {  // it may come nearer once it is moved
+          if (!start || each.delta_bic < start->blunder.delta_bic) start = {each, *by.profile};
+        } else if (each.left <= model_.gates.blunder_left) {
           out.push_back({each, *by.profile});
-        else if (!start || each.delta_bic < start->blunder.delta_bic)
-          start = {each, *by.profile};
+        }
       };
       try_profile(i, list, tell);
       if (!start) continue;
@@ -204,7 +207,7 @@ class Finder {
         try_profile(i, {{BlunderKind::clock, 1.0, earlier}, {BlunderKind::clock, 1.0, later}},
                     tell);
       }
-      out.push_back(*std::move(start));
+      if (start->blunder.left <= model_.gates.blunder_left) out.push_back(*std::move(start));
     }
     return out;
   }
@@ -290,8 +293,8 @@ class Finder {
     return out;
   }
 
-  /// Tells each hypothesis that holds. In another unit the noise of a profile is like its sisters',
-  /// or half as unlike, in ln, as it was recorded; that of its own fine band is enough.
+  /// Tells each hypothesis that lowers the BIC. In another unit the noise of a profile is like its
+  /// sisters', or half as unlike, in ln, as it was recorded; that of its own fine band is enough.
   template <typename Told>
   void try_profile(std::size_t i, const std::vector<Hypothesis>& list, const Told& tell) const {
     const Gates& gates = model_.gates;
@@ -315,14 +318,13 @@ class Finder {
       const Prediction& meant = each.profile ? prediction(observation, others, noise) : as_it_is;
       const auto [after, size] = meant.best(each.factor, factor);
       if (after > before - gates.blunder_bic) continue;
-      const double left = meant.disagreement(each.factor) / square;
-      if (left > gates.blunder_left) continue;
       const bool is_like_sisters =
           std::abs(std::log(size)) <=
               std::max(2.0 * std::log(factor), 0.5 * std::log(size_before)) ||
           std::abs(std::log(std::abs(each.factor) * own)) <= 2.0 * std::log(factor);
       if (std::abs(each.factor) != 1.0 && !is_like_sisters) continue;
-      tell({profile.name, each.kind, after - before, left}, each);
+      tell({profile.name, each.kind, after - before, meant.disagreement(each.factor) / square},
+           each);
     }
   }
 

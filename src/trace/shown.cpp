@@ -39,6 +39,16 @@ Eigen::MatrixXd images(const Model& model, const ModelTerm& term, const std::vec
   return out;
 }
 
+/// Of normal values, by the median of their sizes: the few at the axis and the rim, where grooves
+/// have another form, may be far larger.
+double variance_of_most(const Eigen::VectorXd& values) {
+  constexpr double kNormal = 0.6744897501960817;  // median of the size of a standard normal value
+  Eigen::VectorXd sizes = values.cwiseAbs();
+  const auto middle = sizes.begin() + sizes.size() / 2;
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return *middle * *middle / (kNormal * kNormal);
+}
+
 /// What the low band of a profile shows beside the model.
 struct Beside {
   // Of the values of parameters, and behind those of their uncertainties. What the form of one
@@ -71,12 +81,13 @@ struct Beside {
     before = values.squaredNorm();
     shared = values.dot(sum);
     of_sum = sum.squaredNorm();
-    after = (values - sum).squaredNorm();
+    const Eigen::VectorXd rest = values - sum;
+    after = rest.squaredNorm();
     taken_by_whole = (whole.transpose() * values).squaredNorm();
     columns_of_whole = static_cast<double>(whole.cols());
     degrees = static_cast<double>(n - observation.left_out() - form.cols() - slow.cols() -
                                   std::ssize(observation.nuisance_names));
-    noise = std::min(after / degrees, noise_of_fit * noise_of_fit);
+    noise = std::min({after / degrees, noise_of_fit * noise_of_fit, variance_of_most(rest)});
   }
 
   /// Of the images together, to be expected.
@@ -239,6 +250,23 @@ std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedMo
     for (ShownEffect& each : own) each.is_settled = any;  // none of all profiles beside one
   }
   return out;
+}
+
+std::vector<ShownEffect> of_any_phase_in(std::vector<ShownEffect> shown,
+                                         const std::string& profile) {
+  for (ShownEffect& each : shown) {
+    if (each.effect.options.profiles.front() != profile) continue;
+    std::vector<Prior>& priors = each.effect.priors;
+    for (std::size_t h = 0; h + 1 < priors.size(); h += 2) {  // cosine and sine of a harmonic
+      Prior &cosine = priors[h], &sine = priors[h + 1];
+      const double size =
+          std::hypot(std::hypot(cosine.value, sine.value),
+                     std::hypot(cosine.standard_uncertainty, sine.standard_uncertainty));
+      cosine.value = sine.value = 0.0;
+      cosine.standard_uncertainty = sine.standard_uncertainty = size;
+    }
+  }
+  return shown;
 }
 
 void append_settled(Model& model, const std::vector<ShownEffect>& shown) {

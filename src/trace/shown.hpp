@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "slideway/identify/fit.hpp"
@@ -26,6 +27,11 @@ struct ShownEffect {
 /// of all are left out. None is taken where all together are below half the noise of a value, or
 /// where what the low band has faster than slow cosines holds less than half of them.
 std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedModel& declared);
+
+/// The same, where one profile is meant in another way, its sign turned or its direction: of the
+/// effects of its own only the size is known then, not the phase.
+std::vector<ShownEffect> of_any_phase_in(std::vector<ShownEffect> shown,
+                                         const std::string& profile);
 
 /// Adds those that are settled, with their priors.
 void append_settled(Model& model, const std::vector<ShownEffect>& shown);

@@ -95,7 +95,8 @@ class TimeFinder {
         noise_(noise_beside(extender.base().fit.linear, problem.trace.gates)) {}
 
   /// Holds each profile out that has a clock. Heat that tilts the slide shows in each cut in
-  /// another way: a wrong clock that explains less is none.
+  /// another way: a wrong clock that does not explain more, by what noise of the size that it
+  /// leaves gives, is none.
   void try_all() {
     const FittedModel& base = extender_.base();
     for (const Observation* const observation : fitted_observations(base.model))
@@ -104,8 +105,10 @@ class TimeFinder {
     const Whitened data(base.fit.linear, noise_);
     const double heat = data.residual().squaredNorm() -
                         2.0 * heat_lifts_and_tilts(base.model, data, base.fit.linear);
-    const auto costs_more = [&](const auto& each) { return each.first > heat; };
-    if (std::ranges::all_of(found_, costs_more)) found_.clear();
+    const double least =
+        std::ranges::min(found_, {}, [](const auto& each) { return each.first; }).first;
+    const double noise = std::max(1.0, least / static_cast<double>(data.values()));
+    if (heat - least < problem_.trace.gates.tie_bic * noise) found_.clear();
   }
 
   /// Those that leave the least, one of a kind in each profile. A start may be any: where one
@@ -162,7 +165,9 @@ class TimeFinder {
     extender_.limit().check();
     std::vector<Profile> profiles = extender_.profiles();
     *std::ranges::find(profiles, corrected.meant.name, &Profile::name) = corrected.meant;
-    const FittedModel declared = fitted_to(problem_, profiles, shown_);
+    const bool turned = corrected.blunder.what == BlunderKind::cut_direction;
+    const FittedModel declared = fitted_to(
+        problem_, profiles, turned ? of_any_phase_in(shown_, corrected.meant.name) : shown_);
     const FittedModel fitted = fit_model(with(declared.model, effect),
                                          shapes_with(declared.fit.estimate.shapes, effect.shape));
     const Gates& gates = problem_.trace.gates;
@@ -191,7 +196,7 @@ Turned with_sign_turned(const Problem& problem, ModelExtender& extender,
   extender.limit().check();
   std::vector<Profile> profiles = extender.profiles();
   for (double& value : std::ranges::find(profiles, which, &Profile::name)->values) value = -value;
-  const FittedModel fitted = fitted_to(problem, profiles, shown);
+  const FittedModel fitted = fitted_to(problem, profiles, of_any_phase_in(shown, which));
   const Linearisation& linear = fitted.fit.linear;
   const Gates& gates = problem.trace.gates;
   Turned out;

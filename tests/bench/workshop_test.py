@@ -128,7 +128,8 @@ REPORT = {
                    {"accepted": "step", "ambiguous_with": [], "profiles": ["cut2"]}],
         "blunders": [{"profile": "cut2", "what": "wrong sign"}],
         "detection_limits": [{"effect": "slide_periodic", "value": 0.01, "by_shape": [
-            {"shape": 1.0, "value": 0.01}, {"shape": 100.0, "value": 0.04}]}]}}
+            {"shape": 1.0, "value": 0.01}, {"shape": 100.0, "value": 0.04}], "squareness_rad": -3e-6},
+            {"effect": "step", "value": 0.1, "by_shape": [], "squareness_rad": None}]}}
 
 
 class Score(unittest.TestCase):
@@ -140,6 +141,7 @@ class Score(unittest.TestCase):
         self.assertEqual([one["name"] for one in found["names"]],
                          ["slide_periodic", "step", "wrong sign of cut2"])
         self.assertAlmostEqual(found["dbeta"]["error"], 1e-6)
+        self.assertEqual(found["dbeta"]["unseen"], 3e-6)
         one = found["hidden"][0]
         self.assertTrue(one["in_set"] and not one["alone"])
         self.assertAlmostEqual(one["limit"], 0.02)  # half way between by logarithms
@@ -160,7 +162,7 @@ def record(name, seed, error, **changes):
     group = workshop.CLASSES[name][0]
     return {"class": name, "group": group, "seed": seed, "draw": 0, "status": "done", "seconds": 1.0,
             "verdict": "nothing_missing", "names": [], "wrong": [], "hidden": [],
-            "dbeta": {"error": error, "U": 1.0}} | changes
+            "dbeta": {"error": error, "U": 1.0, "unseen": 1.0}} | changes
 
 
 class Table(unittest.TestCase):
@@ -172,6 +174,7 @@ class Table(unittest.TestCase):
         page = table.page([json.loads(json.dumps(case)) for case in cases])
         self.assertIn("| clean: a wrong name alone | ≤ 1 % | 2 of 4 (50.0 %) | `torn 4`, Δβxz 2.5 U off |", page)
         self.assertIn("| `white` | 2 | 1 nothing_missing, 1 explained | 1 | 1 |  |  | 1/2 | 1.0 | 1.0 |", page)
+        self.assertIn("unseen effects may move it | never | 1 of 4 (25.0 %) | `torn 4`, Δβxz 2.5 U off |", page)
         self.assertIn("| failed: m | 1 | `kink 5` |", page)
 
     def test_stability_counts_the_statement_said_most_often(self):

@@ -188,6 +188,22 @@ TEST(Disagreement, AStartNobodyWouldGuessIsNamedWithItsCut) {
   EXPECT_THAT(named(result), ::testing::IsEmpty());
 }
 
+// 36 s of a cut of 8 minutes: a share of it that is tried leaves more than a tenth of how the cut
+// differs, before it is moved.
+TEST(Disagreement, AStartBetweenThoseTriedFirstIsNamed) {
+  const Problem problem = of_carriages();
+  std::vector<Profile> cuts = warmed(std::nullopt, 7, 3e-3);
+  for (std::size_t i = 0; i < cuts[1].values.size(); ++i) {  // the slide had been warming for 36 s
+    const double minutes = (40.0 - cuts[1].positions[i]) / 5.0;
+    cuts[1].values[i] -= 3e-3 * (std::exp(-(minutes + 0.6) / 3.0) - std::exp(-minutes / 3.0));
+  }
+  const Closed result = closed(problem, cuts);
+  SCOPED_TRACE(story(result));
+  ASSERT_FALSE(result.blunders.empty());
+  EXPECT_EQ(result.blunders.front().profile, "cut2");
+  EXPECT_EQ(result.blunders.front().what, BlunderKind::clock);
+}
+
 // Heat that bends the bed tilts the slide as well, so it shows in each cut in another way. A wrong
 // start of one cut, or a tool that runs in, can come near that: neither is said alone.
 TEST(Disagreement, HeatThatTiltsTheSlideIsNoWrongStart) {

@@ -178,6 +178,38 @@ TEST(FeedMarks, AreTakenFromTheSamplesBesideARandomWalk) {
 }
 
 // What the samples of a cut say of its marks is in its unit, too.
+// The marks of a cut whose sign is turned, or whose direction, have another phase than its samples
+// showed before. All cuts have a bow of 8 µm, or warm up by 0.8 µm with a time constant of a tenth
+// of the first cut.
+TEST(FeedMarks, DoNotHideThatACutIsTheWrongWayRound) {
+  const auto bow = [](const turning::ToolPoint& p) { return 2e-5 * p.r * p.r; };
+  const auto warming = [](const turning::ToolPoint& p) {
+    return 0.8e-3 * -std::expm1(-p.t / 11.0);
+  };
+  Problem problem = problem_of();
+  problem.low_band.level = 2;
+  for (const std::size_t which : {0U, 1U, 2U}) {
+    std::vector<Profile> profiles = read(kOrdinary, 0.8, 1, 0.0, bow);
+    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    for (double& value : profiles[which].values) value = -value;
+    const Closed turned = closed(problem, profiles);
+    SCOPED_TRACE(story(turned));
+    ASSERT_THAT(turned.blunders, SizeIs(1));
+    EXPECT_EQ(turned.blunders[0].profile, profiles[which].name);
+    EXPECT_EQ(turned.blunders[0].what, BlunderKind::sign);
+
+    profiles = read(kOrdinary, 0.8, 1, 0.0, warming);
+    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    std::optional<CutDirection>& direction = profiles[which].setup.cut_direction;
+    direction = *direction == CutDirection::inward ? CutDirection::outward : CutDirection::inward;
+    const Closed swapped = closed(problem, profiles);
+    SCOPED_TRACE(story(swapped));
+    ASSERT_FALSE(swapped.blunders.empty());
+    EXPECT_EQ(swapped.blunders[0].profile, profiles[which].name);
+    EXPECT_EQ(swapped.blunders[0].what, BlunderKind::cut_direction);
+  }
+}
+
 TEST(FeedMarks, DoNotHideThatACutIsInAnotherUnit) {
   for (const double factor : {1e-3, 1e3}) {
     Problem problem = problem_of();
