@@ -21,9 +21,8 @@ struct Radii {
       trace.push_back(stations.trace(i));
       largest = std::max(largest, radius.back());
     }
-    width = (setup.last_mm - setup.first_mm) / static_cast<double>(positions.size());
-    if (setup.feed_mm_per_min && setup.spindle_rpm)
-      width = std::max(width, *setup.feed_mm_per_min / *setup.spindle_rpm);
+    width = std::max((setup.last_mm - setup.first_mm) / static_cast<double>(positions.size()),
+                     setup.feed_per_revolution().value_or(0.0));
   }
 
   [[nodiscard]] ValueIndices within(double centre, double reach) const {

@@ -99,9 +99,8 @@ TravelRange travel_range(const std::vector<Profile>& profiles, const Machine& ma
     const double foot = profile.setup.base_mm.value_or(0.0) / 2.0;  // beyond the centre of a bridge
     range.slide_min = std::min(range.slide_min, own.least - foot);
     range.slide_max = std::max(range.slide_max, own.greatest + foot);
-    if (profile.setup.feed_mm_per_min && profile.setup.spindle_rpm)
-      range.coarsest_feed_mm = std::max(
-          range.coarsest_feed_mm, *profile.setup.feed_mm_per_min / *profile.setup.spindle_rpm);
+    range.coarsest_feed_mm =
+        std::max(range.coarsest_feed_mm, profile.setup.feed_per_revolution().value_or(0.0));
     range.z_min = std::min(range.z_min, profile.setup.z_mm);
     range.z_max = std::max(range.z_max, profile.setup.z_mm);
     if (profile.setup.reading_times)

@@ -7,9 +7,9 @@
 namespace slideway {
 
 std::optional<double> largest_feed_mark(const Setup& setup, int harmonic) {
-  if (!setup.feed_mm_per_min || !setup.spindle_rpm || !setup.nose_radius_mm) return std::nullopt;
-  const double feed = *setup.feed_mm_per_min / *setup.spindle_rpm;
-  const double height = feed * feed / (8.0 * *setup.nose_radius_mm);
+  const std::optional<double> feed = setup.feed_per_revolution();
+  if (!feed || !setup.nose_radius_mm) return std::nullopt;
+  const double height = *feed * *feed / (8.0 * *setup.nose_radius_mm);
   return harmonic == 1 ? height / 2.0 : 8.0 * height / (kPi * kPi * harmonic * harmonic);
 }
 
@@ -76,10 +76,10 @@ double Stations::time(Eigen::Index i) const {
 
 double Stations::distance(Eigen::Index i) const {
   const double r = radius(i);
-  const double feed_per_revolution = *setup_->feed_mm_per_min / *setup_->spindle_rpm;
-  if (setup_->cut_direction == CutDirection::outward) return kPi * r * r / feed_per_revolution;
+  const double feed = *setup_->feed_per_revolution();
+  if (setup_->cut_direction == CutDirection::outward) return kPi * r * r / feed;
   const double outer = *setup_->cut_radius_mm;
-  return kPi * (outer - r) * (outer + r) / feed_per_revolution;
+  return kPi * (outer - r) * (outer + r) / feed;
 }
 
 }  // namespace slideway

@@ -62,8 +62,6 @@ double largest_mark_at(const Profile& profile, const Effect& effect,
   return out;
 }
 
-double feed_per_turn(const Setup& setup) { return *setup.feed_mm_per_min / *setup.spindle_rpm; }
-
 /// Whether cuts of different feeds show a wave for certain, and one serves all cuts as well as one
 /// of its own in each would. Feed marks of another feed are of another depth, f²/(8 r), and begin
 /// elsewhere.
@@ -75,10 +73,11 @@ bool is_one_wave(const std::vector<const Observation*>& observations, const Whit
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Setup& setup = observations[i]->profile->setup;
     if (!own.acts_on(*observations[i]->profile)) continue;
-    if (!setup.feed_mm_per_min || !setup.spindle_rpm) return false;
+    const std::optional<double> feed = setup.feed_per_revolution();
+    if (!feed) return false;
     cuts.push_back(i);
     if (fitted.segment(data.first_row(i), data.count(i)).norm() > gates.size)
-      feeds.push_back(feed_per_turn(setup));
+      feeds.push_back(*feed);
   }
   if (feeds.size() < 2 || std::ranges::max(feeds) < kOtherFeed * std::ranges::min(feeds))
     return false;

@@ -122,7 +122,7 @@ constexpr std::size_t kMostBounded = 4;
 /// The harmonics whose image in the low band stands out of its noise, which may hold what is
 /// missing, or is a tenth of that of all; of those whose values are not known but bounded, the most
 /// visible ones.
-std::vector<std::size_t> seen_in(const Beside& beside, const std::vector<Prior>& values) {
+std::vector<std::size_t> seen_in(const Beside& beside, const ShownBySamples& shown) {
   const Eigen::Index parameters = beside.images.cols() / 2;
   const auto image = [&](std::size_t h) {
     const auto column = 2 * static_cast<Eigen::Index>(h);
@@ -130,10 +130,10 @@ std::vector<std::size_t> seen_in(const Beside& beside, const std::vector<Prior>&
            beside.images.middleCols(parameters + column, 2).squaredNorm();
   };
   std::vector<std::size_t> out, bounded;
-  for (std::size_t h = 0; 2 * h < values.size(); ++h) {
+  const std::vector<int>& harmonics = shown.options.harmonics;
+  for (std::size_t h = 0; h < harmonics.size(); ++h) {
     if (image(h) < std::min(kCertain * kCertain * beside.noise, kTenth * beside.square())) continue;
-    const bool is_bounded = values[2 * h].value == 0.0 && values[2 * h + 1].value == 0.0;
-    (is_bounded ? bounded : out).push_back(h);
+    (std::ranges::count(shown.bounded, harmonics[h]) > 0 ? bounded : out).push_back(h);
   }
   std::ranges::stable_sort(bounded, std::greater(), image);
   bounded.resize(std::min(bounded.size(), kMostBounded));
@@ -164,7 +164,7 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
     out.depth += kMicrometre * std::max(std::abs(value.value), value.standard_uncertainty);
   if (!has_image(beside)) return std::nullopt;
   if (seen->may_be_whole && whole_takes_as_much(beside)) return out;
-  for (const std::size_t h : seen_in(beside, seen->values)) {
+  for (const std::size_t h : seen_in(beside, *seen)) {
     out.effect.options.harmonics.push_back(options.harmonics[h]);
     out.effect.priors.push_back(seen->values[2 * h]);
     out.effect.priors.push_back(seen->values[2 * h + 1]);
@@ -183,7 +183,7 @@ constexpr double kVisible = 0.25;  // of the noise of a value: several of them s
 ValueIndices ends_of(const Observation& observation, const ShownEffect& shown,
                      const Machine& machine, const Gates& gates, double noise) {
   const Setup& setup = observation.profile->setup;
-  const double feed = *setup.feed_mm_per_min / *setup.spindle_rpm;
+  const double feed = *setup.feed_per_revolution();
   const Stations stations = observation.profile->stations(machine);
   Eigen::MatrixXd ends = Eigen::MatrixXd::Zero(stations.size(), 1);
   const double at_axis = std::max(shown.depth, 8.0 * largest_feed_mark(setup, 1).value_or(0.0));

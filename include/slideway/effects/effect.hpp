@@ -158,6 +158,7 @@ struct Prior {
 struct ShownBySamples {
   EffectOptions options;
   std::vector<Prior> values;  // of its parameters, by the samples
+  std::vector<int> bounded;   // harmonics that they do not show: their values are 0 within a bound
   double p_value = 1.0;       // that noise does so
   bool may_be_whole = false;  // whether the effect without options may have made them
 };

@@ -51,12 +51,18 @@ struct Setup {
   double azimuth_deg = 0.0;  // of a face: direction of the trace, X > 0, on the workpiece
   double first_mm = 0.0;     // smallest and largest trace position
   double last_mm = 0.0;
+
+  /// f, mm; none where feed or spindle speed is not known.
+  [[nodiscard]] std::optional<double> feed_per_revolution() const {
+    if (!feed_mm_per_min || !spindle_rpm) return std::nullopt;
+    return *feed_mm_per_min / *spindle_rpm;
+  }
 };
 
 /// Largest amplitude, mm, of a harmonic of the grooves that the nose of a tool leaves, H = f²/(8
 /// r_ε) deep: of the first one H/2, that of the wave a stylus makes of ridges as round as the
 /// grooves; of the others 8 H/(π h)², twice that of parabolas, as the edge of a tool is convex.
-/// None where feed per turn or nose radius is not known.
+/// None where feed per revolution or nose radius is not known.
 std::optional<double> largest_feed_mark(const Setup& setup, int harmonic);
 
 /// The independent variable of an effect: what its form is a function of, one per kind of cause.

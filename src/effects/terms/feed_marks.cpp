@@ -135,7 +135,7 @@ class FeedMarks : public LinearEffect {
                Eigen::Ref<Eigen::MatrixXd> out) const override {
     if (!applies_to(stations.setup())) return void(out.setZero());
     const Setup& setup = stations.setup();
-    const double feed = *setup.feed_mm_per_min / *setup.spindle_rpm;
+    const double feed = *setup.feed_per_revolution();
     const double part = coarsest_feed_mm_ > 0.0 ? feed / coarsest_feed_mm_ : 1.0;
     for (Eigen::Index i = 0; i < stations.size(); ++i)
       out(i, 0) = part * part * scallop(stations, i);
@@ -153,7 +153,7 @@ class FeedMarks : public LinearEffect {
     if (!applies_to(setup) || !has_grooves(setup) || count < kLeastSamples) return std::nullopt;
     const Eigen::Index first = (all - count) / 2;
     Eigen::VectorXd places(count), radii(count), phase(count), weights(count);
-    const double feed = *setup.feed_mm_per_min / *setup.spindle_rpm, ends = kEnds * feed;
+    const double feed = *setup.feed_per_revolution(), ends = kEnds * feed;
     for (Eigen::Index i = 0; i < count; ++i) {
       places[i] = stations.trace(first + i);
       radii[i] = stations.radius(first + i);
@@ -172,6 +172,7 @@ class FeedMarks : public LinearEffect {
     auto [harmonics, bounded] = resolved(lines, phase, significance, most.value_or(0.0));
     const double largest = is_slow ? *most : harmonics[0].values.norm();
     for (const int h : bounded) harmonics.push_back(within_parabola(largest, h));
+    out.bounded = std::move(bounded);
     std::ranges::sort(harmonics, {}, &Harmonic::order);
     for (const Harmonic& each : harmonics) out.options.harmonics.push_back(each.order);
     const std::vector<Parameter> parameters = parameters_of(out.options.harmonics);
