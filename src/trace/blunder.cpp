@@ -295,6 +295,7 @@ class Finder {
 
   /// Tells each hypothesis that lowers the BIC. In another unit the noise of a profile is like its
   /// sisters', or half as unlike, in ln, as it was recorded; that of its own fine band is enough.
+  /// Where that was like its sisters' as recorded, the unit is right.
   template <typename Told>
   void try_profile(std::size_t i, const std::vector<Hypothesis>& list, const Told& tell) const {
     const Gates& gates = model_.gates;
@@ -322,7 +323,8 @@ class Finder {
           std::abs(std::log(size)) <=
               std::max(2.0 * std::log(factor), 0.5 * std::log(size_before)) ||
           std::abs(std::log(std::abs(each.factor) * own)) <= 2.0 * std::log(factor);
-      if (std::abs(each.factor) != 1.0 && !is_like_sisters) continue;
+      const bool was_like_sisters = std::abs(std::log(own)) <= 2.0 * std::log(factor);
+      if (std::abs(each.factor) != 1.0 && (was_like_sisters || !is_like_sisters)) continue;
       tell({profile.name, each.kind, after - before, meant.disagreement(each.factor) / square},
            each);
     }

@@ -229,11 +229,9 @@ std::vector<Blunder> time_blunders_instead(const std::vector<AcceptedEffect>& ef
   const auto of_all_in_time = [](const AcceptedEffect& each) {
     return each.candidate->term.profiles.empty() && is_of_time(*each.candidate->term.effect);
   };
-  const auto of_some = [](const AcceptedEffect& each) {
-    return !each.candidate->term.profiles.empty() && !is_kinematic(*each.candidate);
-  };
-  if (std::ranges::none_of(effects, of_all_in_time) || std::ranges::none_of(effects, of_some) ||
-      !can_tell(extender))
+  const auto may_not_be = [](const AcceptedEffect& each) { return !is_kinematic(*each.candidate); };
+  if (std::ranges::none_of(effects, of_all_in_time) ||
+      std::ranges::count_if(effects, may_not_be) < 2 || !can_tell(extender))
     return {};
   TimeFinder finder(problem, extender, shown);
   finder.try_all();

@@ -14,7 +14,7 @@ std::vector<Blunder> find_time_blunders(const Problem& problem, ModelExtender& e
                                         const std::vector<ShownEffect>& shown);
 
 /// Wrong directions and starts in the place of effects, where one of time is of all profiles and
-/// another one of some: a cut whose clock is wrong has another share of what all have. None where
+/// there is another one: a cut whose clock is wrong has another share of what all have. None where
 /// the effects explain the profiles at a lower cost.
 std::vector<Blunder> time_blunders_instead(const std::vector<AcceptedEffect>& effects,
                                            const Problem& problem, ModelExtender& extender,

@@ -231,6 +231,21 @@ TEST(Disagreement, HeatThatTiltsTheSlideIsNoWrongStart) {
   }
 }
 
+// Divided by 25.4 a cut that warmed up by 0.6 µm would be as flat as the others; but its noise is
+// as theirs as it stands.
+TEST(Disagreement, ACutUnlikeItsSistersWithNoiseLikeTheirsIsInNoOtherUnit) {
+  const Problem problem = of_carriages();
+  for (const unsigned seed : {7U, 8U, 9U}) {
+    std::vector<Profile> cuts = warmed(std::nullopt, seed, 0.0);
+    for (std::size_t i = 0; i < cuts[1].values.size(); ++i)
+      cuts[1].values[i] -= 6e-4 * std::expm1(-(40.0 - cuts[1].positions[i]) / 5.0 / 1.5);
+    const Closed result = closed(problem, cuts);
+    SCOPED_TRACE(story(result));
+    EXPECT_TRUE(result.blunders.empty());
+    EXPECT_NE(result.verdict, TraceVerdict::nothing_missing);
+  }
+}
+
 /// Three cuts without heat, with a bow of 1.6 µm.
 std::vector<Profile> bowed() {
   std::vector<Profile> out = warmed(std::nullopt, 7, 0.0);
