@@ -85,12 +85,12 @@ Spectrum resolved(const LineTest& lines, const Eigen::VectorXd& phase, double si
   const auto fitted = [&]() -> std::vector<Harmonic> {
     if (phases.empty()) return {};
     const LineTest::Amplitudes of = lines.amplitudes(phases);
-    std::vector<Harmonic> out;
+    std::vector<Harmonic> list;
     for (std::size_t k = 0; k < orders.size(); ++k) {
       const auto at = 2 * static_cast<Eigen::Index>(k);
-      out.push_back({orders[k], of.values.segment<2>(at), of.uncertainties.segment<2>(at)});
+      list.push_back({orders[k], of.values.segment<2>(at), of.uncertainties.segment<2>(at)});
     }
-    return out;
+    return list;
   };
   const std::vector<Harmonic> all = fitted();
   const bool has_first = !all.empty() && all[0].order == 1;
