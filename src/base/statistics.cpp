@@ -70,4 +70,10 @@ Statistics statistics_of(std::span<const double> values) {
   return {all.mean, std::sqrt(all.squares / all.count), all.least, all.largest};
 }
 
+double median(std::span<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 }  // namespace slideway

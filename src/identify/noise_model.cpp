@@ -10,6 +10,7 @@
 #include "outstanding_line.hpp"
 #include "repeats.hpp"
 #include "slideway/base/parallel.hpp"
+#include "slideway/base/statistics.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
@@ -145,11 +146,10 @@ std::vector<double> stations_of(const Observation& observation) {
   if (steps.empty() || std::ranges::max(steps) <= (1.0 + kSameStep) * std::ranges::min(steps))
     return {};
   std::vector<double> sorted = steps;
-  std::ranges::nth_element(sorted, sorted.begin() + std::ssize(sorted) / 2);
-  const double median = sorted[sorted.size() / 2];
+  const double usual = median(sorted);
   std::vector<double> out{0.0};
   for (const double step : steps)
-    out.push_back(out.back() + std::max(std::round(kGrid * step / median) / kGrid, 1.0));
+    out.push_back(out.back() + std::max(std::round(kGrid * step / usual) / kGrid, 1.0));
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "slideway/base/distribution.hpp"
+#include "slideway/base/statistics.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/gates.hpp"
 #include "slideway/identify/identifiability.hpp"
@@ -159,9 +160,7 @@ class Comparison {
     }
     scatter_ = 1.0;
     if (ratios.size() < kKnowsScatter) return;
-    const auto median = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), median, ratios.end());
-    scatter_ = std::sqrt(std::max(1.0, *median));
+    scatter_ = std::sqrt(std::max(1.0, median(ratios)));
   }
 
   [[nodiscard]] std::optional<std::size_t> worst_misfit() const {

@@ -9,6 +9,7 @@
 #include "closure_net.hpp"
 #include "outlier_level.hpp"
 #include "slideway/base/distribution.hpp"
+#include "slideway/base/statistics.hpp"
 
 namespace slideway {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "outlier_level.hpp"
+#include "slideway/base/statistics.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/signal/low_band.hpp"
 

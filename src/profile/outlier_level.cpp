@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "slideway/base/parallel.hpp"
+#include "slideway/base/statistics.hpp"
 #include "slideway/base/wide.hpp"
 
 namespace slideway {
@@ -23,12 +24,6 @@ double few_factor(std::size_t count) {
 }
 
 }  // namespace
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 bool Level::judged(std::size_t i) const {
   if (uniform) return true;

@@ -13,9 +13,6 @@ inline constexpr std::size_t kPart = 1 << 16;      // samples looked at by one t
 inline constexpr std::size_t kScaleFrom = 2048;    // errors: the scale of more is that of a part
 inline constexpr double kMad = 1.482602218505602;  // normal deviation over its median size
 
-// REQUIRES values; they change their order.
-double median(std::vector<double>& values);
-
 // A profile or its means, and how a value follows from its neighbours: from those `lag` to either
 // side (second difference), or by a cubic from those 2 lag away as well (fourth difference).
 struct Level {

@@ -7,6 +7,7 @@
 
 #include "outlier_level.hpp"
 #include "slideway/base/parallel.hpp"
+#include "slideway/base/statistics.hpp"
 #include "slideway/base/wide.hpp"
 #include "slideway/signal/low_band.hpp"
 

@@ -7,6 +7,7 @@
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/parallel.hpp"
+#include "slideway/base/statistics.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/wide.hpp"
 
@@ -70,12 +71,11 @@ Eigen::Index grid_size(std::span<const double> positions) {
   for (std::size_t i = 1; i < positions.size(); ++i)
     steps.push_back(std::abs(positions[i] - positions[i - 1]));
   std::vector<double> sorted = steps;
-  const auto middle = sorted.begin() + std::ssize(sorted) / 2;
-  std::ranges::nth_element(sorted, middle);
+  const double usual = median(sorted);
   double cells = 0.0;
   for (const double step : steps) {
-    const double multiple = std::round(step / *middle);
-    if (!(std::abs(step - multiple * *middle) <= kUniform * std::max(1.0, multiple) * *middle))
+    const double multiple = std::round(step / usual);
+    if (!(std::abs(step - multiple * usual) <= kUniform * std::max(1.0, multiple) * usual))
       return std::ssize(positions);
     cells += multiple;
   }

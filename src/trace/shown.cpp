@@ -7,6 +7,7 @@
 
 #include "dictionary.hpp"
 #include "search.hpp"
+#include "slideway/base/statistics.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/left_out.hpp"
@@ -44,9 +45,8 @@ Eigen::MatrixXd images(const Model& model, const ModelTerm& term, const std::vec
 double variance_of_most(const Eigen::VectorXd& values) {
   constexpr double kNormal = 0.6744897501960817;  // median of the size of a standard normal value
   Eigen::VectorXd sizes = values.cwiseAbs();
-  const auto middle = sizes.begin() + sizes.size() / 2;
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle * *middle / (kNormal * kNormal);
+  const double middle = median({sizes.data(), static_cast<std::size_t>(sizes.size())});
+  return middle * middle / (kNormal * kNormal);
 }
 
 /// What the low band of a profile shows beside the model.

@@ -30,5 +30,12 @@ TEST(Statistics, KeepTheirDigitsBesideALargeMean) {
   EXPECT_DOUBLE_EQ(found.deviation, std::sqrt(22.5));
 }
 
+TEST(Median, IsTheUpperOfTheTwoInTheMiddle) {
+  const auto of = [](std::vector<double> values) { return median(values); };
+  EXPECT_EQ(of({3.0}), 3.0);
+  EXPECT_EQ(of({9.0, -2.0, 4.0}), 4.0);
+  EXPECT_EQ(of({7.0, 1.0, 5.0, 2.0}), 5.0);
+}
+
 }  // namespace
 }  // namespace slideway

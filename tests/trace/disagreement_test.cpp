@@ -100,6 +100,11 @@ TEST(Harmonic, OfAWaveIsNoSecondEffect) {
   }
 }
 
+/// From the start of a cut of 40 mm until the tool is at r.
+double minutes_at(double r, double feed, CutDirection direction) {
+  return (direction == CutDirection::inward ? 40.0 - r : r) / feed;
+}
+
 /// Three cuts that warm up with a time constant of three minutes, noise of 10 nm; one of them, if
 /// any, with the wrong direction in its problem file.
 std::vector<Profile> warmed(std::optional<std::size_t> swapped, unsigned seed,
@@ -113,7 +118,7 @@ std::vector<Profile> warmed(std::optional<std::size_t> swapped, unsigned seed,
     const std::vector<double> x = cases::spaced(0.2, 40.0, 600);
     std::vector<double> z;
     for (const double r : x) {
-      const double minutes = (direction == CutDirection::inward ? 40.0 - r : r) / feed;
+      const double minutes = minutes_at(r, feed, direction);
       z.push_back(2e-5 * r + rise_mm * (1.0 - std::exp(-minutes / 3.0)) + noise(engine));
     }
     Profile& face =
@@ -123,11 +128,14 @@ std::vector<Profile> warmed(std::optional<std::size_t> swapped, unsigned seed,
     face.setup.cut_direction = direction;
     face.setup.cut_radius_mm = 40.0;
   }
-  if (swapped) {
-    std::optional<CutDirection>& direction = out[*swapped].setup.cut_direction;
-    direction = *direction == CutDirection::inward ? CutDirection::outward : CutDirection::inward;
-  }
+  if (swapped) swap_direction(out[*swapped]);
   return out;
+}
+
+/// Adds a function of r to the heights of a face.
+template <typename Of>
+void add(Profile& face, const Of& of) {
+  for (std::size_t i = 0; i < face.values.size(); ++i) face.values[i] += of(face.positions[i]);
 }
 
 /// The carriages alone, every effect of the catalogue a candidate.
@@ -193,10 +201,10 @@ TEST(Disagreement, AStartNobodyWouldGuessIsNamedWithItsCut) {
 TEST(Disagreement, AStartBetweenThoseTriedFirstIsNamed) {
   const Problem problem = of_carriages();
   std::vector<Profile> cuts = warmed(std::nullopt, 7, 3e-3);
-  for (std::size_t i = 0; i < cuts[1].values.size(); ++i) {  // the slide had been warming for 36 s
-    const double minutes = (40.0 - cuts[1].positions[i]) / 5.0;
-    cuts[1].values[i] -= 3e-3 * (std::exp(-(minutes + 0.6) / 3.0) - std::exp(-minutes / 3.0));
-  }
+  add(cuts[1], [](double r) {  // the slide had been warming for 36 s
+    const double minutes = minutes_at(r, 5.0, CutDirection::inward);
+    return 3e-3 * (std::exp(-minutes / 3.0) - std::exp(-(minutes + 0.6) / 3.0));
+  });
   const Closed result = closed(problem, cuts);
   SCOPED_TRACE(story(result));
   ASSERT_FALSE(result.blunders.empty());
@@ -216,13 +224,11 @@ TEST(Disagreement, HeatThatTiltsTheSlideIsNoWrongStart) {
   for (const auto& [rise, tilt, lifts, tilts] : heat) {
     std::vector<Profile> cuts = warmed(std::nullopt, 7, 0.0);
     for (Profile& cut : cuts)
-      for (std::size_t i = 0; i < cut.values.size(); ++i) {
-        const double r = cut.positions[i];
-        const bool inward = cut.setup.cut_direction == CutDirection::inward;
-        const double minutes = (inward ? 40.0 - r : r) / *cut.setup.feed_mm_per_min;
-        cut.values[i] -= 1e-3 * (rise * std::expm1(-minutes / lifts) +
-                                 tilt * r / 40.0 * std::expm1(-minutes / tilts));
-      }
+      add(cut, [&, rise = rise, tilt = tilt, lifts = lifts, tilts = tilts](double r) {
+        const double minutes = minutes_at(r, *cut.setup.feed_mm_per_min, *cut.setup.cut_direction);
+        return -1e-3 * (rise * std::expm1(-minutes / lifts) +
+                        tilt * r / 40.0 * std::expm1(-minutes / tilts));
+      });
     const Closed result = closed(problem, cuts);
     SCOPED_TRACE(story(result));
     EXPECT_TRUE(result.blunders.empty());
@@ -237,8 +243,9 @@ TEST(Disagreement, ACutUnlikeItsSistersWithNoiseLikeTheirsIsInNoOtherUnit) {
   const Problem problem = of_carriages();
   for (const unsigned seed : {7U, 8U, 9U}) {
     std::vector<Profile> cuts = warmed(std::nullopt, seed, 0.0);
-    for (std::size_t i = 0; i < cuts[1].values.size(); ++i)
-      cuts[1].values[i] -= 6e-4 * std::expm1(-(40.0 - cuts[1].positions[i]) / 5.0 / 1.5);
+    add(cuts[1], [](double r) {
+      return -6e-4 * std::expm1(-minutes_at(r, 5.0, CutDirection::inward) / 1.5);
+    });
     const Closed result = closed(problem, cuts);
     SCOPED_TRACE(story(result));
     EXPECT_TRUE(result.blunders.empty());
@@ -249,9 +256,7 @@ TEST(Disagreement, ACutUnlikeItsSistersWithNoiseLikeTheirsIsInNoOtherUnit) {
 /// Three cuts without heat, with a bow of 1.6 µm.
 std::vector<Profile> bowed() {
   std::vector<Profile> out = warmed(std::nullopt, 7, 0.0);
-  for (Profile& profile : out)
-    for (std::size_t i = 0; i < profile.values.size(); ++i)
-      profile.values[i] += 1e-6 * std::pow(profile.positions[i], 2);
+  for (Profile& profile : out) add(profile, [](double r) { return 1e-6 * r * r; });
   return out;
 }
 
@@ -259,8 +264,7 @@ std::vector<Profile> bowed() {
 // of another is right, but nothing else turns a bow upside down.
 TEST(Disagreement, ASignBeyondDoubtStandsBesideAnotherFault) {
   std::vector<Profile> cuts = bowed();
-  for (std::size_t i = 0; i < cuts[0].values.size(); ++i)
-    cuts[0].values[i] += 5e-5 * std::exp(-std::pow((cuts[0].positions[i] - 20.0) / 3.0, 2));
+  add(cuts[0], [](double r) { return 5e-5 * std::exp(-std::pow((r - 20.0) / 3.0, 2)); });
   for (double& value : cuts[2].values) value = -value;
   const Problem problem = of_carriages();
   const Closed result = closed(problem, cuts);

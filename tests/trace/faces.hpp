@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,12 @@ inline std::vector<Profile> quarter_faces(const turning::Hidden& hidden, int cut
     profile.setup.last_mm = profile.positions.back();
   }
   return out;
+}
+
+/// Another direction in the problem file than that of the cut.
+inline void swap_direction(Profile& profile) {
+  std::optional<CutDirection>& direction = profile.setup.cut_direction;
+  direction = *direction == CutDirection::inward ? CutDirection::outward : CutDirection::inward;
 }
 
 inline Problem problem_of(std::vector<std::string> candidates = {}) {

@@ -62,6 +62,14 @@ std::vector<Profile> read(const Designs& designs, double nose_mm, std::uint64_t 
   return out;
 }
 
+/// The same, and the problem says what the nose is.
+std::vector<Profile> read_with_nose(const Designs& designs, double nose_mm, std::uint64_t seed,
+                                    double walk = 0.0, const turning::Error& error = {}) {
+  std::vector<Profile> out = read(designs, nose_mm, seed, walk, error);
+  for (Profile& profile : out) profile.setup.nose_radius_mm = nose_mm;
+  return out;
+}
+
 // 18, 30 and 18 µm a turn, grooves of 0.3 to 0.8 µm.
 constexpr Designs kFine{{{2.0, 20.0031, true}, {3.3, 20.0173, true}, {2.0, 20.0, false}}};
 // 100, 250 and 100 µm a turn, grooves of 1.6 to 10 µm.
@@ -86,8 +94,7 @@ TEST(FeedMarks, OfAnOrdinaryFeedAreTakenFromTheSamples) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     Problem problem = problem_of();
     problem.low_band.level = 2;
-    std::vector<Profile> profiles = read(kOrdinary, 0.8, seed);
-    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    std::vector<Profile> profiles = read_with_nose(kOrdinary, 0.8, seed);
     const Closed result = closed(problem, profiles);
     SCOPED_TRACE(story(result));
     EXPECT_TRUE(result.blunders.empty());
@@ -128,8 +135,7 @@ TEST(FeedMarks, FoldedToASlowWaveDoNotHideAWaveOfTheSlide) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     Problem problem = problem_of();
     problem.low_band.level = 2;
-    std::vector<Profile> profiles = read(designs, 0.8, seed, 0.0, wave);
-    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    std::vector<Profile> profiles = read_with_nose(designs, 0.8, seed, 0.0, wave);
     const Closed result = closed(problem, profiles);
     SCOPED_TRACE(story(result));
     ASSERT_THAT(named(result), SizeIs(1));
@@ -152,8 +158,7 @@ TEST(FeedMarks, OfHighOrderFoldedToASlowWaveAreNoOtherEffect) {
   for (const std::uint64_t seed : {1, 2, 3, 4}) {
     Problem problem = problem_of();
     problem.low_band.level = 3;
-    std::vector<Profile> profiles = read(designs, 0.4, seed);
-    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.4;
+    std::vector<Profile> profiles = read_with_nose(designs, 0.4, seed);
     const Closed result = closed(problem, profiles);
     SCOPED_TRACE(story(result));
     EXPECT_EQ(result.verdict, TraceVerdict::explained);
@@ -168,8 +173,7 @@ TEST(FeedMarks, AreTakenFromTheSamplesBesideARandomWalk) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     Problem problem = problem_of();
     problem.low_band.level = 2;
-    std::vector<Profile> profiles = read(kOrdinary, 0.8, seed, 1e-5);
-    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    std::vector<Profile> profiles = read_with_nose(kOrdinary, 0.8, seed, 1e-5);
     const Closed result = closed(problem, profiles);
     SCOPED_TRACE(story(result));
     EXPECT_EQ(named(result), std::vector<std::string>());
@@ -177,7 +181,6 @@ TEST(FeedMarks, AreTakenFromTheSamplesBesideARandomWalk) {
   }
 }
 
-// What the samples of a cut say of its marks is in its unit, too.
 // The marks of a cut whose sign is turned, or whose direction, have another phase than its samples
 // showed before. All cuts have a bow of 8 µm, or warm up by 0.8 µm with a time constant of a tenth
 // of the first cut.
@@ -189,8 +192,7 @@ TEST(FeedMarks, DoNotHideThatACutIsTheWrongWayRound) {
   Problem problem = problem_of();
   problem.low_band.level = 2;
   for (const std::size_t which : {0U, 1U, 2U}) {
-    std::vector<Profile> profiles = read(kOrdinary, 0.8, 1, 0.0, bow);
-    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    std::vector<Profile> profiles = read_with_nose(kOrdinary, 0.8, 1, 0.0, bow);
     for (double& value : profiles[which].values) value = -value;
     const Closed turned = closed(problem, profiles);
     SCOPED_TRACE(story(turned));
@@ -198,10 +200,8 @@ TEST(FeedMarks, DoNotHideThatACutIsTheWrongWayRound) {
     EXPECT_EQ(turned.blunders[0].profile, profiles[which].name);
     EXPECT_EQ(turned.blunders[0].what, BlunderKind::sign);
 
-    profiles = read(kOrdinary, 0.8, 1, 0.0, warming);
-    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
-    std::optional<CutDirection>& direction = profiles[which].setup.cut_direction;
-    direction = *direction == CutDirection::inward ? CutDirection::outward : CutDirection::inward;
+    profiles = read_with_nose(kOrdinary, 0.8, 1, 0.0, warming);
+    swap_direction(profiles[which]);
     const Closed swapped = closed(problem, profiles);
     SCOPED_TRACE(story(swapped));
     ASSERT_FALSE(swapped.blunders.empty());
@@ -210,12 +210,12 @@ TEST(FeedMarks, DoNotHideThatACutIsTheWrongWayRound) {
   }
 }
 
+// What the samples of a cut say of its marks is in its unit, too.
 TEST(FeedMarks, DoNotHideThatACutIsInAnotherUnit) {
   for (const double factor : {1e-3, 1e3}) {
     Problem problem = problem_of();
     problem.low_band.level = 2;
-    std::vector<Profile> profiles = read(kOrdinary, 0.8, 1);
-    for (Profile& profile : profiles) profile.setup.nose_radius_mm = 0.8;
+    std::vector<Profile> profiles = read_with_nose(kOrdinary, 0.8, 1);
     for (double& value : profiles[1].values) value *= factor;
     const Closed result = closed(problem, profiles);
     SCOPED_TRACE(story(result));

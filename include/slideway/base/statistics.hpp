@@ -14,4 +14,8 @@ struct Statistics {
 /// 1983). REQUIRES at least one.
 Statistics statistics_of(std::span<const double> values);
 
+/// The upper of the two in the middle of an even number. They change their order. REQUIRES at least
+/// one.
+double median(std::span<double> values);
+
 }  // namespace slideway

@@ -9,6 +9,7 @@
 #include "../variable_range.hpp"
 #include "numeric_derivative.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/base/statistics.hpp"
 #include "slideway/base/text.hpp"
 
 namespace slideway {
@@ -252,9 +253,7 @@ double noise_of(const Channel& channel) {
     differences.push_back(
         std::abs(channel.values[i - 1] - 2.0 * channel.values[i] + channel.values[i + 1]));
   if (differences.empty()) return 0.0;
-  const auto middle = differences.begin() + std::ssize(differences) / 2;
-  std::ranges::nth_element(differences, middle);
-  return kNormalMad * *middle / std::sqrt(kSecondDifference);
+  return kNormalMad * median(differences) / std::sqrt(kSecondDifference);
 }
 
 EffectFactory channel_effect(Channel channel, const ChannelResponse& response) {
