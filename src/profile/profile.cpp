@@ -45,14 +45,18 @@ void require_usable_radius(const Setup& setup, double reach) {
                                   " mm; accepted: up to a million times its length");
 }
 
+constexpr double kRounding =
+    1e-4;  // of a radius, of which its drawing or its trace has four places
+
 // The end of the trace that lies furthest from the spindle axis was cut, so the cut reached it.
 void complete_cut_radius(Setup& setup) {
   if (setup.kind != Kind::face) return;
   const double reach = std::max(std::abs(setup.first_mm - setup.center_mm),
                                 std::abs(setup.last_mm - setup.center_mm));
   require_usable_radius(setup, reach);
-  if (!setup.cut_radius_mm) setup.cut_radius_mm = reach;
-  if (*setup.cut_radius_mm >= reach * (1.0 - 1e-9)) return;
+  if (!setup.cut_radius_mm || std::abs(*setup.cut_radius_mm / reach - 1.0) < kRounding)
+    setup.cut_radius_mm = std::max(setup.cut_radius_mm.value_or(reach), reach);
+  if (*setup.cut_radius_mm >= reach) return;
   throw KeyError("cut_radius_mm",
                  shortest(*setup.cut_radius_mm) +
                      ", but the trace reaches r = " + significant(reach, 9) +

@@ -392,8 +392,10 @@ TEST_F(ReadProfile, RefusesATraceThatReachesBeyondTheCut) {
   profile_.setup.cut_radius_mm = 9.0;
   EXPECT_THAT([&] { read("0,0\n10,1\n"); },
               ThrowsMessage<KeyError>(StartsWith("9, but the trace reaches r = 10; ")));
-  profile_.setup.cut_radius_mm = 10.0 * (1.0 - 1e-12);  // rounding of a unit is no contradiction
+  // Four places of a radius, or of the positions, are no contradiction: 9.9996 reads 10.00.
+  profile_.setup.cut_radius_mm = 9.9996;
   EXPECT_NO_THROW(read("0,0\n10,1\n"));
+  EXPECT_EQ(profile_.setup.cut_radius_mm, 10.0);
   profile_.setup.kind = Kind::slide;
   profile_.setup.cut_radius_mm = 9.0;
   EXPECT_NO_THROW(read("0,0\n10,1\n"));
