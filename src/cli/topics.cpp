@@ -155,6 +155,7 @@ const std::vector<Section>& sections() {
         {"form", "of a straightness: \"polynomial\", or \"curve\": smooth, kinks allowed"},
         {"resolution_mm", "of a curve: between its knots; at least 1/117 of the travel"},
         {"harmonics", "of the grooves of one cut: [1, 2, 5], each with a cosine and a sine"},
+        {"each_half", "with harmonics: true: the two halves of a diameter have their own"},
         {"span_mm", "instead of that of [machine]"},
         {"profiles",
          "[\"feed2\"]: only in these profiles, and its parameters then carry their names: "

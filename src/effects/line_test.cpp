@@ -39,6 +39,9 @@ Eigen::ArrayXd steps_of(const Eigen::VectorXd& phase) {
   return (phase.tail(steps) - phase.head(steps)).array() / (2.0 * kPi);
 }
 
+/// Of an F distribution of 2 and 2 m degrees of freedom.
+double tail_of_ratio(double ratio, double m) { return std::pow(1.0 + ratio / m, -m); }
+
 }  // namespace
 
 LineTest::LineTest(std::span<const double> values, const Eigen::VectorXd& places,
@@ -104,8 +107,7 @@ double LineTest::p_value(const Eigen::VectorXd& phase) const {
   const Beside beside = gain_beside(phase, line);
   if (beside.count == 0.0) return 1.0;
   if (!(beside.mean > 0.0)) return own > 0.0 ? 0.0 : 1.0;
-  const double independent = kIndependent * beside.count / std::ssize(kBeside);
-  return std::pow(1.0 + own / beside.mean / independent, -independent);
+  return tail_of_ratio(own / beside.mean, kIndependent * beside.count / std::ssize(kBeside));
 }
 
 bool LineTest::is_fast(const Eigen::VectorXd& phase) const {
@@ -130,6 +132,12 @@ LineTest::Amplitudes LineTest::amplitudes(const std::vector<Eigen::VectorXd>& ph
     out.uncertainties.segment(2 * k, 2) *= std::sqrt(
         0.5 * gain_beside(phases[static_cast<std::size_t>(k)], all.middleCols(2 * k, 2)).mean);
   return out;
+}
+
+double p_of_equal_lines(const Eigen::Vector2d& one, const Eigen::Vector2d& of_one,
+                        const Eigen::Vector2d& other, const Eigen::Vector2d& of_other) {
+  const Eigen::Array2d variances = of_one.array().square() + of_other.array().square();
+  return tail_of_ratio(0.5 * ((one - other).array().square() / variances).sum(), kIndependent);
 }
 
 }  // namespace slideway

@@ -57,4 +57,9 @@ class LineTest {
   double turn_of_form_;     // of one cycle over the radii, from value to value, in cycles
 };
 
+// Probability that noise makes two estimates of one line, each a cosine and a sine with its
+// standard uncertainties, as unlike as these.
+double p_of_equal_lines(const Eigen::Vector2d& one, const Eigen::Vector2d& of_one,
+                        const Eigen::Vector2d& other, const Eigen::Vector2d& of_other);
+
 }  // namespace slideway

@@ -26,7 +26,8 @@ void Request::accept_only(const std::vector<std::string>& accepted) const {
       {"span_mm", options.span_mm.has_value()},
       {"form", options.form.has_value()},
       {"resolution_mm", options.resolution_mm.has_value()},
-      {"harmonics", !options.harmonics.empty()}};
+      {"harmonics", !options.harmonics.empty()},
+      {"each_half", options.each_half}};
   for (const auto& [key, is_set] : given)
     if (is_set && std::find(accepted.begin(), accepted.end(), key) == accepted.end())
       throw UsageError("effect " + name + ": '" + key + "' is not an option of it; accepted: " +

@@ -18,7 +18,7 @@ constexpr std::size_t kMostHarmonic = 1000;
 constexpr int kHighestSeed = std::numeric_limits<int>::max();
 
 constexpr const char* kEffectOptions =
-    "name body degree span_mm form resolution_mm harmonics profiles scope";
+    "name body degree span_mm form resolution_mm harmonics each_half profiles scope";
 
 EffectOptions read_effect_options(const Section& section, const Problem& problem) {
   EffectOptions options{section.text("body"), section.integer("degree", 0, kHighestDegree),
@@ -36,6 +36,7 @@ EffectOptions read_effect_options(const Section& section, const Problem& problem
           section.indices("harmonics", "must be a list of whole numbers from 1 on, rising"))
     for (const std::size_t each : *harmonics)
       options.harmonics.push_back(static_cast<int>(std::min<std::size_t>(each, kMostHarmonic)));
+  options.each_half = section.flag("each_half").value_or(false);
   return options;
 }
 

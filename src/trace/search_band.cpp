@@ -15,7 +15,7 @@ bool has_more_values(const Observation& observation, std::size_t most) {
 }
 
 /// The profile as its search looks at it, with the low band that leaves it few enough values.
-Profile thinned(const Problem& problem, const Profile& profile, std::size_t most) {
+Profile with_fewer_samples(const Problem& problem, const Profile& profile, std::size_t most) {
   LowBandOptions options =
       with_at_most(problem.low_band_of(profile), profile.positions.size(), most);
   if (options.wavelet != "db1" || options.level <= kMeansLevel) return profile;
@@ -35,7 +35,8 @@ std::unique_ptr<SearchBand> search_band(const Problem& problem,
   const auto is_long = [&](const Observation& each) { return has_more_values(each, most); };
   if (std::ranges::none_of(declared.model.observations, is_long)) return nullptr;
   std::vector<Profile> thin;
-  for (const Profile& profile : profiles) thin.push_back(thinned(problem, profile, most));
+  for (const Profile& profile : profiles)
+    thin.push_back(with_fewer_samples(problem, profile, most));
   Model model = build_model(problem, thin, most);  // points into the profiles
   append_settled(model, shown);
   FittedModel fitted = fit_model(std::move(model));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "modulation.hpp"
 #include "sample_residuals.hpp"
@@ -18,18 +19,40 @@ namespace {
 constexpr std::size_t kEnoughPass = 3;  // names: a later check may refuse the best ones
 constexpr int kNoiseRounds = 3;
 
-const Finding& best_of(const std::vector<Finding>& findings) {
-  return *std::min_element(findings.begin(), findings.end(),
-                           [](const auto& a, const auto& b) { return a.delta_bic < b.delta_bic; });
+/// Whether it is of how one trace lies on the workpiece.
+bool is_of_one_trace(const Candidate& candidate) {
+  return candidate.only &&
+         candidate.term.effect->description().variable == IndependentVariable::trace;
+}
+
+/// What the data may lack: the best finding. Where that is of how one trace lies on the workpiece,
+/// the best such finding of each other profile that would be accepted as well: no trace lies as
+/// another does, and what one hides is no noise of the rest.
+std::vector<Finding> suspects_among(std::vector<Finding> findings, const Gates& gates) {
+  std::ranges::stable_sort(findings, {}, &Finding::delta_bic);
+  std::vector<Finding> out{findings.front()};
+  if (!is_of_one_trace(*out.front().candidate)) return out;
+  for (const Finding& each : findings) {
+    if (each.delta_bic >= -gates.delta_bic) break;
+    const Candidate& own = *each.candidate;
+    if (is_of_one_trace(own) &&
+        std::ranges::none_of(out, [&](const Finding& f) { return f.candidate->only == own.only; }))
+      out.push_back(each);
+  }
+  return out;
 }
 
 /// What a hypothesis adds to the model, profile by profile: values left undescribed, and the
-/// columns of a finding and of its neighbours on the grid (its shape lies between them).
+/// columns of findings and of their neighbours on the grid (their shapes lie between them).
 std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
                                                 const FreeValues& undescribed,
-                                                const Finding* finding) {
+                                                const std::vector<Finding>& findings) {
   Eigen::MatrixXd columns(0, 0);
-  if (finding) columns = finding->candidate->columns_around(finding->atom);
+  for (const Finding& each : findings) {
+    const Eigen::MatrixXd around = each.candidate->columns_around(each.atom);
+    columns.conservativeResize(around.rows(), columns.cols() + around.cols());
+    columns.rightCols(around.cols()) = around;
+  }
   std::vector<Eigen::MatrixXd> out;
   Eigen::Index first = 0;
   for (std::size_t i = 0; i < undescribed.size(); ++i) {
@@ -118,18 +141,20 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
 std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, const Solution& fit,
                                                         const FreeValues& undescribed,
                                                         const Candidates& candidates) {
-  const auto noise_of = [&](const Finding* suspect) {
+  const auto noise_of = [&](const std::vector<Finding>& suspects) {
     return noise_beside(fit.linear, model.gates,
-                        columns_by_profile(fit.linear, undescribed, suspect));
+                        columns_by_profile(fit.linear, undescribed, suspects));
   };
-  Whitened data(fit.linear, noise_of(nullptr), undescribed);
+  Whitened data(fit.linear, noise_of({}), undescribed);
   if (candidates.empty()) return {std::move(data), std::vector<Finding>{}};
   std::vector<Finding> findings = search(data, candidates);
-  for (int round = 0; round < kNoiseRounds && best_of(findings).delta_bic < 0.0; ++round) {
-    const Finding suspect = best_of(findings);
-    data = Whitened(fit.linear, noise_of(&suspect), undescribed);
+  std::vector<Finding> suspects = suspects_among(findings, model.gates);
+  for (int round = 0; round < kNoiseRounds && suspects.front().delta_bic < 0.0; ++round) {
+    data = Whitened(fit.linear, noise_of(suspects), undescribed);
     findings = search(data, candidates);
-    if (best_of(findings).candidate == suspect.candidate) break;
+    const std::vector<Finding> before =
+        std::exchange(suspects, suspects_among(findings, model.gates));
+    if (std::ranges::equal(before, suspects, {}, &Finding::candidate, &Finding::candidate)) break;
   }
   return {std::move(data), std::move(findings)};
 }

@@ -124,13 +124,14 @@ constexpr std::size_t kMostBounded = 4;
 /// visible ones.
 std::vector<std::size_t> seen_in(const Beside& beside, const ShownBySamples& shown) {
   const Eigen::Index parameters = beside.images.cols() / 2;
-  const auto image = [&](std::size_t h) {
-    const auto column = 2 * static_cast<Eigen::Index>(h);
-    return beside.images.middleCols(column, 2).squaredNorm() +
-           beside.images.middleCols(parameters + column, 2).squaredNorm();
-  };
   std::vector<std::size_t> out, bounded;
   const std::vector<int>& harmonics = shown.options.harmonics;
+  const Eigen::Index own = parameters / std::ssize(harmonics);
+  const auto image = [&](std::size_t h) {
+    const auto column = own * static_cast<Eigen::Index>(h);
+    return beside.images.middleCols(column, own).squaredNorm() +
+           beside.images.middleCols(parameters + column, own).squaredNorm();
+  };
   for (std::size_t h = 0; h < harmonics.size(); ++h) {
     if (image(h) < std::min(kCertain * kCertain * beside.noise, kTenth * beside.square())) continue;
     (std::ranges::count(shown.bounded, harmonics[h]) > 0 ? bounded : out).push_back(h);
@@ -164,10 +165,13 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
     out.depth += kMicrometre * std::max(std::abs(value.value), value.standard_uncertainty);
   if (!has_image(beside)) return std::nullopt;
   if (seen->may_be_whole && whole_takes_as_much(beside)) return out;
+  const std::size_t own = seen->values.size() / options.harmonics.size();
+  out.effect.options.each_half = options.each_half;
   for (const std::size_t h : seen_in(beside, *seen)) {
     out.effect.options.harmonics.push_back(options.harmonics[h]);
-    out.effect.priors.push_back(seen->values[2 * h]);
-    out.effect.priors.push_back(seen->values[2 * h + 1]);
+    const auto first = seen->values.begin() + static_cast<std::ptrdiff_t>(own * h);
+    out.effect.priors.insert(out.effect.priors.end(), first,
+                             first + static_cast<std::ptrdiff_t>(own));
   }
   if (out.effect.priors.empty()) return std::nullopt;
   out.is_settled = true;

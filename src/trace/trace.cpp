@@ -11,12 +11,12 @@
 #include "fit_numbers.hpp"
 #include "forms.hpp"
 #include "instrument.hpp"
+#include "known.hpp"
 #include "loop.hpp"
 #include "outcome.hpp"
 #include "own_noise.hpp"
 #include "selection.hpp"
 #include "sensitivity.hpp"
-#include "shown.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/agreement.hpp"
 #include "slideway/identify/crosscheck.hpp"
@@ -376,16 +376,16 @@ TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profi
 
 ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profiles,
                       const FittedModel& declared, const Progress& progress) {
-  const std::vector<ShownEffect> shown = shown_by_samples(problem, declared);
-  if (shown.empty()) return Loop(problem, profiles, declared, shown, progress).run();
-  ShownModel known = with_shown(declared, shown);
-  ClosedLoop out = Loop(problem, profiles, known.fitted, shown, progress).run();
-  std::vector<TraceRound>& rounds = out.trace.rounds;
-  rounds.insert(rounds.begin(), known.rounds.begin(), known.rounds.end());
-  if (known.rounds.empty()) return out;
-  if (out.trace.verdict == TraceVerdict::nothing_missing)
-    out.trace.verdict = TraceVerdict::explained;
-  if (!out.extended) out.extended = std::move(known.fitted);
+  Known known = known_before_search(problem, declared);
+  const FittedModel& begun = known.fitted ? *known.fitted : declared;
+  ClosedLoop out = Loop(problem, profiles, begun, known.shown, progress).run();
+  TraceResult& trace = out.trace;
+  if (!known.note.empty()) trace.notes.insert(trace.notes.begin(), known.note);
+  if (!known.rounds.empty() && trace.verdict == TraceVerdict::nothing_missing)
+    trace.verdict = TraceVerdict::explained;
+  trace.rounds.insert(trace.rounds.begin(), known.rounds.begin(), known.rounds.end());
+  if ((!known.note.empty() || !known.rounds.empty()) && !out.extended)
+    out.extended = std::move(known.fitted);
   return out;
 }
 

@@ -197,6 +197,65 @@ TEST(FeedMarks, DoNotLeakBesideThemselvesOnADiameter) {
   EXPECT_LT(shown->values[0].standard_uncertainty, 0.015 * std::abs(shown->values[0].value));
 }
 
+/// A diameter with grooves of 55 µm about an axis that lies `off` from where it is said to, 2 µm
+/// deep: A (4u² - 1/3), u = (R - r)/f inward, half a turn later on the far half; noise of 20 nm.
+std::pair<Case, std::vector<double>> diameter_off_centre(double off) {
+  Case here = face(spaced(0.0, 20.0, 1517), 6.1);
+  here.setup.center_mm = 10.0;
+  here.setup.last_mm = 20.0;
+  RandomStream random(7, "feed marks");
+  std::vector<double> out;
+  for (const double position : here.positions) {
+    const double x = position - 10.0 - off;
+    const double turns = (10.0 - std::abs(x)) * 110.0 / 6.1 - (x < 0.0 ? 0.5 : 0.0);
+    const double u = turns - std::round(turns);
+    out.push_back(2e-3 * (4.0 * u * u - 1.0 / 3.0) + 2e-5 * random.normal());
+  }
+  return {here, out};
+}
+
+// A quarter of a groove off, the first harmonic, -4A/π² cos 2πu, lies 90° further on one half and
+// 90° less far on the other: opposite sines.
+TEST(FeedMarks, OfADiameterOffItsCentreHaveAPhaseOnEachHalf) {
+  const double off = 0.25 * 6.1 / 110.0, size = 4.0 * 2.0 / (kPi * kPi);
+  const auto [here, values] = diameter_off_centre(off);
+  const auto shown = marks_shown(here, values);
+  ASSERT_TRUE(shown);
+  EXPECT_TRUE(shown->options.each_half);
+  ASSERT_EQ(shown->options.harmonics.front(), 1);
+  ASSERT_EQ(shown->values[3].parameter, "sin1_far_um");
+  EXPECT_NEAR(shown->values[0].value, 0.0, 0.05 * size);
+  EXPECT_NEAR(shown->values[2].value, 0.0, 0.05 * size);
+  EXPECT_NEAR(std::abs(shown->values[1].value), size, 0.05 * size);
+  EXPECT_NEAR(shown->values[3].value, -shown->values[1].value, 0.05 * size);
+}
+
+TEST(FeedMarks, OfACentredDiameterHaveOnePhase) {
+  const auto [here, values] = diameter_off_centre(0.0);
+  const auto shown = marks_shown(here, values);
+  ASSERT_TRUE(shown);
+  EXPECT_FALSE(shown->options.each_half);
+}
+
+TEST(FeedMarks, OfEachHalfAreThoseOfTheHalvesAlone) {
+  EffectOptions options;
+  options.harmonics = {1, 2};
+  options.each_half = true;
+  const auto effect = make_effect("feed_marks", options, lathe(), {});
+  ASSERT_EQ(effect->amplitudes(), 8);
+  const Case here = diameter_off_centre(0.0).first;
+  Eigen::MatrixXd columns(std::ssize(here.positions), 8);
+  effect->columns({here.positions, here.setup, lathe()}, {}, columns);
+  const auto far = static_cast<Eigen::Index>(here.positions.size() / 2);
+  EXPECT_EQ(columns.topRows(far)(Eigen::all, {0, 1, 4, 5}).norm(), 0.0);
+  EXPECT_EQ(columns.bottomRows(far)(Eigen::all, {2, 3, 6, 7}).norm(), 0.0);
+  // A cosine and a sine: the squares of the two are 1 at every station.
+  EXPECT_NEAR(columns.col(0).squaredNorm() + columns.col(1).squaredNorm(),
+              static_cast<double>(columns.rows() - far), 1e-9);
+  EXPECT_THROW(static_cast<void>(make_effect("feed_marks", {.each_half = true}, lathe(), {})),
+               UsageError);
+}
+
 TEST(FeedMarks, AreNotSeenInNoise) {
   const Case here = face(spaced(0.3, 9.7, 760), 6.1);
   int alarms = 0;

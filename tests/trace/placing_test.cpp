@@ -159,5 +159,32 @@ TEST(Placing, ATraceALittleOffTheCentreIsNoStepOfTheSpindleAlone) {
   EXPECT_THAT(names, Contains("centring"));
 }
 
+// A shoulder beside the face falls by 5 µm over a millimetre. The trace runs 0.4 mm past the rim at
+// one end; nothing past the rim is an edge that the cut has rolled off.
+TEST(Placing, ATraceThatRunsPastTheRimIsLeftOutThere) {
+  std::vector<Profile> profiles = at_azimuths(
+      [](double x, double /*azimuth*/) {
+        const double r = std::abs(x - 0.4);
+        return 2e-4 * r - 5e-3 * std::max(r - kPlacedRadius, 0.0);
+      },
+      6);
+  const Closed result = closed(problem_of({"centre_step", "centring", "edge_roll_off"}), profiles);
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ElementsAre("centring"));
+  EXPECT_THAT(result.notes, Contains(::testing::StartsWith("at the rim the two ends of 'cut1'")));
+}
+
+TEST(Placing, AnEdgeThatBothEndsShowIsNotLeftOut) {
+  const Closed result = closed(problem_of({"centring", "edge_roll_off"}),
+                               at_azimuths(
+                                   [](double x, double /*azimuth*/) {
+                                     return -1e-3 * std::exp((std::abs(x) - kPlacedRadius) / 0.3);
+                                   },
+                                   6));
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ElementsAre("edge_roll_off"));
+  EXPECT_THAT(result.notes, Not(Contains(::testing::StartsWith("at the rim"))));
+}
+
 }  // namespace
 }  // namespace slideway

@@ -144,6 +144,7 @@ struct EffectOptions {
   std::optional<Form> form = std::nullopt;             // of a straightness: a polynomial
   std::optional<double> resolution_mm = std::nullopt;  // of a curve: between its knots
   std::vector<int> harmonics = {};                     // of feed marks in one cut, rising
+  bool each_half = false;  // of them: each half of a diameter has its own
   EffectFactory own = {};  // makes an effect that is not in the catalogue; empty: it is
 };
 

@@ -69,6 +69,7 @@ struct Gates {
   // What is left out of a face.
   double nose_radius_mm = 2.0;
   double most_lost = 0.1;
+  double one_rim = 5.0;
 
   // What can be determined, and how the search is carried out.
   double rank_tolerance = 1e-9;

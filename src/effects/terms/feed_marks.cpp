@@ -29,7 +29,8 @@ Description describe_feed_marks() {
           .formula =
               "A (f/f_max)² (4u² - 1/3), u in [-1/2, 1/2] across each groove of width f; f_max the "
               "coarsest feed per turn of the problem. With harmonics h: Σ_h a_h cos 2πhu + b_h sin "
-              "2πhu, in one cut: a phase and a form of its own",
+              "2πhu, in one cut: a phase and a form of its own; with each_half, on each half of a "
+              "diameter",
           .source = "A = f²/(8 r_ε) for nose radius r_ε and feed per turn f",
           .cause = "the nose of the tool leaves one groove per turn",
           .typical =
@@ -65,6 +66,11 @@ double most_of_first(int order) { return 2.0 / (order * order); }
 struct Spectrum {
   std::vector<Harmonic> harmonics;
   std::vector<int> bounded;  // orders of those that it does not tell from noise or other errors
+
+  [[nodiscard]] const Harmonic* find(int order) const {
+    const auto place = std::ranges::find(harmonics, order, &Harmonic::order);
+    return place == harmonics.end() ? nullptr : &*place;
+  }
 };
 
 /// The harmonics of known phase 2πu that stand out of the spectrum and that a groove can have, the
@@ -112,15 +118,113 @@ Harmonic within_parabola(double first, int order) {
   return {order, Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(most / std::sqrt(3.0))};
 }
 
-std::vector<Parameter> parameters_of(const std::vector<int>& harmonics) {
+std::vector<Parameter> parameters_of(const std::vector<int>& harmonics, bool each_half) {
   std::vector<Parameter> list;
   for (const int h : harmonics) {
     const std::string order = std::to_string(h);
     list.push_back({"cos" + order + "_um", "a_" + order, "µm", 0.1});
     list.push_back({"sin" + order + "_um", "b_" + order, "µm", 0.1});
+    if (!each_half) continue;
+    list.push_back({"cos" + order + "_far_um", "a_" + order + ",far", "µm", 0.1});
+    list.push_back({"sin" + order + "_far_um", "b_" + order + ",far", "µm", 0.1});
   }
   return list;
 }
+
+bool is_far(const Stations& stations, Eigen::Index i) { return stations.trace(i) < 0.0; }
+
+/// Samples of a profile, looked at for lines of known phase, 2πu.
+struct Part {
+  LineTest lines;
+  Eigen::VectorXd phase;
+
+  /// Of those from `first` to `last`, exclusive, at most kMostSamples in the middle.
+  static Part of(const Stations& stations, std::span<const double> values, Eigen::Index first,
+                 Eigen::Index last) {
+    const Eigen::Index count = std::min(last - first, kMostSamples);
+    first += (last - first - count) / 2;
+    const Setup& setup = stations.setup();
+    Eigen::VectorXd places(count), radii(count), phase(count), weights(count);
+    const double ends = kEnds * *setup.feed_per_revolution();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      places[i] = stations.trace(first + i);
+      radii[i] = stations.radius(first + i);
+      phase[i] = 2.0 * kPi * groove_at(stations, first + i).across;
+      weights[i] = radii[i] > ends && radii[i] < *setup.cut_radius_mm - ends ? 1.0 : 0.0;
+    }
+    const auto own =
+        values.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+    return {LineTest(own, places, radii, weights), std::move(phase)};
+  }
+
+  [[nodiscard]] bool is_slow() const { return !lines.is_fast(phase); }
+  [[nodiscard]] double p_value() const { return lines.p_value(phase); }
+};
+
+/// The near half of a diameter and the far one; none where one of them has few samples.
+std::vector<Part> halves_of(const Stations& stations, std::span<const double> values) {
+  const Eigen::Index all = stations.size();
+  Eigen::Index turn = 0;
+  while (turn < all && is_far(stations, turn) == is_far(stations, 0)) ++turn;
+  if (std::min(turn, all - turn) < kLeastSamples) return {};
+  std::vector<Part> out{Part::of(stations, values, 0, turn), Part::of(stations, values, turn, all)};
+  if (is_far(stations, 0)) std::swap(out[0], out[1]);
+  return out;
+}
+
+/// Of parts of a profile together, each part with a phase and a form of its own.
+struct Spectra {
+  std::vector<Spectrum> of;
+  std::vector<double> largest;  // of their first harmonics, or a bound of it, mm
+
+  Spectra(const std::vector<Part>& parts, double significance, std::optional<double> most) {
+    for (const Part& part : parts) {
+      of.push_back(resolved(part.lines, part.phase, significance, most.value_or(0.0)));
+      largest.push_back(part.is_slow() ? most.value_or(0.0) : of.back().harmonics[0].values.norm());
+    }
+  }
+
+  [[nodiscard]] bool is_seen(int order) const {
+    return std::ranges::any_of(of, [&](const Spectrum& each) { return each.find(order); });
+  }
+  [[nodiscard]] bool is_bounded(int order) const {
+    return std::ranges::all_of(
+        of, [&](const Spectrum& each) { return std::ranges::count(each.bounded, order) > 0; });
+  }
+
+  /// Probability that halves with one phase and form show harmonics as unlike as these do.
+  [[nodiscard]] double p_of_one_form() const {
+    double least = 1.0, tested = 0.0;
+    for (const Harmonic& own : of[0].harmonics)
+      if (const Harmonic* other = of[1].find(own.order)) {
+        least = std::min(least, p_of_equal_lines(own.values, own.uncertainties, other->values,
+                                                 other->uncertainties));
+        tested += 1.0;
+      }
+    return std::min(1.0, tested * least);
+  }
+
+  void append_to(ShownBySamples& out) const {
+    out.options.each_half = of.size() > 1;
+    std::vector<Harmonic> harmonics;
+    for (int h = 1; h <= kMostHarmonics; ++h) {
+      if (!is_seen(h) && !is_bounded(h)) continue;
+      out.options.harmonics.push_back(h);
+      if (!is_seen(h)) out.bounded.push_back(h);
+      for (std::size_t k = 0; k < of.size(); ++k) {
+        const Harmonic* own = of[k].find(h);
+        harmonics.push_back(own ? *own : within_parabola(largest[k], h));
+      }
+    }
+    const auto parameters = parameters_of(out.options.harmonics, out.options.each_half);
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      const Harmonic& each = harmonics[p / 2];
+      const auto k = static_cast<Eigen::Index>(p % 2);
+      out.values.push_back(
+          {parameters[p].name, each.values[k] / kMicrometre, each.uncertainties[k] / kMicrometre});
+    }
+  }
+};
 
 class FeedMarks : public LinearEffect {
  public:
@@ -144,44 +248,38 @@ class FeedMarks : public LinearEffect {
   // The harmonics that stand out of the spectrum of the samples, where the first one is one of
   // them: sampling may have folded them, but the grooves of a cut lie where its feed says. Of those
   // that do not, and of those that it has folded to slow waves, which no spectrum tells from other
-  // errors, the first one is a bound; of the first one itself, the nose radius.
+  // errors, the first one is a bound; of the first one itself, the nose radius. A diameter whose
+  // centre is off by part of a feed has marks of another phase on each half: looked for where the
+  // whole shows none, so that noise may pass at twice the significance.
   [[nodiscard]] std::optional<ShownBySamples> shown_by(const Stations& stations,
                                                        std::span<const double> values,
                                                        double significance) const override {
     const Setup& setup = stations.setup();
-    const Eigen::Index all = stations.size(), count = std::min(all, kMostSamples);
-    if (!applies_to(setup) || !has_grooves(setup) || count < kLeastSamples) return std::nullopt;
-    const Eigen::Index first = (all - count) / 2;
-    Eigen::VectorXd places(count), radii(count), phase(count), weights(count);
-    const double feed = *setup.feed_per_revolution(), ends = kEnds * feed;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      places[i] = stations.trace(first + i);
-      radii[i] = stations.radius(first + i);
-      phase[i] = 2.0 * kPi * groove_at(stations, first + i).across;
-      weights[i] = radii[i] > ends && radii[i] < *setup.cut_radius_mm - ends ? 1.0 : 0.0;
-    }
-    const LineTest lines(
-        values.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)), places,
-        radii, weights);
-    ShownBySamples out{.p_value = lines.p_value(phase)};
-    const bool is_slow = !lines.is_fast(phase);
+    const Eigen::Index all = stations.size();
+    if (!applies_to(setup) || !has_grooves(setup) || all < kLeastSamples) return std::nullopt;
     const std::optional<double> most = largest_feed_mark(setup, 1);
+    ShownBySamples out;
     out.may_be_whole = std::abs(stations.trace(all - 1) - stations.trace(0)) <
-                       kUnfolded * static_cast<double>(all - 1) * feed;
-    if (out.p_value > significance || (is_slow && (out.may_be_whole || !most))) return std::nullopt;
-    auto [harmonics, bounded] = resolved(lines, phase, significance, most.value_or(0.0));
-    const double largest = is_slow ? *most : harmonics[0].values.norm();
-    for (const int h : bounded) harmonics.push_back(within_parabola(largest, h));
-    out.bounded = std::move(bounded);
-    std::ranges::sort(harmonics, {}, &Harmonic::order);
-    for (const Harmonic& each : harmonics) out.options.harmonics.push_back(each.order);
-    const std::vector<Parameter> parameters = parameters_of(out.options.harmonics);
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
-      const Harmonic& each = harmonics[p / 2];
-      const auto k = static_cast<Eigen::Index>(p % 2);
-      out.values.push_back(
-          {parameters[p].name, each.values[k] / kMicrometre, each.uncertainties[k] / kMicrometre});
+                       kUnfolded * static_cast<double>(all - 1) * *setup.feed_per_revolution();
+    const auto is_known = [&](const Part& part) {
+      return !part.is_slow() || (!out.may_be_whole && most);
+    };
+    const std::vector<Part> whole{Part::of(stations, values, 0, all)},
+        halves = halves_of(stations, values);
+    out.p_value = whole[0].p_value();
+    bool is_of_each = false;
+    if (!halves.empty() && std::ranges::all_of(halves, is_known)) {
+      const double least = std::min(halves[0].p_value(), halves[1].p_value());
+      if (out.p_value > significance) {
+        out.p_value = std::min(1.0, 2.0 * least);
+        is_of_each = true;
+      } else {
+        is_of_each = Spectra(halves, significance, most).p_of_one_form() <= significance;
+      }
     }
+    const std::vector<Part>& parts = is_of_each ? halves : whole;
+    if (out.p_value > significance || !std::ranges::all_of(parts, is_known)) return std::nullopt;
+    Spectra(parts, significance, most).append_to(out);
     return out;
   }
 
@@ -192,12 +290,16 @@ class FeedMarks : public LinearEffect {
 // The marks of one cut, where neither their phase nor how the reading rounds them is known.
 class FeedMarksOfOneCut : public LinearEffect {
  public:
-  explicit FeedMarksOfOneCut(const std::vector<int>& harmonics)
-      : LinearEffect(describe_feed_marks(), parameters_of(harmonics),
-                     diagonal_map(2 * static_cast<int>(harmonics.size()), kMicrometre)),
-        harmonics_(harmonics) {}
+  FeedMarksOfOneCut(const std::vector<int>& harmonics, bool each_half)
+      : LinearEffect(describe_feed_marks(), parameters_of(harmonics, each_half),
+                     diagonal_map(static_cast<int>(std::ssize(harmonics)) * (each_half ? 4 : 2),
+                                  kMicrometre)),
+        harmonics_(harmonics),
+        each_half_(each_half) {}
 
-  [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_face_height(setup); }
+  [[nodiscard]] bool applies_to(const Setup& setup) const override {
+    return each_half_ ? crosses_the_axis(setup) : is_face_height(setup);
+  }
 
   [[nodiscard]] std::vector<std::string> lacking_together(
       const std::vector<const Setup*>& setups) const override {
@@ -207,16 +309,19 @@ class FeedMarksOfOneCut : public LinearEffect {
 
   void columns(const Stations& stations, std::span<const double> /*shape*/,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
-    if (!applies_to(stations.setup())) return void(out.setZero());
+    out.setZero();
+    if (!applies_to(stations.setup())) return;
+    const Eigen::Index step = each_half_ ? 4 : 2;
     for (Eigen::Index i = 0; i < stations.size(); ++i) {
       const auto turn = std::polar(1.0, 2.0 * kPi * groove_at(stations, i).across);
       std::complex<double> harmonic = 1.0;
       int reached = 0;
-      Eigen::Index j = 0;
+      Eigen::Index j = each_half_ && is_far(stations, i) ? 2 : 0;
       for (const int h : harmonics_) {
         for (; reached < h; ++reached) harmonic *= turn;
-        out(i, j++) = harmonic.real();
-        out(i, j++) = harmonic.imag();
+        out(i, j) = harmonic.real();
+        out(i, j + 1) = harmonic.imag();
+        j += step;
       }
     }
   }
@@ -225,19 +330,22 @@ class FeedMarksOfOneCut : public LinearEffect {
 
  private:
   std::vector<int> harmonics_;
+  bool each_half_;
 };
 
 }  // namespace
 
 std::unique_ptr<Effect> make_feed_marks(const Request& request) {
-  request.accept_only({"harmonics"});
+  request.accept_only({"harmonics", "each_half"});
   const std::vector<int>& harmonics = request.options.harmonics;
+  if (harmonics.empty() && request.options.each_half)
+    throw UsageError("effect feed_marks: 'each_half' is of its 'harmonics', which are missing");
   if (harmonics.empty()) return std::make_unique<FeedMarks>(request.range.coarsest_feed_mm);
   if (std::ranges::adjacent_find(harmonics, std::greater_equal()) != harmonics.end() ||
       harmonics.back() > kMostHarmonics)
     throw UsageError("effect feed_marks: 'harmonics' must rise, from 1 to " +
                      std::to_string(kMostHarmonics));
-  return std::make_unique<FeedMarksOfOneCut>(harmonics);
+  return std::make_unique<FeedMarksOfOneCut>(harmonics, request.options.each_half);
 }
 
 }  // namespace slideway

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "rims.hpp"
+#include "shown.hpp"
+
+namespace slideway {
+
+/// What is known of the data before a search for effects.
+struct Known {
+  std::vector<ShownEffect> shown;
+  std::vector<TraceRound> rounds;     // of those that are settled
+  std::string note;                   // on values that are left out; "": none are
+  std::optional<FittedModel> fitted;  // with all that; none: as declared
+};
+
+Known known_before_search(const Problem& problem, const FittedModel& declared);
+
+}  // namespace slideway
