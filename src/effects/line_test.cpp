@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "slideway/base/units.hpp"
@@ -12,19 +11,25 @@
 namespace slideway {
 namespace {
 
-constexpr std::array<int, 12> kBeside{-9, -8, -7, -6, -5, -4, 4, 5, 6, 7, 8, 9};  // cycles
+constexpr int kNearest = 4, kFarthest = 9;  // of the lines beside one, to either side, cycles
+constexpr int kBeside = 2 * (kFarthest - kNearest + 1);
 constexpr double kFarthestBeside = 12.0;  // with the width of a line
 constexpr double kIndependent = 8.0;      // of them under a Hann window: its noise is 1.5 bins wide
 constexpr double kMostReached = 0.01;  // of the square of a line beside, by the line itself folded
 constexpr Eigen::Index kTerms = 4;     // of a cubic
 
-bool are_apart(const Eigen::MatrixX2d& own, const Eigen::HouseholderQR<Eigen::MatrixXd>& others,
-               double share) {
-  const Eigen::MatrixXd inside = others.householderQ().transpose() * own;
+/// @param others  orthonormal columns
+bool are_apart(const Eigen::MatrixX2d& own, const Eigen::MatrixXd& others, double share) {
+  const Eigen::MatrixXd inside = others.transpose() * own;
   for (Eigen::Index j = 0; j < 2; ++j)
-    if (!(inside.col(j).head(others.cols()).squaredNorm() < share * own.col(j).squaredNorm()))
-      return false;
+    if (!(inside.col(j).squaredNorm() < share * own.col(j).squaredNorm())) return false;
   return true;
+}
+
+/// Columns that span what these do. REQUIRES more rows than columns.
+Eigen::MatrixXd spanning(const Eigen::MatrixXd& columns) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), columns.cols());
 }
 
 /// Phase of one cycle over places.
@@ -46,8 +51,13 @@ double tail_of_ratio(double ratio, double m) { return std::pow(1.0 + ratio / m, 
 
 LineTest::LineTest(std::span<const double> values, const Eigen::VectorXd& places,
                    const Eigen::VectorXd& radii, const Eigen::VectorXd& weights)
-    : turn_(turn_over(places)), turn_of_form_(steps_of(turn_over(radii)).abs().mean()) {
+    : turned_(places.size(), kBeside), turn_of_form_(steps_of(turn_over(radii)).abs().mean()) {
   const auto count = static_cast<Eigen::Index>(values.size());
+  const Eigen::ArrayXd turn = turn_over(places);
+  for (int k = 0; k < kBeside / 2; ++k) {
+    turned_.col(2 * k) = ((kNearest + k) * turn).cos();
+    turned_.col(2 * k + 1) = ((kNearest + k) * turn).sin();
+  }
   const Eigen::ArrayXd at =
       Eigen::ArrayXd::LinSpaced(count, 0.5, static_cast<double>(count) - 0.5) /
       static_cast<double>(count);
@@ -56,8 +66,7 @@ LineTest::LineTest(std::span<const double> values, const Eigen::VectorXd& places
   powers.col(0) = window_;
   for (Eigen::Index k = 1; k < kTerms; ++k)
     powers.col(k) = powers.col(k - 1).array() * (2.0 * at - 1.0);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(powers);
-  form_ = qr.householderQ() * Eigen::MatrixXd::Identity(count, kTerms);
+  form_ = spanning(powers);
   values_ = weighted(Eigen::Map<const Eigen::VectorXd>(values.data(), count));
 }
 
@@ -89,14 +98,20 @@ double LineTest::gain(const Eigen::MatrixX2d& own) const {
 
 LineTest::Beside LineTest::gain_beside(const Eigen::VectorXd& phase,
                                        const Eigen::MatrixX2d& own) const {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> line(own);
+  const Eigen::MatrixXd line = spanning(own);
+  const Eigen::ArrayXd cosine = phase.array().cos(), sine = phase.array().sin();
   Beside out;
-  for (const int cycles : kBeside) {
-    const Eigen::MatrixX2d other = columns(phase + cycles * turn_);
-    if (!are_apart(other, line, kMostReached)) continue;
-    out.mean += gain(other);
-    out.count += 1.0;
-  }
+  for (int k = 0; k < kBeside / 2; ++k)
+    for (const double sign : {-1.0, 1.0}) {
+      const auto far_cosine = turned_.col(2 * k), far_sine = turned_.col(2 * k + 1);
+      Eigen::MatrixX2d other(phase.size(), 2);
+      other << cosine * far_cosine - sign * sine * far_sine,
+          sine * far_cosine + sign * cosine * far_sine;
+      other = weighted(other);
+      if (!are_apart(other, line, kMostReached)) continue;
+      out.mean += gain(other);
+      out.count += 1.0;
+    }
   out.mean /= std::max(out.count, 1.0);
   return out;
 }
@@ -107,7 +122,7 @@ double LineTest::p_value(const Eigen::VectorXd& phase) const {
   const Beside beside = gain_beside(phase, line);
   if (beside.count == 0.0) return 1.0;
   if (!(beside.mean > 0.0)) return own > 0.0 ? 0.0 : 1.0;
-  return tail_of_ratio(own / beside.mean, kIndependent * beside.count / std::ssize(kBeside));
+  return tail_of_ratio(own / beside.mean, kIndependent * beside.count / kBeside);
 }
 
 bool LineTest::is_fast(const Eigen::VectorXd& phase) const {
@@ -119,7 +134,7 @@ bool LineTest::stands_apart(const Eigen::VectorXd& phase,
                             const std::vector<Eigen::VectorXd>& others, double share) const {
   const Eigen::MatrixX2d own = columns(phase);
   if (others.empty()) return own.squaredNorm() > 0.0;
-  return are_apart(own, Eigen::HouseholderQR<Eigen::MatrixXd>(columns(others)), share);
+  return are_apart(own, spanning(columns(others)), share);
 }
 
 LineTest::Amplitudes LineTest::amplitudes(const std::vector<Eigen::VectorXd>& phases) const {

@@ -53,8 +53,9 @@ class LineTest {
   Eigen::VectorXd window_;
   Eigen::MatrixXd form_;    // orthonormal: the cubic under the window
   Eigen::VectorXd values_;  // what it leaves of them
-  Eigen::VectorXd turn_;    // phase of one cycle over the places
-  double turn_of_form_;     // of one cycle over the radii, from value to value, in cycles
+  // Cosines and sines, side by side, of 4 to 9 cycles over the places.
+  Eigen::ArrayXXd turned_;
+  double turn_of_form_;  // of one cycle over the radii, from value to value, in cycles
 };
 
 // Probability that noise makes two estimates of one line, each a cosine and a sine with its

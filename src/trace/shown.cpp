@@ -143,6 +143,33 @@ std::vector<std::size_t> seen_in(const Beside& beside, const ShownBySamples& sho
   return out;
 }
 
+/// The mean of both halves in the place of each, where the low band does not show the difference:
+/// it changes a value by less than half its noise.
+void join_halves(const Model& model, const std::string& name, const Observation& observation,
+                 double noise, ShownBySamples& shown) {
+  EffectOptions options = shown.options;
+  options.profiles = {observation.profile->name};
+  const ModelTerm term = term_of(model, name, options);
+  const auto count = std::ssize(shown.values);
+  Eigen::VectorXd apart(count);
+  std::vector<Prior> means;
+  for (std::size_t k = 0; k + 3 < shown.values.size(); k += 4)
+    for (const std::size_t p : {k, k + 1}) {  // cosine and sine of the near half, then the far one
+      const Prior &near = shown.values[p], &far = shown.values[p + 2];
+      const double half = 0.5 * (near.value - far.value);
+      apart[static_cast<Eigen::Index>(p)] = half;
+      apart[static_cast<Eigen::Index>(p + 2)] = -half;
+      const double uncertainty = std::hypot(near.standard_uncertainty, far.standard_uncertainty);
+      means.push_back({near.parameter, near.value - half, std::hypot(half, 0.5 * uncertainty)});
+    }
+  const Eigen::VectorXd image =
+      low_band_columns(model, term, observation, {}) * term.effect->from_parameters(apart);
+  if (image.squaredNorm() > kLeast * kLeast * noise * noise * static_cast<double>(image.size()))
+    return;
+  shown.options.each_half = false;
+  shown.values = std::move(means);
+}
+
 std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::string& name,
                                     const Observation& observation, const Noise& noise) {
   const Model& model = declared.model;
@@ -150,9 +177,11 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
   const Effect& effect = specimen(name);
   if (!effect.applies_to(profile.setup) || !effect.lacking(profile.setup).empty())
     return std::nullopt;
-  const auto seen =
+  auto seen =
       effect.shown_by(profile.stations(model.machine), profile.values, model.gates.false_line);
   if (!seen) return std::nullopt;
+  if (seen->options.each_half)
+    join_halves(model, name, observation, noise.standard_deviation(), *seen);
   EffectOptions options = seen->options, whole;
   options.profiles = whole.profiles = {profile.name};
   const Beside beside(model, declared.fit.estimate, observation,

@@ -172,6 +172,25 @@ std::vector<Part> halves_of(const Stations& stations, std::span<const double> va
   return out;
 }
 
+/// Probability that two halves with one phase and form show their first harmonics as unlike as
+/// these do: that of the lowest order that is fast and stands out of one of them. 1: none is.
+double p_of_one_form(const std::vector<Part>& halves, double significance) {
+  for (int h = 1; h <= kMostTested; ++h) {
+    std::vector<LineTest::Amplitudes> shown;
+    bool is_seen = false;
+    for (const Part& half : halves) {
+      const Eigen::VectorXd own = h * half.phase;
+      if (!half.lines.is_fast(own)) break;
+      is_seen = is_seen || half.lines.p_value(own) <= significance;
+      shown.push_back(half.lines.amplitudes({own}));
+    }
+    if (shown.size() < halves.size() || !is_seen) continue;
+    return p_of_equal_lines(shown[0].values, shown[0].uncertainties, shown[1].values,
+                            shown[1].uncertainties);
+  }
+  return 1.0;
+}
+
 /// Of parts of a profile together, each part with a phase and a form of its own.
 struct Spectra {
   std::vector<Spectrum> of;
@@ -190,18 +209,6 @@ struct Spectra {
   [[nodiscard]] bool is_bounded(int order) const {
     return std::ranges::all_of(
         of, [&](const Spectrum& each) { return std::ranges::count(each.bounded, order) > 0; });
-  }
-
-  /// Probability that halves with one phase and form show harmonics as unlike as these do.
-  [[nodiscard]] double p_of_one_form() const {
-    double least = 1.0, tested = 0.0;
-    for (const Harmonic& own : of[0].harmonics)
-      if (const Harmonic* other = of[1].find(own.order)) {
-        least = std::min(least, p_of_equal_lines(own.values, own.uncertainties, other->values,
-                                                 other->uncertainties));
-        tested += 1.0;
-      }
-    return std::min(1.0, tested * least);
   }
 
   void append_to(ShownBySamples& out) const {
@@ -274,7 +281,7 @@ class FeedMarks : public LinearEffect {
         out.p_value = std::min(1.0, 2.0 * least);
         is_of_each = true;
       } else {
-        is_of_each = Spectra(halves, significance, most).p_of_one_form() <= significance;
+        is_of_each = p_of_one_form(halves, significance) <= significance;
       }
     }
     const std::vector<Part>& parts = is_of_each ? halves : whole;
