@@ -9,6 +9,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/other_level.hpp"
 #include "slideway/signal/low_band_parts.hpp"
 
 namespace slideway {
@@ -150,7 +151,40 @@ Observation observe(const Profile& profile, const LowBandOptions& options,
   return out;
 }
 
+/// Left out there if it stands where a value of the other level is left out.
+void leave_out_where(const Observation& other, Observation& observation) {
+  const std::vector<double>& samples = observation.profile->positions;
+  const std::vector<double> known = other.low_band.positions(samples),
+                            places = observation.low_band.positions(samples);
+  const double reach = 0.5 * (samples.back() - samples.front()) /
+                       static_cast<double>(std::min(known.size(), places.size()));
+  std::vector<Eigen::Index> gone;
+  for (const Eigen::Index left : left_out_values(other))
+    for (Eigen::Index i = 0; i < std::ssize(places); ++i)
+      if (std::abs(places[static_cast<std::size_t>(i)] - known[static_cast<std::size_t>(left)]) <
+          reach)
+        gone.push_back(i);
+  std::ranges::sort(gone);
+  gone.erase(std::ranges::unique(gone).begin(), gone.end());
+  leave_out(observation, gone);
+}
+
 }  // namespace
+
+std::optional<Model> at_other_level(const Model& model, int by, Eigen::Index least) {
+  Model out = model;
+  for (Observation& observation : out.observations) {
+    LowBandOptions options = observation.low_band.options();
+    options.level += by;
+    const std::size_t samples = observation.profile->positions.size();
+    if (options.level < 0 || (samples >> options.level) < static_cast<std::size_t>(least))
+      return std::nullopt;
+    Observation other = observe(*observation.profile, options, samples);
+    leave_out_where(observation, other);
+    observation = std::move(other);
+  }
+  return out;
+}
 
 Eigen::MatrixXd levelled(const Observation& observation, Eigen::MatrixXd columns) {
   const Eigen::Index named = std::ssize(observation.nuisance_names);

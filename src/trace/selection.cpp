@@ -252,13 +252,14 @@ class Selector {
   void name_rivals() {
     for (std::size_t i = 0; i < out_.effects.size(); ++i) {
       AcceptedEffect& effect = out_.effects[i];
-      const SearchRound& round = extender_.search(all_but(out_.effects, i));
+      const Effects others = all_but(out_.effects, i);
+      const SearchRound& round = extender_.search(others);
       const TestedCandidate& own = *find_tested(round, effect, gates_);
       for (const TestedCandidate* rival : round.rivals(own, gates_))
         if (std::ranges::count(effect.round.ambiguous_with, rival->name()) == 0)
           effect.round.ambiguous_with.push_back(rival->name());
       const bool outranks = note_outranked(round, own);
-      const Stability found = stability(round, own, gates_);
+      const Stability found = stability(round, own, gates_, &extender_.extended(others));
       effect.round.stability = found.share;
       if (found.share >= gates_.stable_share || !effect.round.ambiguous_with.empty() || outranks)
         continue;

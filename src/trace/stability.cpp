@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
+#include "other_level.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/random.hpp"
 #include "slideway/identify/linear_algebra.hpp"
@@ -48,8 +50,7 @@ class Choice {
     const auto rest = columns.rightCols(1);
     const auto count = static_cast<double>(residual.size());
     const double log_count = std::log(count), to_all = count / static_cast<double>(rows.size());
-    std::string best(kNothing);
-    double least = 0.0, of_own = 0.0;
+    Ballot ballot(own_name);
     for (std::size_t c = 0; c < round_.tested.size(); ++c) {
       const Refined& refined = round_.tested[c].refined;
       if (!round_.tested[c].is_possible()) continue;
@@ -58,10 +59,9 @@ class Choice {
       const double bic =
           static_cast<double>(refined.candidate->unknowns(refined.projection.rank)) * log_count +
           refined.candidate->choice - to_all * (own.transpose() * rest).squaredNorm();
-      if (bic < least) least = bic, best = round_.tested[c].name();
-      if (round_.tested[c].name() == own_name) of_own = std::min(of_own, bic);
+      ballot.add(round_.tested[c].name(), bic);
     }
-    return of_own < 0.0 && of_own <= least + tie ? own_name : best;
+    return ballot.chosen(tie);
   }
 
  private:
@@ -100,7 +100,8 @@ std::vector<Rows> parts_of(const Whitened& data, const Eigen::VectorXd& shown) {
 
 }  // namespace
 
-Stability stability(const SearchRound& round, const TestedCandidate& effect, const Gates& gates) {
+Stability stability(const SearchRound& round, const TestedCandidate& effect, const Gates& gates,
+                    const FittedModel* fitted) {
   const Choice choice(round);
   const Whitened& data = round.data;
   const std::vector<Rows> parts = parts_of(data, effect.fitted);
@@ -116,6 +117,9 @@ Stability stability(const SearchRound& round, const TestedCandidate& effect, con
     for (double& value : drawn) value += random.normal();
     chosen[k] = choice.in(drawn, all, effect.name(), gates.tie_bic);
   });
+  if (fitted)
+    for (std::string& name : chosen_at_other_levels(*fitted, round, effect))
+      chosen.push_back(std::move(name));
   const auto is_it = [&](const std::string& name) {
     return std::ranges::any_of(round.tested, [&](const TestedCandidate& each) {
       return each.name() == name &&

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "slideway/identify/fit.hpp"
+#include "stability.hpp"
+
+namespace slideway {
+
+/// What the same profiles choose one level up and one level down, among the candidates of a search
+/// at the shapes that it gave, as stability() has it. The noise is that beside the effect there. At
+/// a level that a profile does not have, nothing is chosen.
+///
+/// @param fitted  the model that was searched
+std::vector<std::string> chosen_at_other_levels(const FittedModel& fitted, const SearchRound& round,
+                                                const TestedCandidate& effect);
+
+}  // namespace slideway
