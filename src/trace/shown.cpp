@@ -144,8 +144,9 @@ std::vector<std::size_t> seen_in(const Beside& beside, const ShownBySamples& sho
 }
 
 /// The mean of both halves in the place of each, where the low band does not show the difference:
-/// it changes a value by less than half its noise.
-void join_halves(const Model& model, const std::string& name, const Observation& observation,
+/// it changes a value by less than half its noise. @return whether it does not
+/// @param noise  variance of a value
+bool join_halves(const Model& model, const std::string& name, const Observation& observation,
                  double noise, ShownBySamples& shown) {
   EffectOptions options = shown.options;
   options.profiles = {observation.profile->name};
@@ -164,10 +165,11 @@ void join_halves(const Model& model, const std::string& name, const Observation&
     }
   const Eigen::VectorXd image =
       low_band_columns(model, term, observation, {}) * term.effect->from_parameters(apart);
-  if (image.squaredNorm() > kLeast * kLeast * noise * noise * static_cast<double>(image.size()))
-    return;
+  if (image.squaredNorm() > kLeast * kLeast * noise * static_cast<double>(image.size()))
+    return false;
   shown.options.each_half = false;
   shown.values = std::move(means);
+  return true;
 }
 
 std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::string& name,
@@ -180,14 +182,19 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
   auto seen =
       effect.shown_by(profile.stations(model.machine), profile.values, model.gates.false_line);
   if (!seen) return std::nullopt;
-  if (seen->options.each_half)
-    join_halves(model, name, observation, noise.standard_deviation(), *seen);
-  EffectOptions options = seen->options, whole;
-  options.profiles = whole.profiles = {profile.name};
-  const Beside beside(model, declared.fit.estimate, observation,
-                      images(model, term_of(model, name, options), seen->values, observation),
-                      low_band_columns(model, term_of(model, name, whole), observation, {}),
-                      noise.standard_deviation());
+  EffectOptions options, whole;
+  whole.profiles = {profile.name};
+  const auto beside_marks = [&] {
+    options = seen->options;
+    options.profiles = whole.profiles;
+    return Beside(model, declared.fit.estimate, observation,
+                  images(model, term_of(model, name, options), seen->values, observation),
+                  low_band_columns(model, term_of(model, name, whole), observation, {}),
+                  noise.standard_deviation());
+  };
+  Beside beside = beside_marks();
+  if (seen->options.each_half && join_halves(model, name, observation, beside.noise, *seen))
+    beside = beside_marks();
   if (beside.degrees < 1.0) return std::nullopt;
   ShownEffect out{{name, whole, {}}, seen->p_value};
   for (const Prior& value : seen->values)
