@@ -165,7 +165,7 @@ void leave_out_where(const Observation& other, Observation& observation) {
           reach)
         gone.push_back(i);
   std::ranges::sort(gone);
-  gone.erase(std::ranges::unique(gone).begin(), gone.end());
+  gone.erase(std::unique(gone.begin(), gone.end()), gone.end());
   leave_out(observation, gone);
 }
 
