@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "effects/heights.hpp"
+#include "slideway/base/error.hpp"
 #include "slideway/base/random.hpp"
 #include "slideway/base/units.hpp"
 
