@@ -25,6 +25,7 @@ PROBLEM = (EXAMPLE / "problem.toml").read_bytes()
 FILES = [EXAMPLE / f"{name}.csv" for name in ("fine", "coarse", "outward")]
 TEMPORARY = ".slideway-serve"
 OWN_FILES = {"problem.toml", "result.json", "report.html"}
+ENDED = ("", "Z")  # states of a process that has none, or that nobody has waited for
 
 
 def children(pid):
@@ -37,6 +38,13 @@ def children(pid):
         if int(fields[1]) == pid and fields[0] != "Z":
             found.append(int(stat.parent.name))
     return found
+
+
+def command(pid):
+    try:
+        return pathlib.Path(f"/proc/{pid}/cmdline").read_text().split("\0")
+    except OSError:
+        return []
 
 
 class Serve(unittest.TestCase):
@@ -65,15 +73,19 @@ class Serve(unittest.TestCase):
         job = self.server.post(f"drafts/{draft}/run?name={name}", PROBLEM)["job"]
         return self.server.wait(job)
 
+    def workers(self):
+        """Children that are the command by now: one that stands still before is still the server."""
+        return [pid for pid in children(self.server.process.pid) if command(pid)[1:2] == ["identify"]]
+
     def stopped_run(self):
         """A run whose process stands still, so that it is not over before it is looked at."""
         draft = self.server.draft(*FILES)
         job = self.server.post(f"drafts/{draft}/run?name=slow", PROBLEM)["job"]
         end = time.monotonic() + 10
-        while not (worker := children(self.server.process.pid)):
+        while not (workers := self.workers()):
             self.assertLess(time.monotonic(), end)
-        os.kill(worker[0], signal.SIGSTOP)
-        return job, worker[0]
+        os.kill(workers[0], signal.SIGSTOP)
+        return job, workers[0]
 
     def names(self, folder=None):
         return {path.name for path in (folder or self.folder).iterdir()}
@@ -378,10 +390,10 @@ class Ends(Serve):
         _, worker = self.stopped_run()
         self.server.end(signal.SIGKILL)
         for _ in range(100):
-            if not pathlib.Path(f"/proc/{worker}").exists():
+            if self.state_of(worker) in ENDED:
                 break
             time.sleep(0.05)
-        self.assertNotIn("S", self.state_of(worker))
+        self.assertIn(self.state_of(worker), ENDED)
         self.assertEqual({"kept", TEMPORARY}, self.names())
         self.server = self.start()
         self.assertEqual(set(), self.names(self.folder / TEMPORARY))
