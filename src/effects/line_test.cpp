@@ -44,6 +44,12 @@ Eigen::ArrayXd steps_of(const Eigen::VectorXd& phase) {
   return (phase.tail(steps) - phase.head(steps)).array() / (2.0 * kPi);
 }
 
+Eigen::MatrixX2d wave_of(const Eigen::VectorXd& phase) {
+  Eigen::MatrixX2d out(phase.size(), 2);
+  out << phase.array().cos(), phase.array().sin();
+  return out;
+}
+
 /// Of an F distribution of 2 and 2 m degrees of freedom.
 double tail_of_ratio(double ratio, double m) { return std::pow(1.0 + ratio / m, -m); }
 
@@ -77,9 +83,7 @@ Eigen::MatrixXd LineTest::weighted(const Eigen::MatrixXd& columns) const {
 }
 
 Eigen::MatrixX2d LineTest::columns(const Eigen::VectorXd& phase) const {
-  Eigen::MatrixX2d out(phase.size(), 2);
-  out << phase.array().cos(), phase.array().sin();
-  return weighted(out);
+  return weighted(wave_of(phase));
 }
 
 Eigen::MatrixXd LineTest::columns(const std::vector<Eigen::VectorXd>& phases) const {
@@ -96,15 +100,15 @@ double LineTest::gain(const Eigen::MatrixX2d& own) const {
   return lu.isInvertible() ? products.dot(lu.solve(products)) : 0.0;
 }
 
-LineTest::Beside LineTest::gain_beside(const Eigen::VectorXd& phase,
+LineTest::Beside LineTest::gain_beside(const Eigen::MatrixX2d& wave,
                                        const Eigen::MatrixX2d& own) const {
   const Eigen::MatrixXd line = spanning(own);
-  const Eigen::ArrayXd cosine = phase.array().cos(), sine = phase.array().sin();
+  const auto cosine = wave.col(0).array(), sine = wave.col(1).array();
   Beside out;
   for (int k = 0; k < kBeside / 2; ++k)
     for (const double sign : {-1.0, 1.0}) {
       const auto far_cosine = turned_.col(2 * k), far_sine = turned_.col(2 * k + 1);
-      Eigen::MatrixX2d other(phase.size(), 2);
+      Eigen::MatrixX2d other(wave.rows(), 2);
       other << cosine * far_cosine - sign * sine * far_sine,
           sine * far_cosine + sign * cosine * far_sine;
       other = weighted(other);
@@ -117,9 +121,9 @@ LineTest::Beside LineTest::gain_beside(const Eigen::VectorXd& phase,
 }
 
 double LineTest::p_value(const Eigen::VectorXd& phase) const {
-  const Eigen::MatrixX2d line = columns(phase);
+  const Eigen::MatrixX2d wave = wave_of(phase), line = weighted(wave);
   const double own = gain(line);
-  const Beside beside = gain_beside(phase, line);
+  const Beside beside = gain_beside(wave, line);
   if (beside.count == 0.0) return 1.0;
   if (!(beside.mean > 0.0)) return own > 0.0 ? 0.0 : 1.0;
   return tail_of_ratio(own / beside.mean, kIndependent * beside.count / kBeside);
@@ -145,7 +149,8 @@ LineTest::Amplitudes LineTest::amplitudes(const std::vector<Eigen::VectorXd>& ph
       gram.solve(Eigen::MatrixXd::Identity(all.cols(), all.cols())).diagonal().cwiseSqrt();
   for (Eigen::Index k = 0; k < std::ssize(phases); ++k)  // a gain has two degrees of freedom
     out.uncertainties.segment(2 * k, 2) *= std::sqrt(
-        0.5 * gain_beside(phases[static_cast<std::size_t>(k)], all.middleCols(2 * k, 2)).mean);
+        0.5 *
+        gain_beside(wave_of(phases[static_cast<std::size_t>(k)]), all.middleCols(2 * k, 2)).mean);
   return out;
 }
 

@@ -42,13 +42,13 @@ class LineTest {
   [[nodiscard]] Eigen::MatrixX2d columns(const Eigen::VectorXd& phase) const;
   [[nodiscard]] Eigen::MatrixXd columns(const std::vector<Eigen::VectorXd>& phases) const;
   [[nodiscard]] double gain(const Eigen::MatrixX2d& own) const;
-  // Mean of the lines beside a line, and how many of them it does not reach, folded. `own`: its
-  // columns.
+  // Mean of the lines beside a line, and how many of them it does not reach, folded. `wave`: its
+  // cosine and sine; `own`: its columns.
   struct Beside {
     double mean = 0.0;
     double count = 0.0;
   };
-  [[nodiscard]] Beside gain_beside(const Eigen::VectorXd& phase, const Eigen::MatrixX2d& own) const;
+  [[nodiscard]] Beside gain_beside(const Eigen::MatrixX2d& wave, const Eigen::MatrixX2d& own) const;
 
   Eigen::VectorXd window_;
   Eigen::MatrixXd form_;    // orthonormal: the cubic under the window

@@ -17,9 +17,6 @@ constexpr int kHighestDegree = 20;
 constexpr std::size_t kMostHarmonic = 1000;
 constexpr int kHighestSeed = std::numeric_limits<int>::max();
 
-constexpr const char* kEffectOptions =
-    "name body degree span_mm form resolution_mm harmonics each_half profiles scope";
-
 EffectOptions read_effect_options(const Section& section, const Problem& problem) {
   EffectOptions options{section.text("body"), section.integer("degree", 0, kHighestDegree),
                         section.magnitude("span_mm")};

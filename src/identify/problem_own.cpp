@@ -28,9 +28,8 @@ std::vector<FormulaParameter> read_formula_parameters(const Section& effect) {
     FormulaParameter parameter{identifier(section, "name"), "", section.number("lower"),
                                section.number("upper")};
     // A [[truth.effect]] has keys and values of parameters in one table.
-    const std::vector<std::string> keys = words(
-        "name body degree span_mm form resolution_mm harmonics each_half profiles scope priors " +
-        std::string(kFormulaKeys));
+    const std::vector<std::string> keys =
+        words(std::string(kEffectOptions) + " priors " + std::string(kFormulaKeys));
     if (std::ranges::count(keys, parameter.name) > 0)
       section.fail("name",
                    "'" + parameter.name + "' is a key of an effect; accepted: another name");

@@ -11,6 +11,10 @@
 
 namespace slideway {
 
+/// Keys of every effect.
+inline constexpr std::string_view kEffectOptions =
+    "name body degree span_mm form resolution_mm harmonics each_half profiles scope";
+
 /// A way to write down an effect that is not in the catalogue: its word in `name`, and its keys.
 struct OwnKind {
   std::string_view name, keys;

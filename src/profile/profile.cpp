@@ -45,8 +45,8 @@ void require_usable_radius(const Setup& setup, double reach) {
                                   " mm; accepted: up to a million times its length");
 }
 
-constexpr double kRounding =
-    1e-4;  // of a radius, of which its drawing or its trace has four places
+// Of a radius, of which its drawing or its trace has four places.
+constexpr double kRounding = 1e-4;
 
 // The end of the trace that lies furthest from the spindle axis was cut, so the cut reached it.
 void complete_cut_radius(Setup& setup) {
@@ -54,13 +54,12 @@ void complete_cut_radius(Setup& setup) {
   const double reach = std::max(std::abs(setup.first_mm - setup.center_mm),
                                 std::abs(setup.last_mm - setup.center_mm));
   require_usable_radius(setup, reach);
-  if (!setup.cut_radius_mm || std::abs(*setup.cut_radius_mm / reach - 1.0) < kRounding)
-    setup.cut_radius_mm = std::max(setup.cut_radius_mm.value_or(reach), reach);
-  if (*setup.cut_radius_mm >= reach) return;
-  throw KeyError("cut_radius_mm",
-                 shortest(*setup.cut_radius_mm) +
-                     ", but the trace reaches r = " + significant(reach, 9) +
-                     "; give the outer radius of the cut, the right center_mm, or a window");
+  const double declared = setup.cut_radius_mm.value_or(reach);
+  if (declared < reach * (1.0 - kRounding))
+    throw KeyError("cut_radius_mm",
+                   shortest(declared) + ", but the trace reaches r = " + significant(reach, 9) +
+                       "; give the outer radius of the cut, the right center_mm, or a window");
+  setup.cut_radius_mm = std::max(declared, reach);
 }
 
 // "3, 120 to 122 and 5 more" of ascending rows.

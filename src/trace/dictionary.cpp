@@ -321,6 +321,17 @@ Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,
   });
 }
 
+std::vector<Eigen::MatrixXd> by_profile(const Linearisation& linear,
+                                        const Eigen::MatrixXd& stacked) {
+  std::vector<Eigen::MatrixXd> out;
+  Eigen::Index first = 0;
+  for (const Observation* each : linear.observations) {
+    out.emplace_back(stacked.middleRows(first, each->values.size()));
+    first += each->values.size();
+  }
+  return out;
+}
+
 Eigen::MatrixXd stacked_derivatives(const Model& model, const ModelTerm& term,
                                     std::span<const double> shape, int which,
                                     Eigen::Index prior_rows) {

@@ -7,6 +7,7 @@
 
 #include "shape_lattice.hpp"
 #include "slideway/identify/model.hpp"
+#include "slideway/identify/solve.hpp"
 
 namespace slideway {
 
@@ -77,7 +78,11 @@ Eigen::MatrixXd searched_columns(const Model& model, const ModelTerm& term,
 Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,
                                 std::span<const double> shape, Eigen::Index prior_rows);
 
-/// The same for d(columns)/d(shape[which]).
+/// The rows of each fitted observation.
+std::vector<Eigen::MatrixXd> by_profile(const Linearisation& linear,
+                                        const Eigen::MatrixXd& stacked);
+
+/// stacked_columns() for d(columns)/d(shape[which]).
 Eigen::MatrixXd stacked_derivatives(const Model& model, const ModelTerm& term,
                                     std::span<const double> shape, int which,
                                     Eigen::Index prior_rows);

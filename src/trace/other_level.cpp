@@ -1,5 +1,6 @@
 #include "slideway/identify/other_level.hpp"
 
+#include "ballot.hpp"
 #include "dictionary.hpp"
 #include "other_level.hpp"
 #include "search.hpp"
@@ -22,17 +23,6 @@ Solution at_level(const Model& model, const Estimate& estimate) {
   return out;
 }
 
-std::vector<Eigen::MatrixXd> by_profile(const Linearisation& linear,
-                                        const Eigen::MatrixXd& stacked) {
-  std::vector<Eigen::MatrixXd> out;
-  Eigen::Index first = 0;
-  for (const Observation* each : linear.observations) {
-    out.emplace_back(stacked.middleRows(first, each->values.size()));
-    first += each->values.size();
-  }
-  return out;
-}
-
 std::string chosen_in(const Model& model, const Estimate& estimate, const SearchRound& round,
                       const TestedCandidate& effect) {
   const Solution fit = at_level(model, estimate);
@@ -40,18 +30,17 @@ std::string chosen_in(const Model& model, const Estimate& estimate, const Search
   const auto columns_of = [&](const TestedCandidate& each) {
     return stacked_columns(model, each.refined.candidate->term, each.refined.shape, priors);
   };
+  const Eigen::MatrixXd own_columns = columns_of(effect);
+  Eigen::VectorXd steep;
+  if (effect.refined.candidate->term.effect->description().steep_at_centre)
+    steep = own_columns * effect.refined.projection.amplitudes;
   const std::vector<Noise> noise =
-      noise_beside(fit.linear, model.gates, by_profile(fit.linear, columns_of(effect)));
-  const Whitened data(
-      fit.linear, noise,
-      undescribed_beside(model, fit, noise,
-                         effect.refined.candidate->term.effect->description().steep_at_centre
-                             ? columns_of(effect) * effect.refined.projection.amplitudes
-                             : Eigen::VectorXd()));
+      noise_beside(fit.linear, model.gates, by_profile(fit.linear, own_columns));
+  const Whitened data(fit.linear, noise, undescribed_beside(model, fit, noise, steep));
   Ballot ballot(effect.name());
   for (const TestedCandidate& each : round.tested) {
     if (!each.is_possible()) continue;
-    const Projection own = project(data, columns_of(each));
+    const Projection own = project(data, &each == &effect ? own_columns : columns_of(each));
     if (own.rank > 0)
       ballot.add(each.name(), penalty(data, *each.refined.candidate, own.rank) - own.gain);
   }

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "slideway/base/text.hpp"
 #include "slideway/profile/profile.hpp"
@@ -18,8 +19,14 @@ struct Half {
   std::vector<double> radii, residuals;
   ValueIndices values;
 
+  void add(double radius, double residual, Eigen::Index value) {
+    radii.push_back(radius);
+    residuals.push_back(residual);
+    values.push_back(value);
+  }
+
   [[nodiscard]] double at(double radius) const {  // REQUIRES radii.back() <= radius <= radii[0]
-    const auto inner = std::ranges::find_if(radii, [&](double r) { return r <= radius; });
+    const auto inner = std::ranges::lower_bound(radii, radius, std::greater());
     const auto k = static_cast<std::size_t>(inner - radii.begin());
     if (k == 0) return residuals[0];
     const double part = (radii[k - 1] - radius) / (radii[k - 1] - radii[k]);
@@ -27,57 +34,75 @@ struct Half {
   }
 };
 
-Half half_of(const Observation& observation, const Eigen::VectorXd& residual, double sign) {
-  const Profile& profile = *observation.profile;
-  const std::vector<double> places = observation.low_band.positions(profile.positions);
-  const ValueIndices gone = left_out_values(observation);
-  Half out;
-  for (Eigen::Index k = 0; k < std::ssize(places); ++k) {
-    const Eigen::Index i = sign < 0.0 ? k : std::ssize(places) - 1 - k;
-    const double r = sign * (places[static_cast<std::size_t>(i)] - profile.setup.center_mm);
-    if (r <= 0.0) break;
-    if (std::ranges::binary_search(gone, i)) continue;
-    out.radii.push_back(r);
-    out.residuals.push_back(residual[i]);
-    out.values.push_back(i);
-  }
-  return out;
-}
-
 /// The two halves of a diameter against each other, from the rim inwards.
-struct Halves {
-  Half near, far;
-  std::vector<double> radii, differences;  // where both have values
+class Halves {
+ public:
+  Halves(const Observation& observation, const Eigen::VectorXd& residual) {
+    const Profile& profile = *observation.profile;
+    const std::vector<double> places = observation.low_band.positions(profile.positions);
+    const ValueIndices gone = left_out_values(observation);
+    for (Eigen::Index i = 0; i < std::ssize(places); ++i) {
+      const double x = places[static_cast<std::size_t>(i)] - profile.setup.center_mm;
+      if (x == 0.0 || std::ranges::binary_search(gone, i)) continue;
+      (x < 0.0 ? far_ : near_).add(std::abs(x), residual[i], i);
+    }
+    for (auto* list : {&near_.radii, &near_.residuals}) std::ranges::reverse(*list);
+    std::ranges::reverse(near_.values);
+    if (!near_.radii.empty() && !far_.radii.empty()) compare();
+  }
 
-  Halves(const Observation& observation, const Eigen::VectorXd& residual)
-      : near(half_of(observation, residual, 1.0)), far(half_of(observation, residual, -1.0)) {
-    if (near.radii.empty() || far.radii.empty()) return;
-    for (std::size_t k = 0; k < near.radii.size(); ++k) {
-      const double r = near.radii[k];
-      if (r > far.radii.front() || r < far.radii.back()) continue;
-      radii.push_back(r);
-      differences.push_back(near.residuals[k] - far.at(r));
+  [[nodiscard]] Eigen::Index size() const { return std::ssize(radii_); }
+
+  /// Of `count` differences from `first` inwards.
+  [[nodiscard]] Eigen::Vector3d parabola(Eigen::Index first, Eigen::Index count) const {
+    const Sums own = sums_.col(first + count) - sums_.col(first);
+    Eigen::Matrix3d gram;
+    gram << own[0], own[1], own[2], own[1], own[2], own[3], own[2], own[3], own[4];
+    return gram.ldlt().solve(own.tail<3>());
+  }
+
+  /// What a difference has beyond a parabola.
+  [[nodiscard]] double beyond(const Eigen::Vector3d& parabola, Eigen::Index k) const {
+    const double u = place(k);
+    return differences_[static_cast<std::size_t>(k)] - parabola.dot(Eigen::Vector3d(1.0, u, u * u));
+  }
+
+  /// The values of both halves from the rim to the difference `last`.
+  [[nodiscard]] ValueIndices values_to(Eigen::Index last) const {
+    const double inner = radii_[static_cast<std::size_t>(last)] * (1.0 - 1e-9);
+    ValueIndices out;
+    for (const Half* half : {&near_, &far_})
+      for (std::size_t k = 0; k < half->radii.size() && half->radii[k] >= inner; ++k)
+        out.push_back(half->values[k]);
+    std::ranges::sort(out);
+    return out;
+  }
+
+ private:
+  using Sums = Eigen::Vector<double, 8>;  // of 1, u ... u⁴, and of d, d u, d u²
+
+  [[nodiscard]] double place(Eigen::Index k) const {
+    return radii_[static_cast<std::size_t>(k)] / radii_[0];
+  }
+
+  void compare() {
+    for (std::size_t k = 0; k < near_.radii.size(); ++k) {
+      const double r = near_.radii[k];
+      if (r > far_.radii.front() || r < far_.radii.back()) continue;
+      radii_.push_back(r);
+      differences_.push_back(near_.residuals[k] - far_.at(r));
+    }
+    sums_ = Eigen::MatrixXd::Zero(8, size() + 1);
+    for (Eigen::Index k = 0; k < size(); ++k) {
+      const double u = place(k), d = differences_[static_cast<std::size_t>(k)];
+      sums_.col(k + 1) =
+          sums_.col(k) + Sums{1.0, u, u * u, u * u * u, u * u * u * u, d, d * u, d * u * u};
     }
   }
 
-  [[nodiscard]] Eigen::Index size() const { return std::ssize(radii); }
-
-  /// What a difference has beyond the parabola through `count` of them from `first` inwards.
-  [[nodiscard]] double beyond_parabola(Eigen::Index k, Eigen::Index first,
-                                       Eigen::Index count) const {
-    Eigen::MatrixX3d columns(count, 3);
-    const auto place = [&](Eigen::Index at) { return radii[static_cast<std::size_t>(at)]; };
-    const double middle = place(first + count / 2), unit = place(first) - middle;
-    const auto powers = [&](Eigen::Index at) {
-      const double u = (place(at) - middle) / unit;
-      return Eigen::RowVector3d(1.0, u, u * u);
-    };
-    for (Eigen::Index i = 0; i < count; ++i) columns.row(i) = powers(first + i);
-    const Eigen::Map<const Eigen::VectorXd> values(differences.data() + first, count);
-    const Eigen::Vector3d parabola =
-        (columns.transpose() * columns).ldlt().solve(columns.transpose() * values);
-    return differences[static_cast<std::size_t>(k)] - powers(k) * parabola;
-  }
+  Half near_, far_;
+  std::vector<double> radii_, differences_;  // where both have values
+  Eigen::MatrixXd sums_;                     // those of all before k in column k
 };
 
 }  // namespace
@@ -94,21 +119,14 @@ ValueIndices values_past_a_rim(const Observation& observation, const Eigen::Vect
   if (end - beyond < kLeastFitted) return {};
   double square = 0.0;
   for (Eigen::Index k = beyond; k < end; ++k)
-    square += std::pow(halves.beyond_parabola(k, k + beyond, fitted), 2);
+    square += std::pow(halves.beyond(halves.parabola(k + beyond, fitted), k), 2);
   const double most = gates.one_rim * std::sqrt(square / static_cast<double>(end - beyond));
-  const auto deviation = [&](Eigen::Index k) {
-    return std::abs(halves.beyond_parabola(k, beyond, fitted));
-  };
+  const Eigen::Vector3d parabola = halves.parabola(beyond, fitted);
+  const auto deviation = [&](Eigen::Index k) { return std::abs(halves.beyond(parabola, k)); };
   if (!(deviation(0) > most)) return {};
   Eigen::Index last = 0;
   while (last + 1 < beyond && deviation(last + 1) > 0.5 * most) ++last;
-  const double inner = halves.radii[static_cast<std::size_t>(last)] * (1.0 - 1e-9);
-  ValueIndices out;
-  for (const Half* half : {&halves.near, &halves.far})
-    for (std::size_t k = 0; k < half->radii.size() && half->radii[k] >= inner; ++k)
-      out.push_back(half->values[k]);
-  std::ranges::sort(out);
-  return out;
+  return halves.values_to(last);
 }
 
 std::optional<WithinRims> within_rims(const FittedModel& declared) {

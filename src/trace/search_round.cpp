@@ -47,22 +47,21 @@ std::vector<Finding> suspects_among(std::vector<Finding> findings, const Gates& 
 std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
                                                 const FreeValues& undescribed,
                                                 const std::vector<Finding>& findings) {
-  Eigen::MatrixXd columns(0, 0);
-  for (const Finding& each : findings) {
-    const Eigen::MatrixXd around = each.candidate->columns_around(each.atom);
-    columns.conservativeResize(around.rows(), columns.cols() + around.cols());
-    columns.rightCols(around.cols()) = around;
-  }
   std::vector<Eigen::MatrixXd> out;
-  Eigen::Index first = 0;
-  for (std::size_t i = 0; i < undescribed.size(); ++i) {
-    const Eigen::Index count = linear.observations[i]->values.size();
-    const Eigen::MatrixXd units = unit_columns(undescribed[i], count);
-    Eigen::MatrixXd& own = out.emplace_back(count, columns.cols() + units.cols());
-    if (columns.cols() > 0) own.leftCols(columns.cols()) = columns.middleRows(first, count);
-    own.rightCols(units.cols()) = units;
-    first += count;
+  for (const Observation* each : linear.observations) out.emplace_back(each->values.size(), 0);
+  const auto append = [&](std::size_t i, const Eigen::MatrixXd& columns) {
+    out[i].conservativeResize(Eigen::NoChange, out[i].cols() + columns.cols());
+    out[i].rightCols(columns.cols()) = columns;
+  };
+  for (const Finding& each : findings) {
+    const std::optional<std::size_t> only = each.candidate->only;
+    const std::vector<Eigen::MatrixXd> around =
+        by_profile(linear, each.candidate->columns_around(each.atom));
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (!only || *only == i) append(i, around[i]);
   }
+  for (std::size_t i = 0; i < out.size(); ++i)
+    append(i, unit_columns(undescribed[i], out[i].rows()));
   return out;
 }
 

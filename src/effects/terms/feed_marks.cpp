@@ -2,6 +2,7 @@
 #include <cmath>
 #include <complex>
 #include <functional>
+#include <utility>
 
 #include "../groove.hpp"
 #include "../line_test.hpp"
@@ -256,8 +257,8 @@ class FeedMarks : public LinearEffect {
   // them: sampling may have folded them, but the grooves of a cut lie where its feed says. Of those
   // that do not, and of those that it has folded to slow waves, which no spectrum tells from other
   // errors, the first one is a bound; of the first one itself, the nose radius. A diameter whose
-  // centre is off by part of a feed has marks of another phase on each half: looked for where the
-  // whole shows none, so that noise may pass at twice the significance.
+  // centre is off by part of a feed has marks of another phase on each half: where the halves are
+  // unlike, or where the whole shows none, so that noise may pass at twice the significance.
   [[nodiscard]] std::optional<ShownBySamples> shown_by(const Stations& stations,
                                                        std::span<const double> values,
                                                        double significance) const override {
@@ -276,13 +277,10 @@ class FeedMarks : public LinearEffect {
     out.p_value = whole[0].p_value();
     bool is_of_each = false;
     if (!halves.empty() && std::ranges::all_of(halves, is_known)) {
-      const double least = std::min(halves[0].p_value(), halves[1].p_value());
-      if (out.p_value > significance) {
-        out.p_value = std::min(1.0, 2.0 * least);
-        is_of_each = true;
-      } else {
-        is_of_each = p_of_one_form(halves, significance) <= significance;
-      }
+      is_of_each =
+          out.p_value > significance || p_of_one_form(halves, significance) <= significance;
+      if (out.p_value > significance)
+        out.p_value = std::min({1.0, 2.0 * halves[0].p_value(), 2.0 * halves[1].p_value()});
     }
     const std::vector<Part>& parts = is_of_each ? halves : whole;
     if (out.p_value > significance || !std::ranges::all_of(parts, is_known)) return std::nullopt;
