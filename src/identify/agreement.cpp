@@ -22,12 +22,15 @@ using Profiles = std::vector<std::size_t>;  // of the fitted ones
 
 /// A side of a comparison, with what is known of its noise.
 struct Alone : SubsetEstimate {
+  Eigen::MatrixXd of_priors;  // #priors by #basis: their rows along the basis
   double freedom = 0.0;       // of the noise
   double log_variance = 0.0;  // of the noise's size
 
   Alone(const Linearisation& linear, const std::vector<Noise>& noise, const Compressed& all,
         const Profiles& which, double tolerance)
-      : SubsetEstimate(linear, all, which, tolerance) {
+      : SubsetEstimate(linear, all, which, tolerance), of_priors(linear.prior_rows * basis) {
+    const auto free =
+        static_cast<double>(std::max(basis.cols() - of_priors.rows(), Eigen::Index{0}));
     double known = 0.0;
     for (const std::size_t i : which) {
       const double spread = noise[i].log_long_run_variance();
@@ -35,14 +38,18 @@ struct Alone : SubsetEstimate {
       freedom += spread > 0.0 ? 2.0 / spread : HUGE_VAL;
       known += noise[i].effective_values();
     }
-    if (std::isfinite(freedom))
-      freedom = std::max(1.0, std::min(freedom, known - static_cast<double>(basis.cols())));
+    if (std::isfinite(freedom)) freedom = std::max(1.0, std::min(freedom, known - free));
   }
 
   /// Lets columns take what they can of the rows: they say nothing of another side.
   void leave_free(const std::vector<Eigen::Index>& columns) {
     const Eigen::MatrixXd taken = orthonormal(rows(Eigen::all, columns));
     rows -= taken * (taken.transpose() * rows).eval();
+  }
+
+  /// What the profiles say without the priors.
+  [[nodiscard]] Eigen::MatrixXd of_data() const {
+    return rows.bottomRows(rows.rows() - of_priors.rows());
   }
 
   [[nodiscard]] bool determines(const Eigen::MatrixXd& curve) const {
@@ -162,39 +169,55 @@ struct Pair {
   std::vector<Curve> curves;  // that both determine
 };
 
-double largest_en(const Pair& pair, const Curve& curve, double outside) {
-  constexpr double kNothing = 1e-12;  // of the largest variance: the ends of a levelled curve
-  const Eigen::MatrixXd of_a = curve.rows * pair.a.basis, of_b = curve.rows * pair.b.basis;
-  const Eigen::VectorXd variance_a = of_a.rowwise().squaredNorm(),
-                        variance_b = of_b.rowwise().squaredNorm(),
-                        variance = variance_a + variance_b;
-  const double least = kNothing * variance.maxCoeff();
-  const Eigen::VectorXd difference = curve.rows * (pair.a.change - pair.b.change);
+/// Rows whose products are the covariance of the difference of two sides along a curve. With the
+/// covariance B Bᵀ of each under the priors R, that is A Aᵀ + B Bᵀ less A (R A)ᵀ (R B) Bᵀ and its
+/// transpose: what both have from the priors does not differ.
+Eigen::MatrixXd difference_root(const Pair& pair, const Eigen::MatrixXd& of_a,
+                                const Eigen::MatrixXd& of_b) {
   Eigen::MatrixXd both(of_a.rows(), of_a.cols() + of_b.cols());
   both << of_a, of_b;
+  if (pair.a.of_priors.rows() == 0) return both;
+  const Eigen::MatrixXd common =
+      of_a * (pair.a.of_priors.transpose() * pair.b.of_priors) * of_b.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(both * both.transpose() - common -
+                                                             common.transpose());
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+double largest_en(const Pair& pair, const Curve& curve, double outside) {
+  constexpr double kNothing = 1e-12;  // of the largest variance: the ends of a levelled curve
+  const Eigen::MatrixXd of_a = curve.rows * pair.a.basis, of_b = curve.rows * pair.b.basis,
+                        both = difference_root(pair, of_a, of_b);
+  const Eigen::VectorXd variance_a = of_a.rowwise().squaredNorm(),
+                        variance_b = of_b.rowwise().squaredNorm(),
+                        variance = both.rowwise().squaredNorm();
+  const double least = kNothing * variance.maxCoeff();
+  const Eigen::VectorXd difference = curve.rows * (pair.a.change - pair.b.change);
   Eigen::Index at = 0;
   const double largest =
       std::sqrt(difference.cwiseAbs2().cwiseQuotient(variance.cwiseMax(least)).maxCoeff(&at));
-  const double freedom = std::pow(variance[at], 2) / (std::pow(variance_a[at], 2) / pair.a.freedom +
-                                                      std::pow(variance_b[at], 2) / pair.b.freedom);
+  const double freedom =
+      std::pow(variance_a[at] + variance_b[at], 2) /
+      (std::pow(variance_a[at], 2) / pair.a.freedom + std::pow(variance_b[at], 2) / pair.b.freedom);
   const double length = path_length(both, variance, least);
   return largest / simultaneous_factor(length, freedom, outside);
 }
 
-/// χ² of two sides being one, and its tail probability.
+/// χ² of the data of two sides being one, and its tail probability.
 void set_chi_square(const Pair& pair, ProfileCheck& out) {
-  const Eigen::Index k = pair.a.rows.cols() - 1;
-  Eigen::MatrixXd rows(pair.a.rows.rows() + pair.b.rows.rows(), k + 1);
-  rows << pair.a.rows, pair.b.rows;
+  const Eigen::MatrixXd of_a = pair.a.of_data(), of_b = pair.b.of_data();
+  const Eigen::Index k = of_a.cols() - 1;
+  Eigen::MatrixXd rows(of_a.rows() + of_b.rows(), k + 1);
+  rows << of_a, of_b;
   const auto left = [&](const Eigen::MatrixXd& of) {
     return least_squares(of.leftCols(k), of.rightCols(1)).squares[0];
   };
   const auto rank = [&](const Eigen::MatrixXd& of) {
     return static_cast<double>(orthonormal(of.leftCols(k)).cols());
   };
-  const double count = rank(pair.a.rows) + rank(pair.b.rows) - rank(rows);
+  const double count = rank(of_a) + rank(of_b) - rank(rows);
   if (count < 1.0) return;
-  const double found = std::max(0.0, left(rows) - left(pair.a.rows) - left(pair.b.rows));
+  const double found = std::max(0.0, left(rows) - left(of_a) - left(of_b));
   const double spread = 0.5 * std::min(pair.a.log_variance + pair.b.log_variance, 2.0);
   const double mean = count * std::exp(0.5 * spread);
   const double variance = 2.0 * mean * mean / count + mean * mean * std::expm1(spread);

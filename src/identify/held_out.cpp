@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "slideway/base/distribution.hpp"
+#include "slideway/identify/agreement.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
 
@@ -138,8 +139,21 @@ void set_largest(const Observation& observation, const Predicted& predicted,
     out.largest_urad = size / kMicroradian;
 }
 
+/// Residuals of the fitted profiles but for odd repeats.
+Linearisation without_odd(const Linearisation& fitted, const Gates& gates) {
+  const std::vector<OddRepeat> odd = odd_repeats(fitted, gates);
+  Linearisation out;
+  for (std::size_t i = 0; i < fitted.observations.size(); ++i) {
+    if (std::ranges::count(odd, i, &OddRepeat::profile) > 0) continue;
+    out.observations.push_back(fitted.observations[i]);
+    out.residuals.push_back(fitted.residuals[i]);
+  }
+  return out;
+}
+
+/// @param repeats  without_odd()
 HeldOutCheck check(const Model& model, const Solution& fit, const std::vector<Noise>& fitted,
-                   const Observation& observation) {
+                   Linearisation repeats, const Observation& observation) {
   const Predicted predicted(model, fit, fitted, observation);
   const Eigen::MatrixXd covariance = fit.uncertainty.inflation * fit.uncertainty.covariance;
   const Eigen::Index n = predicted.error.size(), r = predicted.columns.cols();
@@ -159,10 +173,14 @@ HeldOutCheck check(const Model& model, const Solution& fit, const std::vector<No
   out.profile = observation.profile->name;
   out.chi2 = all.found / std::max(all.count, 1.0);
   const double extrapolation = std::pow(model.gates.noise_extrapolation, 2);
+  repeats.observations.push_back(&observation);
+  repeats.residuals.push_back(predicted.error);
   out.p_value = std::min(
       1.0,
-      3.0 * std::min({tail(all, predicted.noise, 0.0), tail(band, predicted.noise, extrapolation),
-                      tail_of_largest(error, columns, covariance, predicted.noise)}));
+      4.0 * std::min({tail(all, predicted.noise, 0.0), tail(band, predicted.noise, extrapolation),
+                      tail_of_largest(error, columns, covariance, predicted.noise),
+                      probability_beside_repeats(repeats, repeats.observations.size() - 1,
+                                                 model.gates)}));
   set_largest(observation, predicted, covariance, out);
   if (out.p_value < model.gates.held_out_p) out.verdict = HeldOutVerdict::does_not_fit;
   return out;
@@ -173,9 +191,10 @@ HeldOutCheck check(const Model& model, const Solution& fit, const std::vector<No
 std::vector<HeldOutCheck> check_held_out(const Model& model, const Solution& fit,
                                          const std::vector<Noise>& of_each) {
   std::vector<HeldOutCheck> out;
+  const Linearisation repeats = without_odd(fit.linear, model.gates);
   for (const Observation& observation : model.observations)
     if (observation.profile->role == Role::holdout)
-      out.push_back(check(model, fit, of_each, observation));
+      out.push_back(check(model, fit, of_each, repeats, observation));
   return out;
 }
 

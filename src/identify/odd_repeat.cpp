@@ -46,24 +46,36 @@ void smooth(Eigen::VectorXd& spectrum) {
 }
 
 /// Probability that noise makes one of m repeats differ as much from the others. Both mean squares
-/// have the spectrum of the noise, which the others show: their degrees of freedom are those of a
-/// sum of unequal squares (Satterthwaite 1946).
+/// have the spectrum of the noise: their degrees of freedom are those of a sum of unequal squares
+/// (Satterthwaite 1946). All repeats show it, this one too: two others alone would now and then
+/// show less of a slow noise than there is.
 double probability_beside(const Eigen::MatrixXd& parts, Eigen::Index which) {
   const auto count = static_cast<double>(parts.cols());
   const Eigen::VectorXd mean = (parts.rowwise().sum() - parts.col(which)) / (count - 1.0);
   const double square = (count - 1.0) / count * (parts.col(which) - mean).squaredNorm();
   Eigen::MatrixXd others = parts.colwise() - mean;
   others.col(which).setZero();
-  Eigen::VectorXd variances = others.rowwise().squaredNorm() / (count - 2.0);
-  smooth(variances);
-  const double expected = variances.sum();
+  const double expected = others.squaredNorm() / (count - 2.0);
   if (!(expected > 0.0)) return square > 0.0 ? 0.0 : 1.0;
-  const double freedom = expected * expected / variances.squaredNorm();
+  Eigen::VectorXd spectrum = (parts.colwise() - parts.rowwise().mean()).rowwise().squaredNorm();
+  smooth(spectrum);
+  const double freedom = std::pow(spectrum.sum(), 2) / spectrum.squaredNorm();
   const double rest = (count - 2.0) * freedom;
   return beta_share(0.5 * rest, 0.5 * freedom, rest / (rest + freedom * square / expected));
 }
 
 }  // namespace
+
+double probability_beside_repeats(const Linearisation& linear, std::size_t profile,
+                                  const Gates& gates) {
+  std::vector<std::size_t> group{profile};
+  for (std::size_t i = 0; i < linear.observations.size(); ++i)
+    if (i != profile && are_repeats(*linear.observations[profile], *linear.observations[i], gates))
+      group.push_back(i);
+  if (group.size() < kLeastRepeats) return 1.0;
+  const Eigen::MatrixXd parts = slow_parts(linear, group, gates);
+  return parts.rows() == 0 ? 1.0 : probability_beside(parts, 0);
+}
 
 std::vector<OddRepeat> odd_repeats(const Linearisation& linear, const Gates& gates) {
   std::vector<OddRepeat> out;

@@ -7,6 +7,7 @@
 
 #include "identify/cases.hpp"
 #include "repeats.hpp"
+#include "slideway/base/random.hpp"
 #include "slideway/identify/held_out.hpp"
 #include "slideway/identify/identify.hpp"
 #include "slideway/identify/noise_model.hpp"
@@ -68,6 +69,55 @@ TEST(ProfileCheck, FalseAlarmsStayNearTheirShare) {
     });
   }
   EXPECT_LE(alarms, 10);
+}
+
+/// Readings of a kinked slide by an instrument whose errors remember, the last with a bump of so
+/// many of its standard deviations over a tenth of the travel; the form declared as a curve.
+std::vector<ProfileCheck> checks_of_curves(double bump, unsigned seed) {
+  std::vector<Profile> runs;
+  for (const char* name : {"a", "b", "c"}) {
+    RandomStream random(seed, name);
+    const std::vector<double> x = cases::spaced(0.0, kLength, 81);
+    std::vector<double> z;
+    double error = random.normal();
+    for (const double at : x) {
+      z.push_back(20e-6 * std::max(at - 0.6 * kLength, 0.0) +
+                  kNoise * std::sqrt(0.5) * (error + random.normal()));
+      error = 0.7 * error + std::sqrt(0.51) * random.normal();
+      if (*name == 'c')
+        z.back() += bump * kNoise * std::exp(-0.5 * std::pow((at - 0.4 * kLength) / 20.0, 2));
+    }
+    runs.push_back(cases::profile(name, Kind::slide, x, z));
+  }
+  Problem problem = cases::problem(Lever::paper, 0, {cases::effect("straightness")});
+  problem.effects.front().options.form = Form::curve;
+  const FittedModel fitted = fit_declared(problem, runs);
+  return check_profiles(fitted.model, fitted.fit,
+                        noise_of_each(fitted.fit.linear, fitted.fit.noise, fitted.model.gates));
+}
+
+// What two runs have from the prior of the curve is no noise of either, and no agreement.
+TEST(ProfileCheck, OfCurvesIsAsTheirNoise) {
+  // 4.55 % of 40 reports: 7 or more have a probability of 0.4 %.
+  int alarms = 0;
+  double mean = 0.0;
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const auto checks = checks_of_curves(0.0, seed);
+    ASSERT_EQ(checks.size(), 3U);
+    alarms += std::ranges::any_of(checks, [](const ProfileCheck& check) {
+      return check.verdict == Consistency::inconsistent;
+    });
+    mean += *checks[0].chi2 / 40.0;
+  }
+  EXPECT_LE(alarms, 6);
+  EXPECT_NEAR(mean, 1.0, 0.2);  // the noise is an estimate, too
+  int seen = 0;                 // a bump of less may pass for a memory of the noise
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    const auto checks = checks_of_curves(50.0, seed);
+    seen += checks[1].verdict == Consistency::inconsistent &&
+            checks[2].verdict == Consistency::inconsistent;
+  }
+  EXPECT_GE(seen, 9);
 }
 
 // Of three profiles of equal weight one is off by d: the estimates without one each are d/3 above
@@ -186,6 +236,36 @@ TEST(Repeats, TheOneWithABumpIsOdd) {
       EXPECT_EQ(odd.front().profile, count - 1);
       EXPECT_LT(odd.front().p_value, Gates{}.disagreement_p);
     }
+}
+
+/// Three runs under white noise or, of the same size, a random walk; the last with a bump.
+double probability_of_last(bool walks, double bump, unsigned seed) {
+  std::vector<Profile> profiles;
+  for (const char* name : {"a", "b", "c"}) {
+    RandomStream random(seed, name);
+    Profile& one = profiles.emplace_back(run(name, 0.0, 1));
+    double error = 0.0;
+    for (std::size_t i = 0; i < one.values.size(); ++i) {
+      error = walks ? error + random.normal() / std::sqrt(kReadings / 6.0) : random.normal();
+      one.values[i] = kNoise * error;
+      if (*name == 'c')
+        one.values[i] +=
+            bump * kNoise * std::exp(-0.5 * std::pow((one.positions[i] - 0.6 * kLength) / 20.0, 2));
+    }
+  }
+  return probability_beside_repeats(fit_declared(straight(), profiles).fit.linear, 2, Gates{});
+}
+
+// A probability of 5 % is found 10 times in 200: 19 or more have a chance of 0.5 %.
+TEST(Repeats, ProbabilityBesideThemIsOneUnderAnyNoise) {
+  for (const bool walks : {false, true}) {
+    int below = 0;
+    for (unsigned seed = 1; seed <= 200; ++seed)
+      below += probability_of_last(walks, 0.0, seed) < 0.05;
+    EXPECT_LE(below, 18) << walks;
+  }
+  for (unsigned seed = 1; seed <= 10; ++seed)
+    EXPECT_LT(probability_of_last(false, 8.0, seed), Gates{}.held_out_p);
 }
 
 // Of two, either may be the odd one.

@@ -35,6 +35,11 @@ struct OddRepeat {
 /// model of the noise is asked: the others show it.
 std::vector<OddRepeat> odd_repeats(const Linearisation& linear, const Gates& gates);
 
+/// Probability that noise makes a profile differ as much from those that repeat it, as in
+/// odd_repeats(); 1 where fewer than two do.
+double probability_beside_repeats(const Linearisation& linear, std::size_t profile,
+                                  const Gates& gates);
+
 /// What the repeats of each group have in common and the model lacks; not the odd ones.
 ///
 /// Texture repeats; it may have several lengths, up to Gates::longest_texture. The mean residual of
