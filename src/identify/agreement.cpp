@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t kMostPairwise = 8;  // profiles: 28 pairs a reader still reads
 constexpr Eigen::Index kCurvePoints = 101;
 constexpr double kOutside = 1e-6;  // of a row: less along a null direction is rounding
+constexpr const char* kAllOthers = "all others";
 
 using Profiles = std::vector<std::size_t>;  // of the fitted ones
 
@@ -170,7 +171,7 @@ struct Pair {
 };
 
 /// Rows whose products are the covariance of the difference of two sides along a curve. With the
-/// covariance B Bᵀ of each under the priors R, that is A Aᵀ + B Bᵀ less A (R A)ᵀ (R B) Bᵀ and its
+/// covariances A Aᵀ and B Bᵀ under the priors R, that is A Aᵀ + B Bᵀ less A (R A)ᵀ (R B) Bᵀ and its
 /// transpose: what both have from the priors does not differ.
 Eigen::MatrixXd difference_root(const Pair& pair, const Eigen::MatrixXd& of_a,
                                 const Eigen::MatrixXd& of_b) {
@@ -253,7 +254,7 @@ class ProfileComparison {
       for (std::size_t j = 0; j < count; ++j)
         if (j != i) rest.push_back(j);
       others_.push_back(side(rest));
-      add(i, rest.front(), others_.back(), "all others");
+      add(i, rest.front(), others_.back(), kAllOthers);
     }
   }
 
@@ -297,6 +298,14 @@ std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit
                                          const std::vector<Noise>& of_each) {
   if (fit.linear.observations.size() < 2 || fit.linear.prior_rows.cols() == 0) return {};
   return ProfileComparison(model, fit, of_each).checks();
+}
+
+std::string odd_profile(const std::set<std::vector<std::string>>& pairs) {
+  std::vector<std::string> common = pairs.empty() ? std::vector<std::string>() : *pairs.begin();
+  std::erase(common, kAllOthers);
+  for (const std::vector<std::string>& names : pairs)
+    std::erase_if(common, [&](const auto& each) { return std::ranges::count(names, each) == 0; });
+  return common.size() == 1 ? common.front() : "";
 }
 
 Eigen::MatrixXd scatter_of_profiles(const Solution& fit, const Gates& gates) {

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/agreement.hpp"
 #include "slideway/report/number.hpp"
 #include "summary.hpp"
 #include "text_parts.hpp"
@@ -61,15 +63,22 @@ bool may_be_moved_unseen(const Analysis& analysis) {
           !one_with(MotionError::squareness, *analysis.trace).empty());
 }
 
-/// What to do about checks that failed; "": none has.
+/// What to do about checks that failed; "": none has. A wrong profile among the fitted ones comes
+/// first: it bends the predictions of those held out.
 std::string reconciled(const Crosscheck& checks) {
-  for (const HeldOutCheck& check : checks.held_out)
-    if (contradicts(check))
-      return "find what sets " + check.profile + " apart: its setup, its cut or its reading";
+  const auto apart = [](const std::string& profile) {
+    return "find what sets " + profile + " apart: its setup, its cut or its reading";
+  };
+  std::set<std::vector<std::string>> pairs;
+  for (const ProfileCheck& check : checks.profiles)
+    if (contradicts(check)) pairs.insert(check.profiles);
+  if (const std::string odd = odd_profile(pairs); !odd.empty()) return apart(odd);
   for (const ProfileCheck& check : checks.profiles)
     if (contradicts(check))
       return "find why " + joined(check.profiles, " and ") +
              " disagree: their setups, cuts or readings";
+  for (const HeldOutCheck& check : checks.held_out)
+    if (contradicts(check)) return apart(check.profile);
   if (checks.squareness && checks.squareness->verdict == Consistency::inconsistent)
     return "look for another cause: the squareness cannot have made this form";
   return "";

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "slideway/identify/agreement.hpp"
 
@@ -15,19 +16,12 @@ Disagreement disagreement(const FittedModel& fitted, const std::vector<Noise>& o
   for (const ProfileCheck& check : check_profiles(model, fit, of_each))
     if (check.p_value) pairs[check.profiles] = *check.p_value;
   const auto count = static_cast<double>(pairs.size());
-  std::vector<std::string> common;
-  bool is_first = true;
-  for (const auto& pair : pairs) {
-    const std::vector<std::string>& names = pair.first;
-    const double p = pair.second;
+  std::set<std::vector<std::string>> disagree;
+  for (const auto& [names, p] : pairs) {
     out.p_value = std::min(out.p_value, count * p);
-    if (count * p > model.gates.disagreement_p) continue;
-    if (is_first) common = names;
-    is_first = false;
-    std::erase_if(common,
-                  [&](const std::string& each) { return std::ranges::count(names, each) == 0; });
+    if (count * p <= model.gates.disagreement_p) disagree.insert(names);
   }
-  if (pairs.size() > 1 && common.size() == 1) out.odd_one = common.front();
+  out.odd_one = odd_profile(disagree);
   const std::vector<OddRepeat> odd = odd_repeats(fit.linear, model.gates);
   for (const OddRepeat& each : odd) out.p_value = std::min(out.p_value, each.p_value);
   if (odd.size() == 1) out.odd_one = fit.linear.observations[odd.front().profile]->profile->name;

@@ -139,6 +139,15 @@ TEST(ProfileCheck, NothingIsComparedThatOneProfileCannotTell) {
   EXPECT_TRUE(checks_of({run("a", 5e-3, 1)}).empty());
 }
 
+TEST(ProfileCheck, OddIsTheOneInEveryPair) {
+  EXPECT_EQ(odd_profile({}), "");
+  EXPECT_EQ(odd_profile({{"a", "b"}}), "");
+  EXPECT_EQ(odd_profile({{"a", "b"}, {"b", "c"}}), "b");
+  EXPECT_EQ(odd_profile({{"a", "b"}, {"b", "c"}, {"a", "c"}}), "");
+  EXPECT_EQ(odd_profile({{"a", "all others"}}), "a");
+  EXPECT_EQ(odd_profile({{"a", "all others"}, {"b", "all others"}}), "");
+}
+
 TEST(ProfileCheck, DisagreementIsNegative) {
   Result result;
   EXPECT_FALSE(is_negative(result));

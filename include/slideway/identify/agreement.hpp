@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+#include <string>
 #include <vector>
 
 #include "slideway/identify/fit.hpp"
@@ -14,11 +16,15 @@ namespace slideway {
 /// line through the ends of the common travel, others in the low band of the first profile. E_n is
 /// the largest |difference| / sqrt(U_a² + U_b²) along it, with U such that all comparisons of the
 /// report hold together (Gates::false_disagreement): Šidák's share for each, and for a curve the
-/// quantile of its largest standardised deviation, by simulation. `p_value`: χ² of the pair over
-/// all effects, near a gamma variable as in LackOfFit.
+/// quantile of its largest standardised deviation by the tube formula (Sun and Loader 1994).
+/// `p_value`: χ² of the data of the pair over all effects, near a gamma variable as in LackOfFit.
 /// @param of_each  noise_of_each() fitted profile
 std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit,
                                          const std::vector<Noise>& of_each);
+
+/// The profile that is in every one of some pairs of ProfileCheck::profiles; "" where none is, or
+/// two.
+std::string odd_profile(const std::set<std::vector<std::string>>& pairs);
 
 /// Square root of the covariance of (amplitudes, shapes) that the estimates without one profile
 /// each show (delete-one jackknife): a column each.
