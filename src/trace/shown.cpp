@@ -98,13 +98,6 @@ struct Beside {
   }
 };
 
-/// Whether the effect without options takes as much of what is fast.
-bool whole_takes_as_much(const Beside& beside) {
-  const double noise = beside.after / beside.degrees;
-  return beside.before - beside.after <
-         beside.taken_by_whole - noise * beside.columns_of_whole * std::log(beside.degrees);
-}
-
 constexpr double kLeast = 0.5;    // of the noise of a value, or of what the samples say
 constexpr double kCertain = 2.0;  // standard uncertainties
 
@@ -118,6 +111,15 @@ bool has_image(const Beside& beside) {
 
 constexpr double kTenth = 0.01;  // of the square
 constexpr std::size_t kMostBounded = 4;
+
+/// Whether the effect without options takes as much of what is fast. Where that is far more than
+/// noise makes of its columns, a tie is enough: it is the simpler one, and that of all cuts.
+bool whole_takes_as_much(const Beside& beside) {
+  const double noise = beside.after / beside.degrees;
+  const double price = noise * beside.columns_of_whole * std::log(beside.degrees);
+  const bool is_clear = price < kTenth * beside.taken_by_whole;
+  return beside.before - beside.after < beside.taken_by_whole + (is_clear ? price : -price);
+}
 
 /// The harmonics whose image in the low band stands out of its noise, which may hold what is
 /// missing, or is a tenth of that of all; of those whose values are not known but bounded, the most
