@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "slideway/base/distribution.hpp"
 #include "slideway/identify/agreement.hpp"
@@ -191,10 +192,12 @@ HeldOutCheck check(const Model& model, const Solution& fit, const std::vector<No
 std::vector<HeldOutCheck> check_held_out(const Model& model, const Solution& fit,
                                          const std::vector<Noise>& of_each) {
   std::vector<HeldOutCheck> out;
-  const Linearisation repeats = without_odd(fit.linear, model.gates);
-  for (const Observation& observation : model.observations)
-    if (observation.profile->role == Role::holdout)
-      out.push_back(check(model, fit, of_each, repeats, observation));
+  std::optional<Linearisation> repeats;
+  for (const Observation& observation : model.observations) {
+    if (observation.profile->role != Role::holdout) continue;
+    if (!repeats) repeats = without_odd(fit.linear, model.gates);
+    out.push_back(check(model, fit, of_each, *repeats, observation));
+  }
   return out;
 }
 

@@ -33,8 +33,13 @@ Profile run(const std::string& name, double bow, unsigned seed, double step_mm =
 
 Problem straight() { return cases::problem(Lever::paper, 0, {cases::effect("straightness", 3)}); }
 
-std::vector<ProfileCheck> checks_of(const std::vector<Profile>& profiles) {
-  const FittedModel fitted = fit_declared(straight(), profiles);
+double bump_at(double mm, double place_mm) {
+  return std::exp(-0.5 * std::pow((mm - place_mm) / 20.0, 2));
+}
+
+std::vector<ProfileCheck> checks_of(const std::vector<Profile>& profiles,
+                                    const Problem& problem = straight()) {
+  const FittedModel fitted = fit_declared(problem, profiles);
   return check_profiles(fitted.model, fitted.fit,
                         noise_of_each(fitted.fit.linear, fitted.fit.noise, fitted.model.gates));
 }
@@ -84,16 +89,13 @@ std::vector<ProfileCheck> checks_of_curves(double bump, unsigned seed) {
       z.push_back(20e-6 * std::max(at - 0.6 * kLength, 0.0) +
                   kNoise * std::sqrt(0.5) * (error + random.normal()));
       error = 0.7 * error + std::sqrt(0.51) * random.normal();
-      if (*name == 'c')
-        z.back() += bump * kNoise * std::exp(-0.5 * std::pow((at - 0.4 * kLength) / 20.0, 2));
+      if (*name == 'c') z.back() += bump * kNoise * bump_at(at, 0.4 * kLength);
     }
     runs.push_back(cases::profile(name, Kind::slide, x, z));
   }
   Problem problem = cases::problem(Lever::paper, 0, {cases::effect("straightness")});
   problem.effects.front().options.form = Form::curve;
-  const FittedModel fitted = fit_declared(problem, runs);
-  return check_profiles(fitted.model, fitted.fit,
-                        noise_of_each(fitted.fit.linear, fitted.fit.noise, fitted.model.gates));
+  return checks_of(runs, problem);
 }
 
 // What two runs have from the prior of the curve is no noise of either, and no agreement.
@@ -232,8 +234,7 @@ std::vector<OddRepeat> odd_of(std::size_t count, double bump, unsigned seed) {
     profiles.push_back(run(std::string(1, static_cast<char>('a' + k)), 5e-3, 10 * seed + k));
   Profile& last = profiles.back();
   for (std::size_t i = 0; i < last.values.size(); ++i)
-    last.values[i] +=
-        bump * kNoise * std::exp(-0.5 * std::pow((last.positions[i] - 0.6 * kLength) / 20.0, 2));
+    last.values[i] += bump * kNoise * bump_at(last.positions[i], 0.6 * kLength);
   return odd_repeats(fit_declared(straight(), profiles).fit.linear, Gates{});
 }
 
@@ -257,9 +258,7 @@ double probability_of_last(bool walks, double bump, unsigned seed) {
     for (std::size_t i = 0; i < one.values.size(); ++i) {
       error = walks ? error + random.normal() / std::sqrt(kReadings / 6.0) : random.normal();
       one.values[i] = kNoise * error;
-      if (*name == 'c')
-        one.values[i] +=
-            bump * kNoise * std::exp(-0.5 * std::pow((one.positions[i] - 0.6 * kLength) / 20.0, 2));
+      if (*name == 'c') one.values[i] += bump * kNoise * bump_at(one.positions[i], 0.6 * kLength);
     }
   }
   return probability_beside_repeats(fit_declared(straight(), profiles).fit.linear, 2, Gates{});

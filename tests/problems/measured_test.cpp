@@ -97,14 +97,6 @@ TEST_F(Real, LatheBedPredictsTheRunThatWasHeldOutAsWellAsTheRunsRepeat) {
               0.0141 * std::sqrt(2.0), 0.05 * 0.0141);  // the same
 }
 
-/// Runs 2 to 5 with a polynomial.
-Problem bed_as_polynomial(int degree) {
-  Problem problem = shipped_problem("real/lathe-bed-curve.toml");
-  problem.effects = shipped_problem("real/lathe-bed.toml").effects;
-  problem.effects.front().options.degree = degree;
-  return problem;
-}
-
 TEST_F(Real, RepeatsOfTheLatheBedRefuteAPolynomialOfAnyDegree) {
   for (const int degree : {4, 6, 8, 10, 12, 16}) {
     const Problem problem = bed_as_polynomial(degree);

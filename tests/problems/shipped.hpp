@@ -20,7 +20,15 @@ inline Problem shipped_problem(const std::string& name) {
   return read_problem(source_folder() / "problems" / name, measured_data());
 }
 
-/// Its result.
+/// Runs 2 to 5 of the lathe bed with a polynomial.
+inline Problem bed_as_polynomial(int degree) {
+  Problem problem = shipped_problem("real/lathe-bed-curve.toml");
+  problem.effects = shipped_problem("real/lathe-bed.toml").effects;
+  problem.effects.front().options.degree = degree;
+  return problem;
+}
+
+/// The result of a problem of problems/.
 inline Result identify_shipped(const std::string& name) {
   const Problem problem = shipped_problem(name);
   return identify(problem, read_profiles(problem));

@@ -52,9 +52,7 @@ TEST_F(Measured, LatheBedHasNoEffectOfTheSlide) {
 
 /// Runs of the lathe bed with a polynomial, by index from run 2.
 Closed close_bed(int degree, const std::vector<std::size_t>& runs) {
-  Problem problem = shipped_problem("real/lathe-bed-curve.toml");
-  problem.effects = shipped_problem("real/lathe-bed.toml").effects;
-  problem.effects.front().options.degree = degree;
+  Problem problem = bed_as_polynomial(degree);
   std::vector<ProfileEntry> kept;
   for (const std::size_t run : runs) kept.push_back(problem.profiles.at(run));
   problem.profiles = std::move(kept);
