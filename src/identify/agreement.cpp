@@ -10,6 +10,7 @@
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
 #include "slideway/identify/subset_estimate.hpp"
+#include "slideway/identify/uncertainty.hpp"
 
 namespace slideway {
 namespace {
@@ -65,6 +66,7 @@ struct Alone : SubsetEstimate {
 struct Curve {
   std::string what;
   Eigen::MatrixXd rows;
+  bool of_slide = false;
 };
 
 /// Where both profiles have readings of the slide, a bridge from foot to foot.
@@ -123,7 +125,8 @@ std::vector<Curve> curves(const Model& model, const Solution& fit, std::size_t a
                        common_travel(model, *observations[a]->profile, *observations[b]->profile))
                  : levelled_curve(fit.linear, a, term);
     if (own.size() == 0 || own.cwiseAbs().maxCoeff() == 0.0) continue;
-    Curve curve{term.name, Eigen::MatrixXd::Zero(own.rows(), fit.linear.prior_rows.cols())};
+    Curve curve{term.name, Eigen::MatrixXd::Zero(own.rows(), fit.linear.prior_rows.cols()),
+                of_slide};
     curve.rows.middleCols(term.first_amplitude, own.cols()) = own;
     out.push_back(std::move(curve));
   }
@@ -204,6 +207,21 @@ double largest_en(const Pair& pair, const Curve& curve, double outside) {
   return largest / simultaneous_factor(length, freedom, outside);
 }
 
+/// Appends the end-point straightness of a slide as one side has it, and its U.
+/// @param joint  (amplitudes, shapes) of the fit of all profiles
+void add_straightness(const Curve& curve, const Alone& side, const Eigen::VectorXd& joint,
+                      ProfileCheck& out) {
+  const Eigen::VectorXd deviations = curve.rows * (joint + side.change);
+  Eigen::RowVectorXd range = Eigen::RowVectorXd::Zero(curve.rows.cols());
+  Eigen::Index at = 0;  // at the ends of the travel the deviation is 0
+  if (deviations.maxCoeff(&at) > 0.0) range += curve.rows.row(at);
+  if (deviations.minCoeff(&at) < 0.0) range -= curve.rows.row(at);
+  const std::optional<double> freedom =
+      std::isfinite(side.freedom) ? std::optional(side.freedom) : std::nullopt;
+  out.value_um.push_back(range.dot(joint + side.change) / kMicrometre);
+  out.U_um.push_back(coverage_factor(freedom) * (range * side.basis).norm() / kMicrometre);
+}
+
 /// χ² of the data of two sides being one, and its tail probability.
 void set_chi_square(const Pair& pair, ProfileCheck& out) {
   const Eigen::MatrixXd of_a = pair.a.of_data(), of_b = pair.b.of_data();
@@ -264,6 +282,8 @@ class ProfileComparison {
     const Gates& gates = model_.gates;
     const double outside =
         -std::expm1(std::log1p(-gates.false_disagreement) / static_cast<double>(comparisons));
+    Eigen::VectorXd joint(fit_.estimate.amplitudes.size() + fit_.estimate.shapes.size());
+    joint << fit_.estimate.amplitudes, fit_.estimate.shapes;
     std::vector<ProfileCheck> out;
     for (const Pair& pair : pairs_)
       for (const Curve& curve : pair.curves) {
@@ -272,6 +292,8 @@ class ProfileComparison {
         check.verdict =
             *check.En <= gates.en_limit ? Consistency::consistent : Consistency::inconsistent;
         set_chi_square(pair, check);
+        if (curve.of_slide)
+          for (const Alone* side : {&pair.a, &pair.b}) add_straightness(curve, *side, joint, check);
         out.push_back(std::move(check));
       }
     return out;

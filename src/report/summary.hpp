@@ -48,6 +48,9 @@ bool is_harmless(const Analysis& analysis);
 
 /// Whether a check speaks against the model.
 bool contradicts(const ProfileCheck& check);
+
+/// "33.0 ± 5.4 and 35.4 ± 5.5 µm": what each profile says by itself, or "".
+std::string each_alone(const ProfileCheck& check);
 bool contradicts(const HeldOutCheck& check);
 
 /// Null where it is not in the model.

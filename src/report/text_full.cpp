@@ -262,9 +262,12 @@ std::string squareness_check(const SquarenessCheck& check) {
 
 std::string crosscheck(const Crosscheck& checks) {
   std::string out = checks.squareness ? squareness_check(*checks.squareness) : "";
-  for (const ProfileCheck& check : checks.profiles)
-    out += note(check.what + " of " + joined(check.profiles, " and ") +
-                (check.En ? ": E_n = " + en_text(*check.En) : "") + ", " + text(check.verdict));
+  for (const ProfileCheck& check : checks.profiles) {
+    std::vector<std::string> said{text(check.verdict)};
+    if (check.En) said.insert(said.begin(), "E_n = " + en_text(*check.En));
+    if (!check.value_um.empty()) said.insert(said.begin(), each_alone(check));
+    out += note(check.what + " of " + joined(check.profiles, " and ") + ": " + joined(said));
+  }
   for (const HeldOutCheck& check : checks.held_out)
     out += note(check.profile + ", held out: " + text(check.verdict) + " (chi-square " +
                 number(check.chi2, 3) + ", " + p_text(check.p_value) + "), off by up to " +

@@ -162,8 +162,13 @@ TEST_F(Real, RunsOfTheLatheBedAgreeOnOneCurve) {
   EXPECT_GT(*error.expanded_uncertainty, 2.0);  // another noise, another grid of priors
   EXPECT_LT(*error.expanded_uncertainty, 6.0);
   EXPECT_EQ(result.crosscheck.profiles.size(), 6U);
-  for (const ProfileCheck& pair : result.crosscheck.profiles)
+  std::vector<double> uncertainties;
+  for (const ProfileCheck& pair : result.crosscheck.profiles) {
     EXPECT_EQ(pair.verdict, Consistency::consistent) << pair.profiles[0] << pair.profiles[1];
+    uncertainties.insert(uncertainties.end(), pair.U_um.begin(), pair.U_um.end());
+  }
+  ASSERT_EQ(uncertainties.size(), 12U);
+  EXPECT_LT(std::ranges::max(uncertainties), 2.0 * std::ranges::min(uncertainties));
 }
 
 TEST_F(Real, GratingSubstrateHasTheDatabasesSlopeError) {

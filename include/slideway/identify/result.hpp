@@ -152,6 +152,7 @@ struct ProfileCheck {
   std::optional<double> En;
   Consistency verdict = Consistency::not_available;
   std::optional<double> chi2, p_value;  // of the profiles being one, over all effects
+  std::vector<double> value_um, U_um;   // straightness by each profile alone, in their order
 };
 
 enum class HeldOutVerdict { fits, does_not_fit };

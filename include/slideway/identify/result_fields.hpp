@@ -323,7 +323,11 @@ inline constexpr auto kRecord<ProfileCheck> =
            field("profiles", &ProfileCheck::profiles), field("what", &ProfileCheck::what),
            field("En", &ProfileCheck::En), field("verdict", &ProfileCheck::verdict),
            field("chi2", &ProfileCheck::chi2, "per degree of freedom, over all effects"),
-           field("p_value", &ProfileCheck::p_value));
+           field("p_value", &ProfileCheck::p_value),
+           field("value_um", &ProfileCheck::value_um,
+                 "end-point straightness along the common travel by each profile alone; empty for "
+                 "other effects"),
+           field("U_um", &ProfileCheck::U_um, "its expanded uncertainties"));
 
 template <>
 inline constexpr auto kRecord<HeldOutCheck> =

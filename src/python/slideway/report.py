@@ -460,7 +460,7 @@ class SquarenessCheck:
     indirect_amplitude_um: float | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ProfileCheck:
     """One quantity from each of several profiles that should agree."""
 
@@ -471,6 +471,10 @@ class ProfileCheck:
     chi2: float | None
     """per degree of freedom, over all effects"""
     p_value: float | None
+    value_um: NDArray[np.float64]
+    """end-point straightness along the common travel by each profile alone; empty for other effects"""
+    U_um: NDArray[np.float64]
+    """its expanded uncertainties"""
 
 
 @dataclass(frozen=True)
