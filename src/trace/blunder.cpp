@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/left_out.hpp"
 #include "slideway/identify/linear_algebra.hpp"
@@ -164,14 +165,19 @@ class Finder {
       : model_(fitted.model),
         fit_(fitted.fit),
         noise_(noise_of_each(fitted.fit.linear, fitted.fit.noise, fitted.model.gates)),
+        in_long_run_(long_run_deviations(noise_)),
         compressed_(compress(fitted.fit.linear, alike())) {}
 
   [[nodiscard]] std::vector<Blunder> find() const {
-    std::vector<Blunder> out;
-    for (std::size_t i = 0; i < noise_.size(); ++i)
+    std::vector<std::vector<Blunder>> of_each(noise_.size());
+    parallel_for(noise_.size(), [&](std::size_t i) {
       try_profile(i, hypotheses_of(i), [&](const Blunder& each, const Hypothesis&) {
-        if (each.left <= model_.gates.blunder_left) out.push_back(each);
+        if (each.left <= model_.gates.blunder_left) of_each[i].push_back(each);
       });
+    });
+    std::vector<Blunder> out;
+    for (const std::vector<Blunder>& each : of_each)
+      out.insert(out.end(), each.begin(), each.end());
     std::ranges::stable_sort(out, {}, &Blunder::delta_bic);
     if (noise_.size() > 2)  // two that disagree do not say which of them is wrong
       std::erase_if(out, [&](const Blunder& each) {
@@ -217,17 +223,24 @@ class Finder {
     return hypotheses(*fit_.linear.observations[i]->profile, other_lengths(i));
   }
 
-  /// The noise of the profile most like this one: of its sisters the middle one in the long run.
-  [[nodiscard]] const Noise* sister(std::size_t i) const {
+  [[nodiscard]] static std::vector<double> long_run_deviations(const std::vector<Noise>& noise) {
+    std::vector<double> out;
+    std::ranges::transform(noise, std::back_inserter(out), &Noise::long_run_deviation);
+    return out;
+  }
+
+  /// The profile most like this one: of its sisters the one whose noise is the middle in the long
+  /// run.
+  [[nodiscard]] std::optional<std::size_t> sister(std::size_t i) const {
     const auto key = [&](std::size_t j) {
       const Setup& setup = fit_.linear.observations[j]->profile->setup;
       return std::tuple(setup.kind, setup.quantity, setup.base_mm);
     };
-    std::vector<const Noise*> sisters;
+    std::vector<std::size_t> sisters;
     for (std::size_t j = 0; j < noise_.size(); ++j)
-      if (j != i && key(j) == key(i)) sisters.push_back(&noise_[j]);
-    if (sisters.empty()) return nullptr;
-    std::ranges::sort(sisters, {}, &Noise::long_run_deviation);
+      if (j != i && key(j) == key(i)) sisters.push_back(j);
+    if (sisters.empty()) return std::nullopt;
+    std::ranges::stable_sort(sisters, {}, [&](std::size_t j) { return in_long_run_[j]; });
     return sisters[(sisters.size() - 1) / 2];
   }
 
@@ -235,9 +248,9 @@ class Finder {
   [[nodiscard]] std::vector<Noise> alike() const {
     std::vector<Noise> out;
     for (std::size_t i = 0; i < noise_.size(); ++i) {
-      const Noise* const other = sister(i);
-      const bool smaller = other && noise_[i].long_run_deviation() < other->long_run_deviation();
-      out.push_back(smaller ? *other : noise_[i]);
+      const std::optional<std::size_t> other = sister(i);
+      const bool smaller = other && in_long_run_[i] < in_long_run_[*other];
+      out.push_back(noise_[smaller ? *other : i]);
     }
     return out;
   }
@@ -299,8 +312,8 @@ class Finder {
   template <typename Told>
   void try_profile(std::size_t i, const std::vector<Hypothesis>& list, const Told& tell) const {
     const Gates& gates = model_.gates;
-    const Noise* const of_sister = sister(i);
-    const Noise& noise = of_sister ? *of_sister : noise_[i];
+    const std::optional<std::size_t> of_sister = sister(i);
+    const Noise& noise = noise_[of_sister.value_or(i)];
     const double factor = of_sister ? gates.sister_factor : kAnyFactor;
     std::vector<std::size_t> all_but_it;
     for (std::size_t j = 0; j < noise_.size(); ++j)
@@ -313,7 +326,7 @@ class Finder {
     if (as_it_is.directions() == 0) return;
     const auto [before, size_before] = as_it_is.best(1.0, kAnyFactor);
     const double square = as_it_is.disagreement(1.0);
-    const double own = noise_[i].long_run_deviation() / noise.long_run_deviation();
+    const double own = in_long_run_[i] / in_long_run_[of_sister.value_or(i)];
     for (const Hypothesis& each : list) {
       if (each.profile) observation.profile = &*each.profile;
       const Prediction& meant = each.profile ? prediction(observation, others, noise) : as_it_is;
@@ -335,6 +348,7 @@ class Finder {
   const Model& model_;
   const Solution& fit_;
   std::vector<Noise> noise_;
+  std::vector<double> in_long_run_;  // deviations of the noises
   Compressed compressed_;
 };
 

@@ -261,13 +261,17 @@ std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Wh
 
 std::vector<NotSeparable> inseparable(const Model& model, const Solution& fit, const Whitened& data,
                                       const Candidates& candidates) {
+  std::vector<std::optional<NotSeparable>> found(candidates.size());
+  parallel_for(candidates.size(), [&](std::size_t i) {
+    const Candidate& candidate = *candidates[i];
+    const Eigen::MatrixXd columns = stacked_columns(model, candidate.term, candidate.grid.middle(),
+                                                    data.rows() - data.values());
+    if (project(data, columns).rank > 0 || columns.isZero(0.0)) return;
+    found[i] = {candidate.name(), made_by(model, fit, columns.col(0))};
+  });
   std::vector<NotSeparable> out;
-  for (const Candidate* candidate : candidates) {
-    const Eigen::MatrixXd columns = stacked_columns(
-        model, candidate->term, candidate->grid.middle(), data.rows() - data.values());
-    if (project(data, columns).rank > 0 || columns.isZero(0.0)) continue;
-    out.push_back({candidate->name(), made_by(model, fit, columns.col(0))});
-  }
+  for (std::optional<NotSeparable>& each : found)
+    if (each) out.push_back(*std::move(each));
   return out;
 }
 

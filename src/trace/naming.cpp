@@ -72,10 +72,11 @@ std::vector<UnnamedRival> unnamed_rivals(ModelExtender& extender, const Effects&
       gain -= penalty(named, candidate, candidate.amplitudes());
     }
     const bool is_way = only_carriage(effects, absent);
-    for (const ProcessVariable& variable : variables) {
-      if (is_way && variable.symbol == kSlideSymbol) continue;
-      out.push_back({"a process in " + variable.symbol, absent, true,
-                     0.5 * gain - best_process(data, variable).log_evidence});
+    const std::vector<Process> processes = best_processes(data, variables);
+    for (std::size_t v = 0; v < variables.size(); ++v) {
+      if (is_way && variables[v].symbol == kSlideSymbol) continue;
+      out.push_back({"a process in " + variables[v].symbol, absent, true,
+                     0.5 * gain - processes[v].log_evidence});
     }
     out.push_back({"heat that lifts and tilts the slide", absent, false,
                    0.5 * gain - heat_lifts_and_tilts(fitted.model, data, linear)});

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <optional>
 
+#include "slideway/base/parallel.hpp"
 #include "slideway/identify/isotropic_prior.hpp"
 
 namespace slideway {
@@ -230,6 +231,13 @@ Process best_process(const Whitened& data, const ProcessVariable& variable) {
     for (const double length : kLengths)
       try_sizes(known, weights(count, smoothness, length).cwiseSqrt(), length, best);
   return best;
+}
+
+std::vector<Process> best_processes(const Whitened& data,
+                                    const std::vector<ProcessVariable>& variables) {
+  std::vector<Process> out(variables.size());
+  parallel_for(out.size(), [&](std::size_t i) { out[i] = best_process(data, variables[i]); });
+  return out;
 }
 
 }  // namespace slideway

@@ -57,5 +57,7 @@ struct Process {
 /// L L' the prior covariance of the coefficients (Rasmussen and Williams 2006, Eq. (2.30)):
 ///   ln E = b'L (I + L'G L)^-1 L'b / 2 - ln det(I + L'G L) / 2.
 Process best_process(const Whitened& data, const ProcessVariable& variable);
+std::vector<Process> best_processes(const Whitened& data,
+                                    const std::vector<ProcessVariable>& variables);
 
 }  // namespace slideway

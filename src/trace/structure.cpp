@@ -100,8 +100,11 @@ Structure find_structure(const Model& model, const Whitened& data, const Lineari
   Structure found;
   Unnamed& out = found.description;
   std::optional<ProcessVariable> best;
-  for (ProcessVariable& variable : process_variables(model, linear)) {
-    Process process = best_process(data, variable);
+  std::vector<ProcessVariable> variables = process_variables(model, linear);
+  std::vector<Process> processes = best_processes(data, variables);
+  for (std::size_t v = 0; v < variables.size(); ++v) {
+    ProcessVariable& variable = variables[v];
+    Process& process = processes[v];
     if (process.sizes.size() == 0) continue;  // it makes nothing beside the model
     out.log_evidence.emplace_back(variable.symbol, process.log_evidence);
     if (!(process.log_evidence > found.process.log_evidence)) continue;
@@ -129,8 +132,8 @@ double shared_evidence(const FittedModel& fitted) {
   if (faces < 2 || fitted.fit.uncertainty.inflation > 1.0) return 0.0;
   const Whitened data(linear, fitted.fit.noise);
   double out = 0.0;
-  for (const ProcessVariable& variable : shared_variables(fitted.model, linear))
-    out = std::max(out, best_process(data, variable).log_evidence);
+  for (const Process& process : best_processes(data, shared_variables(fitted.model, linear)))
+    out = std::max(out, process.log_evidence);
   return out;
 }
 
