@@ -56,6 +56,15 @@ double straightness_error(const Model& model, const ModelTerm& term, const Solut
       .error;
 }
 
+/// U of straightness_error(), mm; 0 where none is known.
+double straightness_uncertainty(const ModelResult& out) {
+  if (!out.straightness) return 0.0;
+  const auto& errors = out.straightness->errors;
+  const auto found =
+      std::ranges::find(errors, ReferenceLineKind::least_squares, &StraightnessError::line);
+  return found == errors.end() ? 0.0 : kMicrometre * found->expanded_uncertainty.value_or(0.0);
+}
+
 /// Whether a curvature of the straightness is told from zero.
 bool is_curved(const ModelTerm& term, const ModelResult& out, const Gates& gates) {
   if (term.effect->knots() && out.straightness && !out.straightness->errors.empty()) {
@@ -83,7 +92,8 @@ void check_plausibility(const Model& model, const Solution& fit, ModelResult& ou
   const double part = travel / kTravel;
   const double most =
       model.gates.most_straightness * kMicrometre * (part < 1.0 ? part * part : part);
-  if (!face || found < most || !is_curved(*term, out, model.gates)) return;
+  if (!face || found - straightness_uncertainty(out) < most || !is_curved(*term, out, model.gates))
+    return;
   out.implausible = "the fitted straightness is " + significant(found / kMicrometre, 2) +
                     " µm over " + significant(travel, 4) +
                     " mm; the most a slide is taken to have there is " +
@@ -119,6 +129,15 @@ void explain_other_form(const Model& model, const Solution& fit, ModelResult& ou
       ": a curve beside it is likelier by a factor of e^" + significant(*fit.other_form, 2) +
       "; every uncertainty is widened by what that curve could have put into the parameters, and "
       "the coefficients describe no slide. Declare form = \"curve\", or a higher degree");
+}
+
+/// Nothing but a second reading tells a slow noise of the first from a curve that may have any
+/// form.
+void explain_lone_curve(const Model& model, const Solution& fit, ModelResult& out) {
+  if (curve_term(model) && fit.linear.observations.size() == 1)
+    out.notes.push_back(
+        "the curve rests on one trace: a drift while it was read would look the same, and U does "
+        "not hold it; a second reading, back, shows it");
 }
 
 void explain_noise(const Solution& fit, ModelResult& out) {
@@ -205,6 +224,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
     out.neglected_um = *gap / kMicrometre;
   explain_scaling(fit, out);
   explain_other_form(model, fit, out);
+  explain_lone_curve(model, fit, out);
   explain_noise(fit, out);
   explain_noise_of_causes(model, fit, out);
   check_plausibility(model, fit, out);

@@ -22,7 +22,7 @@ std::span<const Gate> gate_table() {
       Gate{"tie_share", &Gates::tie_share, "of the gain", 0.0, 0.1,
            "Two effects are rivals, too, within this share of what the better one lowers the BIC "
            "by.",
-           "half a per cent: no law of the catalogue is known better than to 7 % of its size"},
+           "a thousandth: no law of the catalogue is known better than to 3 % of its size"},
       Gate{"exchange_bic", &Gates::exchange_bic, "", 0.0, 10.0,
            "A better effect takes the place of an accepted one from this difference of BIC on.",
            "Kass and Raftery (1995): below 2 the evidence is not worth a mention"},
@@ -218,7 +218,7 @@ std::span<const Gate> gate_table() {
            "Correlations of parameters are listed from this size on.",
            "below 0.1 the U of a sum changes by less than a twentieth"},
       Gate{"most_straightness", &Gates::most_straightness, "µm over 200 mm", 1.0, 1e4,
-           "A larger straightness, found on a face, is called implausible.",
+           "A straightness of a face that is larger by more than its U is called implausible.",
            "ten times a good slide, 1 µm over 200 mm (makers of air bearings)"},
       Gate{"most_of_range", &Gates::most_of_range, "ranges of the profile", 1.0, 1e4,
            "A detection limit this many times a profile's range, or more, is none.",

@@ -84,6 +84,12 @@ std::string reconciled(const Crosscheck& checks) {
   return "";
 }
 
+/// Whether a slide is a curve, and only one fitted profile shows it.
+bool is_lone_curve(const Result& result) {
+  return result.final->straightness && result.final->straightness->form &&
+         std::ranges::count(result.inputs, Role::fit, &InputSummary::role) == 1;
+}
+
 /// What the closed loop leaves to do; "": nothing.
 std::string next_of_loop(const Analysis& analysis) {
   const TraceResult& trace = *analysis.trace;
@@ -152,6 +158,8 @@ std::string next_step(const Analysis& analysis) {
       return with_titles(direction->advice) + "; slideway plan tries further cuts on paper";
   if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
   if (std::string next = next_of_loop(analysis); !next.empty()) return next;
+  if (is_lone_curve(result))
+    return "read it once more, back: in one trace a drift looks like the slide's form";
   return may_be_moved_unseen(analysis)
              ? "slideway plan: unseen effects may move the squareness by " +
                    most_unseen(*analysis.trace)

@@ -6,6 +6,7 @@
 
 #include "identify/cases.hpp"
 #include "slideway/base/random.hpp"
+#include "slideway/base/units.hpp"
 #include "slideway/identify/budget.hpp"
 
 namespace slideway {
@@ -111,6 +112,27 @@ TEST(IdentifiedStraightness, IsNotGivenWhereTheDataDoNotTellIt) {
   ASSERT_TRUE(found);
   EXPECT_TRUE(found->errors.empty());
   EXPECT_NE(found->reason, "");
+}
+
+/// A face of 100 mm that a slide bent by 2.6 µm has made: b_2 = 4 · 2.6 µm / (100 mm)².
+ModelResult bent_by_more_than_most(double noise_um) {
+  RandomStream noise(5, "bent");
+  const std::vector<double> x = cases::spaced(0.0, 100.0, 200);
+  std::vector<double> z;
+  for (const double each : x)
+    z.push_back(kMicrometre * (4.0 * 2.6e-4 * each * each + noise_um * noise.normal()));
+  const std::vector<Profile> faces{cases::face("face", 2.0, x, z)};
+  const Problem problem = cases::problem(Lever::paper, 0, {cases::effect("straightness", 2)});
+  const FittedModel fitted = fit_declared(problem, faces);
+  return summarise(fitted.model, fitted.fit);
+}
+
+// 10 µm over 200 mm are 10 µm (1/2)² = 2.5 µm over 100 mm.
+TEST(PlausibleStraightness, IsExceededByMoreThanItsUncertainty) {
+  const ModelResult certain = bent_by_more_than_most(0.02), uncertain = bent_by_more_than_most(0.8);
+  EXPECT_NE(certain.implausible, "");
+  ASSERT_GT(*uncertain.straightness->least_squares_um, 2.5);
+  EXPECT_EQ(uncertain.implausible, "");
 }
 
 TEST(UncertaintyBudget, AddsUpToTheUncertaintyOfEachParameter) {
