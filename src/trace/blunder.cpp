@@ -129,12 +129,21 @@ class Prediction {
     double cost = HUGE_VAL, size = 1.0;
   };
   [[nodiscard]] Best best(double factor, double sister_factor) const {
-    constexpr int kSizesTried = 400;
-    constexpr double kFarthest = 10.0;  // |ln s|
+    constexpr int kSizesTried = 800;
+    constexpr double kFarthest =
+        20.0;  // |ln s|: two units of a thousand apart, and what they leave
+    const Eigen::VectorXd e = error(factor);
+    const Eigen::ArrayXd inside = (inside_.transpose() * e).array().square();
+    const double outside = e.squaredNorm() - inside.sum();
+    const double of_unit = 2.0 * count_ * std::log(std::abs(factor));
     Best out;
     for (int step = -kSizesTried; step <= kSizesTried; ++step) {
-      const double size = std::exp(kFarthest * step / kSizesTried);
-      const double at = cost(factor, size, sister_factor);
+      const double log_size = kFarthest * step / kSizesTried, size = std::exp(log_size);
+      const Eigen::ArrayXd variance = size * size + spread_.array();
+      const double unlike = log_size / std::log(sister_factor);
+      const double at = (count_ - static_cast<double>(spread_.size())) * 2.0 * log_size +
+                        variance.log().sum() + outside / (size * size) + (inside / variance).sum() -
+                        of_unit + unlike * unlike;
       if (at < out.cost) out = {at, size};
     }
     return out;
@@ -142,16 +151,6 @@ class Prediction {
 
  private:
   [[nodiscard]] Eigen::VectorXd error(double factor) const { return factor * values_ - predicted_; }
-
-  [[nodiscard]] double cost(double factor, double size, double sister_factor) const {
-    const Eigen::VectorXd e = error(factor), inside = inside_.transpose() * e;
-    const Eigen::ArrayXd variance = size * size + spread_.array();
-    const double unlike = std::log(size) / std::log(sister_factor);
-    return (count_ - static_cast<double>(spread_.size())) * 2.0 * std::log(size) +
-           variance.log().sum() + (e.squaredNorm() - inside.squaredNorm()) / (size * size) +
-           (inside.array().square() / variance).sum() - 2.0 * count_ * std::log(std::abs(factor)) +
-           unlike * unlike;
-  }
 
   Eigen::MatrixXd inside_;  // orthonormal: what the others predict
   Eigen::VectorXd spread_;  // variance of that prediction
