@@ -135,7 +135,7 @@ void explain_other_form(const Model& model, const Solution& fit, ModelResult& ou
 /// form.
 void explain_lone_curve(const Model& model, const Solution& fit, ModelResult& out) {
   if (curve_term(model) && fit.linear.observations.size() == 1)
-    out.notes.push_back(
+    out.notes.emplace_back(
         "the curve rests on one trace: a drift while it was read would look the same, and U does "
         "not hold it; a second reading, back, shows it");
 }
