@@ -109,15 +109,15 @@ bool is_harmless(const Analysis& analysis) {
 }
 
 bool contradicts(const ProfileCheck& check) { return check.verdict == Consistency::inconsistent; }
+bool contradicts(const HeldOutCheck& check) {
+  return check.verdict == HeldOutVerdict::does_not_fit;
+}
 
 std::string each_alone(const ProfileCheck& check) {
   std::vector<std::string> out;
   for (std::size_t i = 0; i < check.value_um.size(); ++i)
     out.push_back(with_uncertainty(check.value_um[i], check.U_um[i]));
   return out.empty() ? "" : joined(out, " and ") + " µm";
-}
-bool contradicts(const HeldOutCheck& check) {
-  return check.verdict == HeldOutVerdict::does_not_fit;
 }
 
 const FittedParameter* squareness_parameter(const Result& result) {

@@ -130,8 +130,7 @@ class Prediction {
   };
   [[nodiscard]] Best best(double factor, double sister_factor) const {
     constexpr int kSizesTried = 800;
-    constexpr double kFarthest =
-        20.0;  // |ln s|: two units of a thousand apart, and what they leave
+    constexpr double kFarthest = 20.0;  // |ln s|: 1e5 of a noise a thousand times too small
     const Eigen::VectorXd e = error(factor);
     const Eigen::ArrayXd inside = (inside_.transpose() * e).array().square();
     const double outside = e.squaredNorm() - inside.sum();
