@@ -247,10 +247,8 @@ FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes)
                                                   noise.standard_deviation()));
   }
   if (more) found = fit(model, found.estimate.shapes);
-  const bool is_known = model.range.face_slope != nullptr;
   model.range.face_slope = face_slope(model, found.estimate);
-  if (!is_known && model.range.face_slope && follow_face(model))
-    found = fit(model, found.estimate.shapes);
+  if (model.range.face_slope && follow_face(model)) found = fit(model, found.estimate.shapes);
   return {std::move(model), std::move(found)};
 }
 

@@ -26,16 +26,22 @@ struct Radii {
   }
 
   [[nodiscard]] ValueIndices within(double centre, double reach) const {
-    ValueIndices out;
-    for (std::size_t i = 0; i < radius.size(); ++i)
-      if (std::abs(radius[i] - centre) <= reach) out.push_back(static_cast<Eigen::Index>(i));
+    return those(radius, centre - reach, centre + reach);
+  }
+
+  /// Whose distance along the trace is so far below and above 0. None where that would be most of
+  /// the trace: then its positions are wrong, not its centre.
+  [[nodiscard]] ValueIndices at_axis(double below, double above) const {
+    ValueIndices out = those(trace, -below, above);
+    if (2 * out.size() > radius.size()) out.clear();
     return out;
   }
 
-  /// None where that would be most of the trace: then its positions are wrong, not its centre.
-  [[nodiscard]] ValueIndices at_axis(double reach) const {
-    ValueIndices out = within(0.0, reach);
-    if (2 * out.size() > radius.size()) out.clear();
+ private:
+  static ValueIndices those(const std::vector<double>& places, double least, double most) {
+    ValueIndices out;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (places[i] >= least && places[i] <= most) out.push_back(static_cast<Eigen::Index>(i));
     return out;
   }
 };
@@ -59,9 +65,14 @@ double lost_radius(const Radii& radii, const Observation& observation, const Gat
 }  // namespace
 
 ValueIndices values_at_axis(const Observation& observation, const Machine& machine) {
+  return values_at_axis(observation, machine, 0.0);
+}
+
+ValueIndices values_at_axis(const Observation& observation, const Machine& machine,
+                            double axis_mm) {
   if (observation.profile->setup.kind != Kind::face) return {};
   const Radii radii(observation, machine);
-  return radii.at_axis(radii.width);
+  return radii.at_axis(radii.width + std::max(0.0, -axis_mm), radii.width + std::max(0.0, axis_mm));
 }
 
 ValueIndices undescribed_values(const Model& model, const Observation& observation,
@@ -69,8 +80,9 @@ ValueIndices undescribed_values(const Model& model, const Observation& observati
   const Setup& setup = observation.profile->setup;
   if (setup.kind != Kind::face) return {};
   const Radii radii(observation, model.machine);
-  return radii.at_axis(
-      std::max(radii.width, lost_radius(radii, observation, model.gates, curve, noise)));
+  const double reach =
+      std::max(radii.width, lost_radius(radii, observation, model.gates, curve, noise));
+  return radii.at_axis(reach, reach);
 }
 
 ValueIndices values_beside_steps(const Model& model, const Estimate& estimate,

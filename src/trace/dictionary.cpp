@@ -264,6 +264,13 @@ bool has_all_profiles_of(const Model& model, const Candidate& whole,
 
 }  // namespace
 
+bool is_of_place(const Candidate& candidate) {
+  const Description& own = candidate.term.effect->description();
+  return own.of_face || std::ranges::any_of(own.confounded_effects, [](const std::string& other) {
+           return specimen(other).description().of_face;
+         });
+}
+
 Eigen::MatrixXd Candidate::columns_around(Eigen::Index atom) const {
   const std::vector<Eigen::Index> atoms = grid.around(atom);
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(columns->rows(), std::ssize(atoms) * amplitudes());

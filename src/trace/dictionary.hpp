@@ -47,6 +47,10 @@ inline bool is_kinematic(const Candidate& candidate) {
   return candidate.term.effect->description().kinematic;
 }
 
+/// Whether it is of the place of a trace on the workpiece: a trace off centre, or a step of the
+/// spindle, which is exactly as that.
+bool is_of_place(const Candidate& candidate);
+
 /// Those a search looks at.
 using Candidates = std::vector<const Candidate*>;
 

@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "off_axis.hpp"
+#include "rims.hpp"
+
 namespace slideway {
 
 Known known_before_search(const Problem& problem, const FittedModel& declared) {
@@ -11,10 +14,11 @@ Known known_before_search(const Problem& problem, const FittedModel& declared) {
     out.fitted.emplace(std::move(with.fitted));
     out.rounds = std::move(with.rounds);
   }
-  if (std::optional<WithinRims> rims = within_rims(out.fitted ? *out.fitted : declared)) {
-    out.fitted.emplace(std::move(rims->fitted));
-    out.note = std::move(rims->note);
-  }
+  const FittedModel& fitted = out.fitted ? *out.fitted : declared;
+  Model model = fitted.model;
+  for (std::string note : {leave_out_past_rims(fitted, model), leave_out_off_axis(fitted, model)})
+    if (!note.empty()) out.notes.push_back(std::move(note));
+  if (!out.notes.empty()) out.fitted.emplace(fit_model(std::move(model)));
   return out;
 }
 

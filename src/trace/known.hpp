@@ -1,6 +1,5 @@
 #pragma once
 
-#include "rims.hpp"
 #include "shown.hpp"
 
 namespace slideway {
@@ -9,7 +8,7 @@ namespace slideway {
 struct Known {
   std::vector<ShownEffect> shown;
   std::vector<TraceRound> rounds;     // of those that are settled
-  std::string note;                   // on values that are left out; "": none are
+  std::vector<std::string> notes;     // on values that are left out
   std::optional<FittedModel> fitted;  // with all that; none: as declared
 };
 

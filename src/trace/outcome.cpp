@@ -37,6 +37,31 @@ std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
   return out;
 }
 
+AcceptedEffect as_accepted(const SearchRound& round, const TestedCandidate& choice,
+                           const Gates& gates, std::optional<double> before_rms_um) {
+  AcceptedEffect out{choice.refined.candidate, choice.refined.shape, {}};
+  out.round.accepted = choice.refined.candidate->effect_name();
+  out.round.profiles = choice.refined.candidate->term.profiles;
+  out.round.delta_bic = choice.refined.delta_bic;
+  out.round.p_value = choice.p_value;
+  out.round.candidates = tried(round, gates, &choice, before_rms_um);
+  if (choice.held_out) {
+    out.round.before_holdout_rms_um = choice.held_out->before_um;
+    out.round.after_holdout_rms_um = choice.held_out->after_um;
+  }
+  return out;
+}
+
+std::vector<std::string> outranked_by(const SearchRound& round, const TestedCandidate& measured,
+                                      const Gates& gates) {
+  std::vector<std::string> out;
+  for (const TestedCandidate* each : round.outranked(measured, gates))
+    out.push_back(measured.name() + " was measured and " + each->name() +
+                  " was not: it stands, though the other explains as much; difference in BIC " +
+                  significant(each->refined.delta_bic - measured.refined.delta_bic, 2));
+  return out;
+}
+
 std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,
                                   const ModelResult& fit) {
   if (out.not_separable.empty()) return "";

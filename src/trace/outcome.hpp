@@ -10,6 +10,14 @@ namespace slideway {
 std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
                                const TestedCandidate* except, std::optional<double> before_rms_um);
 
+/// The effect a candidate becomes, with the statistics of the search that found it.
+AcceptedEffect as_accepted(const SearchRound& round, const TestedCandidate& choice,
+                           const Gates& gates, std::optional<double> before_rms_um);
+
+/// By how much what nobody measured explains less, or more, than a measured cause: a note of each.
+std::vector<std::string> outranked_by(const SearchRound& round, const TestedCandidate& measured,
+                                      const Gates& gates);
+
 /// Why the form that the fit puts into the carriages cannot be theirs, or "": the run-out or a
 /// good slide speak against it, and other effects make the same columns.
 std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,

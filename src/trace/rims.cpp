@@ -129,21 +129,20 @@ ValueIndices values_past_a_rim(const Observation& observation, const Eigen::Vect
   return halves.values_to(last);
 }
 
-std::optional<WithinRims> within_rims(const FittedModel& declared) {
+std::string leave_out_past_rims(const FittedModel& fitted, Model& model) {
   std::vector<std::string> names;
-  Model model = declared.model;
-  const Linearisation& linear = declared.fit.linear;
+  const Linearisation& linear = fitted.fit.linear;
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {
     const Profile* const profile = linear.observations[i]->profile;
     Observation& own = *std::ranges::find(model.observations, profile, &Observation::profile);
     if (leave_out(own, values_past_a_rim(own, linear.residuals[i], model.gates)))
       names.push_back("'" + profile->name + "'");
   }
-  if (names.empty()) return std::nullopt;
-  return WithinRims{fit_model(std::move(model)),
-                    "at the rim the two ends of " + joined(names) +
-                        " differ, as where a trace runs past the face: values there are left out; "
-                        "check center_mm, or give a window"};
+  if (names.empty()) return "";
+  return "at the rim the two ends of " + joined(names) +
+         " differ, as where a trace runs past the face: values there are left out; check "
+         "center_mm, "
+         "or give a window";
 }
 
 }  // namespace slideway

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "slideway/identify/fit.hpp"
@@ -22,11 +21,7 @@ namespace slideway {
 ValueIndices values_past_a_rim(const Observation& observation, const Eigen::VectorXd& residual,
                                const Gates& gates);
 
-/// A model fitted without them, and what to say of it. None: no profile has such values.
-struct WithinRims {
-  FittedModel fitted;
-  std::string note;
-};
-std::optional<WithinRims> within_rims(const FittedModel& declared);
+/// Leaves them out of `model`, that of `fitted`. @return what to say of it; "": there are none
+std::string leave_out_past_rims(const FittedModel& fitted, Model& model);
 
 }  // namespace slideway

@@ -63,6 +63,15 @@ void for_block(const Whitened& data, const Candidate& candidate, Eigen::Index fi
   }
 }
 
+/// @param squares  of the columns, before what the model spans was taken out
+Projection solved(Projection normal, const Eigen::VectorXd& squares) {
+  const GramRoot root = root_of(normal.gram, squares);
+  normal.rank = root.rank;
+  normal.amplitudes = root.root.transpose() * (root.root * normal.products);
+  normal.gain = (root.root * normal.products).squaredNorm();
+  return normal;
+}
+
 struct Block {
   std::size_t candidate;
   Eigen::Index first, count;
@@ -115,14 +124,16 @@ Projection project(const Whitened& data, const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd white = columns;
   data.whiten(white);
   const Eigen::MatrixXd inside = data.inside(white, 0);
-  Projection out;
-  out.gram = white.transpose() * white - inside.transpose() * inside;
-  out.products = white.transpose() * data.residual();
-  const GramRoot root = root_of(out.gram, white.colwise().squaredNorm().transpose());
-  out.rank = root.rank;
-  out.amplitudes = root.root.transpose() * (root.root * out.products);
-  out.gain = (root.root * out.products).squaredNorm();
-  return out;
+  return solved({.gram = white.transpose() * white - inside.transpose() * inside,
+                 .products = white.transpose() * data.residual()},
+                white.colwise().squaredNorm().transpose());
+}
+
+Projection project_in(const Whitened& data, std::size_t profile, const Eigen::MatrixXd& columns) {
+  const Whitened::Shown shown = data.shown_in(profile, columns);
+  return solved(
+      {.gram = shown.gram - shown.shared.transpose() * shown.shared, .products = shown.products},
+      shown.gram.diagonal());
 }
 
 Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates,

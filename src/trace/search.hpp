@@ -35,6 +35,8 @@ struct Projection {
   Eigen::Index rank = 0;
 };
 Projection project(const Whitened& data, const Eigen::MatrixXd& columns);
+/// The same of columns in one profile alone, given in its rows.
+Projection project_in(const Whitened& data, std::size_t profile, const Eigen::MatrixXd& columns);
 
 /// Largest penalised gain (gain - unknowns ln n) of any atom, for every column of `residuals`
 /// (white, in the layout of the data, outside the model's span). `told` hears, in the thread of the

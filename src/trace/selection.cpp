@@ -26,6 +26,7 @@ class Selector {
 
   Selection run() {
     select();
+    hold_against_one_in_each();
     hold_against_causes();
     hold_against_the_unnamed();
     name_rivals();
@@ -59,19 +60,8 @@ class Selector {
     return lack_of_fit(fitted.fit.linear, extender_.search(out_.effects).data.noise(), gates_);
   }
 
-  /// The effect a candidate becomes, with the statistics of the search that found it.
   AcceptedEffect accepted(const SearchRound& round, const TestedCandidate& choice) {
-    AcceptedEffect out{choice.refined.candidate, choice.refined.shape, {}};
-    out.round.accepted = choice.refined.candidate->effect_name();
-    out.round.profiles = choice.refined.candidate->term.profiles;
-    out.round.delta_bic = choice.refined.delta_bic;
-    out.round.p_value = choice.p_value;
-    out.round.candidates = tried(round, gates_, &choice, extender_.summary({}).rms_um);
-    if (choice.held_out) {
-      out.round.before_holdout_rms_um = choice.held_out->before_um;
-      out.round.after_holdout_rms_um = choice.held_out->after_um;
-    }
-    return out;
+    return as_accepted(round, choice, gates_, extender_.summary({}).rms_um);
   }
 
   void grow() {
@@ -92,15 +82,6 @@ class Selector {
       drop_superfluous();
       confine_last(round, *choice);
     }
-  }
-
-  /// Whether another effect of the set is the same in some profiles: together they say what it is
-  /// in those and in the rest.
-  [[nodiscard]] bool has_part_in(const Effects& effects, const TestedCandidate& candidate) const {
-    return candidate.refined.candidate->term.profiles.empty() &&
-           std::ranges::any_of(effects, [&](const AcceptedEffect& effect) {
-             return effect.round.accepted == candidate.refined.candidate->effect_name();
-           });
   }
 
   /// Whether an effect of all profiles would shrink to a part of itself after it has made several
@@ -258,10 +239,12 @@ class Selector {
       for (const TestedCandidate* rival : round.rivals(own, gates_))
         if (std::ranges::count(effect.round.ambiguous_with, rival->name()) == 0)
           effect.round.ambiguous_with.push_back(rival->name());
-      const bool outranks = note_outranked(round, own);
+      const std::vector<std::string> outranked = outranked_by(round, own, gates_);
+      out_.notes.insert(out_.notes.end(), outranked.begin(), outranked.end());
       const Stability found = stability(round, own, gates_, &extender_.extended(others));
       effect.round.stability = found.share;
-      if (found.share >= gates_.stable_share || !effect.round.ambiguous_with.empty() || outranks)
+      if (found.share >= gates_.stable_share || !effect.round.ambiguous_with.empty() ||
+          !outranked.empty())
         continue;
       effect.round.ambiguous_with.push_back(found.other == kNothing ? kUnnamedRival : found.other);
       out_.notes.push_back(effect.name() + ": only " + significant(100.0 * found.share, 2) +
@@ -269,16 +252,27 @@ class Selector {
     }
   }
 
-  /// By how much what nobody measured explains less, or more, than a measured cause. @return true
-  /// if there is any such effect
-  bool note_outranked(const SearchRound& round, const TestedCandidate& own) {
-    const std::vector<const TestedCandidate*> outranked = round.outranked(own, gates_);
-    for (const TestedCandidate* each : outranked)
-      out_.notes.push_back(own.name() + " was measured and " + each->name() +
-                           " was not: it stands, though the other explains as much; difference "
-                           "in BIC " +
-                           significant(each->refined.delta_bic - own.refined.delta_bic, 2));
-    return !outranked.empty();
+  /// No trace lies on the workpiece as another does. So where an effect of that is of all profiles,
+  /// effects are also selected with one of its own in each.
+  void hold_against_one_in_each() {
+    const auto is_of_all = [](const Candidate& each) {
+      return is_of_place(each) && each.term.profiles.empty();
+    };
+    const auto any = [&](const auto& is_such) {
+      return std::ranges::any_of(out_.effects,
+                                 [&](const auto& e) { return is_such(*e.candidate); });
+    };
+    if (!any(is_of_all)) return;
+    Selector each(problem_, statistics_, gates_, progress_);
+    for (const Candidate& candidate : extender_.dictionary().candidates)
+      if (is_of_all(candidate)) each.exclude(candidate.name());
+    each.select();
+    // Beside one of all, that of one trace is its difference from the others, and no place.
+    const bool is_difference =
+        any([&](const Candidate& one) { return is_of_place(one) && !is_of_all(one); });
+    leaves_to(each, is_difference ? gates_.tie_bic + statistics_.price(each.out_.effects) -
+                                        statistics_.price(out_.effects)
+                                  : -gates_.exchange_bic);
   }
 
   /// A carriage's polynomial of a higher degree comes near every sum of smooth effects, and leaves
@@ -289,16 +283,7 @@ class Selector {
       if (effect.candidate->raises_degree) without.exclude(effect.name());
     if (without.excluded_.empty()) return;
     without.select();
-    if (without.out_.effects.empty()) return;
-    if (statistics_.lead(out_.effects, without.out_.effects) < -gates_.exchange_bic) {
-      const std::string together = joined(without.names(), " and ");
-      for (const std::string& raised : without.excluded_)
-        without.out_.left.emplace_back(raised, together + " without it fits better");
-      out_ = std::move(without.out_);
-      ruled_out_ = std::move(without.ruled_out_);
-      taken_back_ = std::move(without.taken_back_);
-      return;
-    }
+    if (without.out_.effects.empty() || leaves_to(without, -gates_.exchange_bic)) return;
     without.add_best_that_is_possible();
     if (statistics_.lead(out_.effects, without.out_.effects) > gates_.tie_bic) return;
     std::vector<std::string> causes = without.names();
@@ -312,6 +297,21 @@ class Selector {
                            " explain as much");
     }
     out_.instead = std::move(without.out_.effects);
+  }
+
+  /// Whether this set leads another one, selected without some candidates, by so little that the
+  /// other takes its place.
+  bool leaves_to(Selector& other, double by) {
+    if (other.out_.effects.empty() || statistics_.lead(out_.effects, other.out_.effects) >= by)
+      return false;
+    const std::string together = joined(other.names(), " and ");
+    for (const std::string& name : names())
+      if (std::ranges::count(other.excluded_, name) > 0)
+        other.out_.left.emplace_back(name, together + " without it fits better");
+    out_ = std::move(other.out_);
+    ruled_out_ = std::move(other.ruled_out_);
+    taken_back_ = std::move(other.taken_back_);
+    return true;
   }
 
   /// One effect more, even if noise gives as much: beside a rival the others need not explain all.

@@ -60,6 +60,13 @@ const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffec
   return found == round.tested.end() ? nullptr : &*found;
 }
 
+bool has_part_in(const std::vector<AcceptedEffect>& effects, const TestedCandidate& candidate) {
+  return candidate.refined.candidate->term.profiles.empty() &&
+         std::ranges::any_of(effects, [&](const AcceptedEffect& effect) {
+           return effect.round.accepted == candidate.refined.candidate->effect_name();
+         });
+}
+
 bool finds_too_much(const TestedCandidate& each, const Gates& gates) {
   return each.refined.projection.rank > 0 && each.part_of.empty() && each.folded.empty() &&
          !is_kinematic(*each.refined.candidate) && each.p_value <= gates.lack_of_fit_p &&

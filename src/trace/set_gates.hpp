@@ -28,6 +28,10 @@ std::string too_small(ModelExtender& extender, const Gates& gates,
 const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,
                                    const Gates& gates);
 
+/// Whether a candidate is of all profiles and an effect of the set is the same in some: together
+/// they say what it is in those and in the rest.
+bool has_part_in(const std::vector<AcceptedEffect>& effects, const TestedCandidate& candidate);
+
 /// Whether a candidate finds so much that something is missing, whatever it is refused for: feed
 /// marks apart, which every cut has.
 bool finds_too_much(const TestedCandidate& each, const Gates& gates);

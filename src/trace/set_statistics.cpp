@@ -36,18 +36,20 @@ double SetStatistics::over_process(const Effects& effects, std::size_t which) {
   });
 }
 
+double SetStatistics::price(const Effects& effects) {
+  const Whitened& data = extender_.search({}).data;
+  double sum = 0.0;
+  for (const AcceptedEffect& effect : effects)
+    sum += penalty(data, *effect.candidate, effect.candidate->amplitudes());
+  return sum;
+}
+
 double SetStatistics::lead(const Effects& effects, const Effects& other) {
   return kept_or_made(leads_, {candidates_of(effects), candidates_of(other)}, [&] {
     const Whitened& data = extender_.search(effects).data;
-    const auto unknowns = [&](const Effects& of) {
-      double sum = 0.0;
-      for (const AcceptedEffect& effect : of)
-        sum += penalty(data, *effect.candidate, effect.candidate->amplitudes());
-      return sum;
-    };
     const Whitened without(extender_.extended(other).fit.linear, data.noise(), data.undescribed());
-    return without.residual().squaredNorm() + unknowns(other) - data.residual().squaredNorm() -
-           unknowns(effects);
+    return without.residual().squaredNorm() + price(other) - data.residual().squaredNorm() -
+           price(effects);
   });
 }
 

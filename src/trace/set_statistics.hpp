@@ -31,6 +31,9 @@ class SetStatistics {
   /// gain_over_process()
   double over_process(const Effects& effects, std::size_t which);
 
+  /// What the unknowns of a set cost in BIC.
+  double price(const Effects& effects);
+
   /// By how much the BIC of a set is lower than that of another one, under the noise beside it.
   double lead(const Effects& effects, const Effects& other);
 

@@ -380,11 +380,11 @@ ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profil
   const FittedModel& begun = known.fitted ? *known.fitted : declared;
   ClosedLoop out = Loop(problem, profiles, begun, known.shown, progress).run();
   TraceResult& trace = out.trace;
-  if (!known.note.empty()) trace.notes.insert(trace.notes.begin(), known.note);
+  trace.notes.insert(trace.notes.begin(), known.notes.begin(), known.notes.end());
   if (!known.rounds.empty() && trace.verdict == TraceVerdict::nothing_missing)
     trace.verdict = TraceVerdict::explained;
   trace.rounds.insert(trace.rounds.begin(), known.rounds.begin(), known.rounds.end());
-  if ((!known.note.empty() || !known.rounds.empty()) && !out.extended)
+  if ((!known.notes.empty() || !known.rounds.empty()) && !out.extended)
     out.extended = std::move(known.fitted);
   return out;
 }

@@ -122,6 +122,21 @@ TEST(Centring, GoesWithTheSlopeOfTheFace) {
   EXPECT_NEAR(z[3], 20.0 / whole, 1e-14);
 }
 
+// The step is A = -X0 z'_rms whatever the width of the ramp seems to be, which few values show.
+TEST(Centring, HasTheOffsetThatMakesItsStep) {
+  FaceSlope cone;
+  cone.values = {2e-4, 2e-4};
+  TravelRange range;
+  range.face_slope = std::make_shared<const FaceSlope>(cone);
+  const auto effect = make_effect("centring", {}, lathe(), range);
+  const std::vector<double> wide{2.0};
+  const ParameterValues known =
+      effect->parameter_values(Eigen::VectorXd::Constant(1, -0.1 * kMicrometre), wide);
+  EXPECT_DOUBLE_EQ(known.values[1], 0.5);  // 0.1 µm / (200 µm/m), mm
+  EXPECT_DOUBLE_EQ(known.jacobian(1, 0), -1.0 / 2e-4);
+  EXPECT_EQ(known.jacobian(1, 1), 0.0);
+}
+
 TEST(Centring, WithoutAnOffsetIsTheCentreStep) {
   const Case diameter = all_cases()[2];
   const std::vector<double> none{0.0};

@@ -171,6 +171,7 @@ TEST(Projection, GainIsTheFallOfTheSumOfSquares) {
   const double before = data.residual().squaredNorm();
   EXPECT_NEAR(projection.gain, before - left, kRounding * before);
   EXPECT_LT((projection.amplitudes - solution.tail(3)).norm(), 1e-7 * solution.tail(3).norm());
+  EXPECT_NEAR(project_in(data, 0, columns).gain, projection.gain, kRounding * before);
 }
 
 TEST(Projection, ColumnsOfTheModelGainNothing) {

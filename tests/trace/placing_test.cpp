@@ -149,6 +149,22 @@ TEST(Placing, EachCutMayBeOffItsCentreByAnother) {
   EXPECT_EQ(names.size(), 3U);
 }
 
+// The last groove leaves a nub of 3 µm where the trace passes the axis, not where center_mm says.
+TEST(Placing, TheNubOfAFaceOffTheCentreIsLeftOut) {
+  std::vector<Profile> profiles = at_azimuths(
+      [](double x, double /*azimuth*/) {
+        return 4e-4 * std::abs(x) + 3e-3 * std::max(0.0, 1.0 - std::abs(x) / 0.05);
+      },
+      6);
+  const std::vector<double> off{0.5, -0.7, 0.6};
+  for (std::size_t i = 0; i < off.size(); ++i) profiles[i].setup.center_mm -= off[i];
+  const Closed result = closed(problem_of({"centre_step", "centring", "linear_drift"}), profiles);
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(result.notes, Contains(::testing::StartsWith("the halves differ as where a trace")));
+  EXPECT_NE(result.verdict, TraceVerdict::nothing_missing);
+  EXPECT_NE(result.verdict, TraceVerdict::explained);  // as a step of the spindle would be
+}
+
 // 0.1 mm: lower on one side of the axis and higher on the other, as is a step of the spindle.
 TEST(Placing, ATraceALittleOffTheCentreIsNoStepOfTheSpindleAlone) {
   const Closed result = off_centre(0.1);

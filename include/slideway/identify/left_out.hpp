@@ -14,6 +14,10 @@ using ValueIndices = std::vector<Eigen::Index>;
 /// value of the spindle axis, where the tool leaves the face.
 ValueIndices values_at_axis(const Observation& observation, const Machine& machine);
 
+/// The same where the trace passes the spindle axis at X = `axis_mm` and not at X = 0: of all
+/// values between the two it is not known on which side of the axis they lie.
+ValueIndices values_at_axis(const Observation& observation, const Machine& machine, double axis_mm);
+
 /// These, and those further out where effects that are steep at the centre are steeper than the
 /// tool's nose follows: a nose of radius ρ cuts a slope z' lower by ρ z'²/2 (first order), and that
 /// is more than the noise.

@@ -27,7 +27,8 @@ std::pair<double, double> centring_search(const Stations& stations) {
   return {-farthest, farthest};
 }
 
-// The step of a cone, in proportion to the slope of the face.
+// The step of a cone, in proportion to the slope of the face. Where that is known, the offset is
+// what makes the step of it; the width of the ramp, which often no value shows, says where it lies.
 class Centring final : public SingleAmplitude {
  public:
   Centring(SingleAmplitudeSpec spec, std::shared_ptr<const FaceSlope> slope)
@@ -51,6 +52,15 @@ class Centring final : public SingleAmplitude {
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
     SingleAmplitude::derivatives(stations, shape, which, out);
     in_proportion(stations, out);
+  }
+
+  [[nodiscard]] ParameterValues parameter_values(const Eigen::VectorXd& amplitudes,
+                                                 std::span<const double> shape) const override {
+    ParameterValues out = SingleAmplitude::parameter_values(amplitudes, shape);
+    if (!slope_) return out;
+    out.values[1] = -amplitudes[0] / slope_->rms();
+    out.jacobian.row(1) << -1.0 / slope_->rms(), 0.0;
+    return out;
   }
 
  private:
