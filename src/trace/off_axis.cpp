@@ -27,18 +27,15 @@ std::unique_ptr<Effect> effect_of_face(const Model& model) {
   return make_effect(*name, {}, model.machine, model.range);
 }
 
-/// Low band of the effect at several X0, one column each. No columns: the trace does not cross the
-/// axis.
-Eigen::MatrixXd cones(const Effect& off_centre, const Observation& observation,
-                      const Machine& machine, const std::vector<double>& offsets) {
+/// Low band of the effect at one X0. No columns: the trace does not cross the axis.
+Eigen::MatrixXd cone(const Effect& off_centre, const Observation& observation,
+                     const Machine& machine, double offset_mm) {
   const Profile& profile = *observation.profile;
   if (!off_centre.applies_to(profile.setup)) return {observation.values.size(), 0};
   const Stations stations = profile.stations(machine);
-  std::vector<std::vector<double>> shapes;
-  for (const double offset : offsets) shapes.push_back({offset});
-  Eigen::MatrixXd columns(stations.size(), std::ssize(shapes));
-  off_centre.columns_of_shapes(stations, shapes, columns);
-  return observation.low_band.apply(columns);
+  Eigen::MatrixXd column(stations.size(), 1);
+  off_centre.columns(stations, {&offset_mm, 1}, column);
+  return observation.low_band.apply(column);
 }
 
 /// Values of a diameter that may lie between two centres, rising: the nearest to center_mm.
@@ -65,7 +62,7 @@ struct OffAxis {
 };
 
 /// @param far   the data without the values at the axis
-/// @param step  cones() far from it
+/// @param step  cone() far from it
 std::optional<OffAxis> off_axis(const Model& model, const Whitened& data, const Whitened& far,
                                 std::size_t profile, const Observation& observation,
                                 const Effect& off_centre, const Eigen::MatrixXd& step) {
@@ -80,12 +77,12 @@ std::optional<OffAxis> off_axis(const Model& model, const Whitened& data, const 
     return std::nullopt;
   std::ranges::set_difference(values_at_axis(observation, model.machine, out.offset_mm),
                               left_out_values(observation), std::back_inserter(out.values));
-  std::vector<double> centres;
-  for (int k = -kEachWay; k <= kEachWay; ++k)
-    centres.push_back(kFarther * out.offset_mm * k / kEachWay);
-  const Projection all =
-      project_in(data, profile, cones(off_centre, observation, model.machine, centres));
-  const double of_best = (all.products.array().square() / all.gram.diagonal().array()).maxCoeff();
+  double of_best = 0.0;
+  for (int k = -kEachWay; k <= kEachWay; ++k) {
+    const double centre = kFarther * out.offset_mm * k / kEachWay;
+    const Eigen::MatrixXd own = cone(off_centre, observation, model.machine, centre);
+    of_best = std::max(of_best, project_in(data, profile, own).gain);
+  }
   Eigen::MatrixXd columns(step.rows(), 1 + std::ssize(out.values));
   columns << step, unit_columns(out.values, step.rows());
   const double gain = project_in(data, profile, columns).gain - of_best;
@@ -102,7 +99,7 @@ std::string leave_out_off_axis(const FittedModel& fitted, Model& model) {
   std::vector<Eigen::MatrixXd> steps, suspect;
   FreeValues near;
   for (const Observation* each : linear.observations) {
-    steps.push_back(cones(*off_centre, *each, model.machine, {0.0}));
+    steps.push_back(cone(*off_centre, *each, model.machine, 0.0));
     near.push_back(steps.back().cols() > 0 ? near_axis(model, *each) : ValueIndices());
     suspect.emplace_back(each->values.size(), steps.back().cols() + std::ssize(near.back()));
     suspect.back() << steps.back(), unit_columns(near.back(), each->values.size());
