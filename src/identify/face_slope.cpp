@@ -1,6 +1,8 @@
 #include "face_slope.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "slideway/effects/catalogue.hpp"
 
@@ -17,35 +19,53 @@ bool may_go_with_face(const Profile& profile) {
          });
 }
 
-}  // namespace
+/// Slopes of the face by radius: they are linear in the amplitudes of the model.
+struct LinearSlope {
+  double spacing_mm = 1.0;
+  Eigen::MatrixXd by_amplitude;  // one row a radius, as FaceSlope has them
+};
 
-std::shared_ptr<const FaceSlope> face_slope(const Model& model, const Estimate& estimate) {
+std::optional<LinearSlope> linear_slope(const Model& model, const Estimate& estimate) {
   const auto shown = std::ranges::find_if(
       model.observations, [](const Observation& each) { return may_go_with_face(*each.profile); });
-  if (shown == model.observations.end()) return nullptr;
+  if (shown == model.observations.end()) return std::nullopt;
   const Setup& setup = shown->profile->setup;
   const double farthest =
       std::max(setup.last_mm - setup.center_mm, setup.center_mm - setup.first_mm);
-  auto out = std::make_shared<FaceSlope>();
-  out->spacing_mm = farthest / static_cast<double>(kPlaces);
+  LinearSlope out{farthest / static_cast<double>(kPlaces),
+                  Eigen::MatrixXd(kPlaces + 1, model.amplitudes())};
   std::vector<double> middles;
   for (Eigen::Index i = 0; i < kPlaces; ++i)
-    middles.push_back(setup.center_mm + (static_cast<double>(i) + 0.5) * out->spacing_mm);
+    middles.push_back(setup.center_mm + (static_cast<double>(i) + 0.5) * out.spacing_mm);
   const Stations stations(middles, setup, model.machine);
-  Eigen::VectorXd height = Eigen::VectorXd::Zero(stations.size());
-  for (const ModelTerm& term : model.terms) {
-    if (!term.effect->is_carriage()) continue;
-    const Eigen::Index count = term.effect->amplitudes();
-    Eigen::MatrixXd columns(stations.size(), count);
-    term.effect->columns(stations, shapes_of(term, estimate.shapes), columns);
-    height += columns * estimate.amplitudes.segment(term.first_amplitude, count);
-  }
-  std::vector<double>& slopes = out->values;
-  for (Eigen::Index i = 1; i < kPlaces; ++i)
-    slopes.push_back((height[i] - height[i - 1]) / out->spacing_mm);
-  slopes.insert(slopes.begin(), 2.0 * slopes[0] - slopes[1]);
-  slopes.push_back(2.0 * slopes.back() - slopes[slopes.size() - 2]);
+  Eigen::MatrixXd height = Eigen::MatrixXd::Zero(kPlaces, model.amplitudes());
+  for (const ModelTerm& term : model.terms)
+    if (term.effect->is_carriage())
+      term.effect->columns(stations, shapes_of(term, estimate.shapes),
+                           height.middleCols(term.first_amplitude, term.effect->amplitudes()));
+  auto& slopes = out.by_amplitude;
+  slopes.middleRows(1, kPlaces - 1) =
+      (height.bottomRows(kPlaces - 1) - height.topRows(kPlaces - 1)) / out.spacing_mm;
+  slopes.row(0) = 2.0 * slopes.row(1) - slopes.row(2);
+  slopes.row(kPlaces) = 2.0 * slopes.row(kPlaces - 1) - slopes.row(kPlaces - 2);
   return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const FaceSlope> face_slope(const Model& model, const Estimate& estimate) {
+  const std::optional<LinearSlope> linear = linear_slope(model, estimate);
+  if (!linear) return nullptr;
+  const Eigen::VectorXd values = linear->by_amplitude * estimate.amplitudes;
+  return std::make_shared<FaceSlope>(FaceSlope{linear->spacing_mm, {values.begin(), values.end()}});
+}
+
+Eigen::RowVectorXd rms_slope_by_amplitude(const Model& model, const Estimate& estimate) {
+  const std::optional<LinearSlope> linear = linear_slope(model, estimate);
+  if (!linear) return Eigen::RowVectorXd::Zero(model.amplitudes());
+  const Eigen::VectorXd values = linear->by_amplitude * estimate.amplitudes;
+  const double rms = values.norm() / std::sqrt(static_cast<double>(values.size()));
+  return values.transpose() * linear->by_amplitude / (rms * static_cast<double>(values.size()));
 }
 
 bool follow_face(Model& model) {

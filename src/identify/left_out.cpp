@@ -64,10 +64,6 @@ double lost_radius(const Radii& radii, const Observation& observation, const Gat
 
 }  // namespace
 
-ValueIndices values_at_axis(const Observation& observation, const Machine& machine) {
-  return values_at_axis(observation, machine, 0.0);
-}
-
 ValueIndices values_at_axis(const Observation& observation, const Machine& machine,
                             double axis_mm) {
   if (observation.profile->setup.kind != Kind::face) return {};

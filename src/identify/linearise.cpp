@@ -1,6 +1,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
+#include "face_slope.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/identify/solve.hpp"
 
@@ -126,6 +127,9 @@ ParameterValues all_parameters(const Model& model, const Estimate& estimate) {
         values.jacobian.leftCols(ta);
     out.jacobian.block(term.first_parameter, a + term.first_shape, tp, ts) =
         values.jacobian.rightCols(ts);
+    if (values.by_slope.size() > 0)
+      out.jacobian.block(term.first_parameter, 0, tp, a) +=
+          values.by_slope * rms_slope_by_amplitude(model, estimate);
   }
   return out;
 }

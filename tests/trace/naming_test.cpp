@@ -146,5 +146,22 @@ TEST(Named, TimeAndRevolutionsAreOneClockAtOneSpeed) {
   EXPECT_THAT(result.advice, ::testing::Contains(HasSubstr("rev/min")));
 }
 
+// 0.4 µm, 40 times the noise, which no law describes to its last hundredth in a groove that the
+// next ones cut into: of strong waves, too, one cut does not tell whether they are of the slide.
+TEST(Named, AStrongWaveOfOneCutIsOfTheSlideOrOfTheSpindle) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    RandomStream random(seed, "revolution_periodic");
+    const turning::Hidden hidden = turning::make_hidden("revolution_periodic", 0.4e-3, random);
+    const Closed result =
+        closed(problem_of({"revolution_periodic", "slide_periodic", "traverse_periodic"}),
+               quarter_faces(hidden, 1, kSharp, seed));
+    SCOPED_TRACE(story(result));
+    ASSERT_FALSE(named(result).empty());
+    std::vector<std::string> set = result.rounds[0].ambiguous_with;
+    set.push_back(result.rounds[0].accepted);
+    EXPECT_THAT(set, ::testing::IsSupersetOf({"revolution_periodic", "slide_periodic"}));
+  }
+}
+
 }  // namespace
 }  // namespace slideway

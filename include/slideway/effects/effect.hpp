@@ -94,6 +94,7 @@ struct Shape {
 struct ParameterValues {
   Eigen::VectorXd values;    // #parameters, in the units of parameters()
   Eigen::MatrixXd jacobian;  // #parameters by (#amplitudes + #shapes)
+  Eigen::VectorXd by_slope;  // change with z'_rms of the face, a rad; empty: none
 };
 
 /// z'(r) of a face that crosses the spindle axis, as the errors of the carriages make it.

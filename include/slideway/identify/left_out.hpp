@@ -11,12 +11,10 @@ namespace slideway {
 using ValueIndices = std::vector<Eigen::Index>;
 
 /// Values of a face that no column describes, whatever the model: within a groove or a low-band
-/// value of the spindle axis, where the tool leaves the face.
-ValueIndices values_at_axis(const Observation& observation, const Machine& machine);
-
-/// The same where the trace passes the spindle axis at X = `axis_mm` and not at X = 0: of all
-/// values between the two it is not known on which side of the axis they lie.
-ValueIndices values_at_axis(const Observation& observation, const Machine& machine, double axis_mm);
+/// value of the spindle axis, where the tool leaves the face. Where the trace passes the axis at
+/// X = `axis_mm` and not at X = 0, it is not known on which side of it the values between lie.
+ValueIndices values_at_axis(const Observation& observation, const Machine& machine,
+                            double axis_mm = 0.0);
 
 /// These, and those further out where effects that are steep at the centre are steeper than the
 /// tool's nose follows: a nose of radius ρ cuts a slope z' lower by ρ z'²/2 (first order), and that

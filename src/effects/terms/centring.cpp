@@ -60,6 +60,7 @@ class Centring final : public SingleAmplitude {
     if (!slope_) return out;
     out.values[1] = -amplitudes[0] / slope_->rms();
     out.jacobian.row(1) << -1.0 / slope_->rms(), 0.0;
+    out.by_slope = Eigen::Vector2d(0.0, -out.values[1] / slope_->rms());
     return out;
   }
 
