@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
@@ -213,9 +216,11 @@ std::vector<std::string> objections(const Result& result) {
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::inconsistent)
     out.emplace_back("the run-out contradicts the squareness");
+  std::map<std::string, std::vector<std::string>> disagreeing;  // in what, by profiles
   for (const ProfileCheck& check : result.crosscheck.profiles)
-    if (contradicts(check))
-      out.push_back(joined(check.profiles, " and ") + " disagree in " + check.what);
+    if (contradicts(check)) disagreeing[joined(check.profiles, " and ")].push_back(check.what);
+  for (const auto& [profiles, what] : disagreeing)
+    out.push_back(profiles + " disagree in " + joined(what, " and "));
   for (const HeldOutCheck& check : result.crosscheck.held_out)
     if (contradicts(check)) out.push_back(check.profile + ", held out, does not fit");
   return out;
@@ -280,6 +285,7 @@ void say_crosscheck(const Result& result, Summary& out) {
         .push_back(check.profile + ", held out, " +
                    (fits ? "fits" : "DOES NOT FIT at " + number(check.at_mm, 4) + " mm"));
   }
+  const std::size_t contradictions = parts.size();
   std::ranges::move(consistent, std::back_inserter(parts));
   out.has_crosscheck = !parts.empty();
   const std::string none = angle && !angle->reason.empty() ? ": " + angle->reason : "";
@@ -287,6 +293,10 @@ void say_crosscheck(const Result& result, Summary& out) {
   out.checks = out.conformity.empty() ? out.crosscheck
                : parts.empty()        ? out.conformity + "; no cross-check" + none
                                       : out.conformity + "; " + out.crosscheck;
+  out.checks_in_brief = out.checks;
+  if (contradictions > 1 && code_points(out.checks) > kBoxText)
+    out.checks_in_brief = (out.conformity.empty() ? "" : out.conformity + "; ") + parts.front() +
+                          "; " + std::to_string(contradictions - 1) + " more";
 }
 
 void say_missing(const Analysis& analysis, Summary& out) {

@@ -26,7 +26,8 @@ struct Summary {
   std::string checks;   // both
   std::string missing;  // what was missing and what that had done
   std::string next;
-  std::string missing_in_brief, next_in_brief;  // in a line of the box, if it can be
+  // In a line of the box, if it can be.
+  std::string checks_in_brief, missing_in_brief, next_in_brief;
   bool has_crosscheck = false, has_missing = false, has_next = false;
   bool verdict_names_missing = false;  // what was missing, and what that had done
 };

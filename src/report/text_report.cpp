@@ -107,7 +107,7 @@ std::string box(const Summary& summary, const TextOptions& options) {
   };
   add("Verdict", summary.badge + ": " + summary.verdict + ".");
   add("Result", summary.result);
-  add("Check", summary.checks);
+  add("Check", options.full ? summary.checks : summary.checks_in_brief);
   add("Missing", options.full ? summary.missing : summary.missing_in_brief);
   add("Next", options.full ? summary.next : summary.next_in_brief);
   add("Page", options.page.empty() ? "none was written; --html FILE writes it" : options.page);

@@ -1,6 +1,8 @@
 #include "extended_model.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string>
 
 #include "kept.hpp"
 
@@ -31,6 +33,12 @@ Model with(Model model, const std::vector<AcceptedEffect>& effects) {
 }
 
 }  // namespace
+
+int distinct_effects(const std::vector<AcceptedEffect>& effects) {
+  std::set<std::string> names;
+  for (const AcceptedEffect& effect : effects) names.insert(effect.round.accepted);
+  return static_cast<int>(names.size());
+}
 
 std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::size_t i) {
   effects.erase(std::next(effects.begin(), static_cast<std::ptrdiff_t>(i)));

@@ -15,9 +15,13 @@ struct AcceptedEffect {
   const Candidate* candidate = nullptr;
   std::vector<double> shape;
   TraceRound round;
+  bool is_expected = false;  // its BIC alone counts: place_of_another()
 
   [[nodiscard]] const std::string& name() const { return candidate->name(); }
 };
+
+/// How many effects a set has, of one with a size per cut one.
+int distinct_effects(const std::vector<AcceptedEffect>& effects);
 
 std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::size_t i);
 /// @param which  rising

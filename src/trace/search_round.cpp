@@ -182,7 +182,7 @@ bool TestedCandidate::is_possible() const {
 
 double SearchRound::least_of_effect(const TestedCandidate& part) const {
   double least = part.refined.delta_bic;
-  if (!part.refined.candidate->term.effect->description().of_face) return least;
+  if (!is_of_place(*part.refined.candidate)) return least;
   for (const TestedCandidate& each : tested)
     if (each.refined.candidate->effect_name() == part.refined.candidate->effect_name() &&
         each.refined.candidate->term.profiles.empty())
@@ -229,11 +229,15 @@ std::vector<const TestedCandidate*> SearchRound::as_good_as(const TestedCandidat
   const auto unknowns = [](const TestedCandidate& each) {
     return each.refined.candidate->unknowns(each.refined.projection.rank);
   };
+  // What is of a trace's place is one form where the values do not show how far it is off.
+  const auto are_of_place = [&](const TestedCandidate& each) {
+    return is_of_place(*each.refined.candidate) && is_of_place(*chosen.refined.candidate);
+  };
   const double tie = std::max(gates.tie_bic, -gates.tie_share * chosen.refined.delta_bic);
   for (const TestedCandidate& each : tested) {
     const bool counts =
         each.refused(gates).empty() ||
-        (each.is_possible() && (unknowns(each) <= unknowns(chosen) ||
+        (each.is_possible() && (unknowns(each) <= unknowns(chosen) || are_of_place(each) ||
                                 chosen.refined.candidate->term.effect->is_carriage()));
     const bool known =
         std::ranges::any_of(out, [&](const auto* other) { return is_same_effect(*other, each); });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "additions.hpp"
 #include "outcome.hpp"
 #include "slideway/base/text.hpp"
 #include "stability.hpp"
@@ -45,6 +46,7 @@ class Selector {
       exchange();
     } while (narrowed_ && seen.insert(names()).second);
     take_back();
+    add_places();
   }
 
   /// Of the effects of the set, in alphabetical order.
@@ -210,7 +212,8 @@ class Selector {
   }
 
   std::string reason_to_leave(std::size_t i) {
-    const AcceptedEffect& effect = out_.effects[i];
+    AcceptedEffect& effect = out_.effects[i];
+    effect.is_expected &= count_of_places(out_.effects) > 2;
     const SearchRound& round = extender_.search(all_but(out_.effects, i));
     if (!find_tested(round, effect, gates_)) {
       for (const TestedCandidate& each : round.tested)
@@ -284,7 +287,9 @@ class Selector {
     if (without.excluded_.empty()) return;
     without.select();
     if (without.out_.effects.empty() || leaves_to(without, -gates_.exchange_bic)) return;
-    without.add_best_that_is_possible();
+    if (const TestedCandidate* more = best_that_is_possible(extender_.search(without.out_.effects),
+                                                            gates_, without.excluded_))
+      without.out_.effects.push_back({more->refined.candidate, more->refined.shape, {}});
     if (statistics_.lead(out_.effects, without.out_.effects) > gates_.tie_bic) return;
     std::vector<std::string> causes = without.names();
     std::erase_if(causes, [own = names()](const std::string& each) {
@@ -314,15 +319,16 @@ class Selector {
     return true;
   }
 
-  /// One effect more, even if noise gives as much: beside a rival the others need not explain all.
-  void add_best_that_is_possible() {
-    for (const TestedCandidate& each : extender_.search(out_.effects).tested) {
-      if (!each.is_possible() || each.refined.delta_bic > -gates_.delta_bic ||
-          std::ranges::count(excluded_, each.name()) > 0)
-        continue;
-      out_.effects.push_back({each.refined.candidate, each.refined.shape, {}});
-      return;
+  /// The places of the other traces, where several have one of their own.
+  void add_places() {
+    const std::size_t before = out_.effects.size();
+    while (const TestedCandidate* next =
+               place_of_another(extender_.search(out_.effects), out_.effects)) {
+      AcceptedEffect place = accepted(extender_.search(out_.effects), *next);
+      place.is_expected = true;
+      out_.effects.push_back(std::move(place));
     }
+    if (out_.effects.size() > before) take_back();
   }
 
   /// Never to be chosen.
@@ -378,12 +384,6 @@ class Selector {
 };
 
 }  // namespace
-
-int distinct_effects(const std::vector<AcceptedEffect>& effects) {
-  std::set<std::string> names;
-  for (const AcceptedEffect& effect : effects) names.insert(effect.round.accepted);
-  return static_cast<int>(names.size());
-}
 
 Selection nothing_selected(ModelExtender& extender, const Gates& gates) {
   Selection out;

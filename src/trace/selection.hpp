@@ -30,7 +30,4 @@ Selection select_effects(const Problem& problem, SetStatistics& statistics, cons
 /// The declared model as it is: what is left of it, and no effect.
 Selection nothing_selected(ModelExtender& extender, const Gates& gates);
 
-/// How many effects a set has, of one with a size per cut one.
-int distinct_effects(const std::vector<AcceptedEffect>& effects);
-
 }  // namespace slideway

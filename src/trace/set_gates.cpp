@@ -40,7 +40,9 @@ std::string too_small(ModelExtender& extender, const Gates& gates,
                       const Widening* unnamed) {
   const FittedModel& fitted = extender.extended(effects);
   const auto term = std::ranges::find(fitted.model.terms, effects[which].name(), &ModelTerm::name);
-  if (!term->effect->has_one_size() || effects[which].candidate->raises_degree) return "";
+  if (!term->effect->has_one_size() || effects[which].candidate->raises_degree ||
+      effects[which].is_expected)
+    return "";
   const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term->first_parameter);
   const double more = unnamed ? unnamed->variance(row) : 0.0;
   const double size =
@@ -54,7 +56,7 @@ std::string too_small(ModelExtender& extender, const Gates& gates,
 const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,
                                    const Gates& gates) {
   const auto is_it = [&](const TestedCandidate& each) {
-    return each.name() == effect.name() && each.refused(gates).empty();
+    return each.name() == effect.name() && (effect.is_expected || each.refused(gates).empty());
   };
   const auto found = std::ranges::find_if(round.tested, is_it);
   return found == round.tested.end() ? nullptr : &*found;

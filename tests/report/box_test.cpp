@@ -73,5 +73,26 @@ TEST(Box, HasANextStepWhereverTheNumbersAreInDoubt) {
   EXPECT_THAT(next(sound), HasSubstr("slideway plan"));
 }
 
+TEST(Box, CountsTheContradictionsThatItHasNoRoomFor) {
+  TraceResult trace;
+  trace.verdict = TraceVerdict::unnamed;
+  Result result = sample_result();
+  const auto odd = [](const char* with, const char* what) {
+    return ProfileCheck{.profiles = {"inward", with},
+                        .what = what,
+                        .En = 1.5,
+                        .verdict = Consistency::inconsistent};
+  };
+  result.crosscheck.profiles = {odd("coarse", "squareness"), odd("coarse", "straightness"),
+                                odd("outward", "straightness")};
+  EXPECT_THAT(
+      short_text(result, trace),
+      HasSubstr("│ Check    INCONSISTENT: squareness of inward and coarse, E_n = 1.5; 2 more\n"));
+  EXPECT_THAT(short_text(result, trace),
+              HasSubstr("inward and coarse disagree in squareness and straightness;"));
+  const std::string all = text_report({result, trace}, {.full = true, .page = ""});
+  EXPECT_THAT(all.substr(0, all.find("\n\n")), HasSubstr("of inward and outward, E_n = 1.5"));
+}
+
 }  // namespace
 }  // namespace slideway::box_test

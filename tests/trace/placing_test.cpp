@@ -149,6 +149,31 @@ TEST(Placing, EachCutMayBeOffItsCentreByAnother) {
   EXPECT_EQ(names.size(), 3U);
 }
 
+// 0.05 mm is little beside the others, and whether it is a step or off its centre does not show. It
+// is there all the same, and the others are not said to be off by it.
+TEST(Placing, ATraceLittleOffBesideTwoThatAreFarOffIsSeen) {
+  std::vector<Profile> profiles =
+      at_azimuths([](double x, double /*azimuth*/) { return 4e-4 * std::abs(x); }, 6);
+  const std::vector<double> off{0.5, 0.55, 0.05};
+  for (std::size_t i = 0; i < off.size(); ++i) profiles[i].setup.center_mm -= off[i];
+  const Closed result =
+      closed(problem_of({"centre_step", "centring", "traverse_periodic"}), profiles);
+  SCOPED_TRACE(story(result));
+  ASSERT_EQ(result.rounds.size(), 3U);
+  for (const TraceRound& round : result.rounds) {
+    ASSERT_EQ(round.profiles.size(), 1U);
+    const std::string& profile = round.profiles[0];
+    if (profile == "cut3") {
+      std::vector<std::string> set = round.ambiguous_with;
+      set.push_back(term_name(round.accepted, round.profiles));
+      EXPECT_THAT(set, ::testing::IsSupersetOf({"centring[cut3]", "centre_step[cut3]"}));
+    } else {
+      expect_within_4u(round.parameters, "centring[" + profile + "].offset_mm",
+                       profile == "cut1" ? 0.5 : 0.55);
+    }
+  }
+}
+
 // The last groove leaves a nub of 3 µm where the trace passes the axis, not where center_mm says.
 TEST(Placing, TheNubOfAFaceOffTheCentreIsLeftOut) {
   std::vector<Profile> profiles = at_azimuths(
