@@ -39,10 +39,6 @@ double tool_radius_of(const Stations& stations, Eigen::Index i) {
   return setup.cut_direction == CutDirection::inward ? *setup.cut_radius_mm - path : path;
 }
 
-double tool_slide_of(const Stations& stations, Eigen::Index i) {
-  return stations.slide(i) + tool_radius_of(stations, i) - stations.radius(i);
-}
-
 double cutting_revolution_of(const Stations& stations, Eigen::Index i) {
   const Setup& setup = stations.setup();
   if (!has_grooves(setup)) return stations.revolution(i);

@@ -23,9 +23,6 @@ Groove groove_at(const Stations& stations, Eigen::Index i);
 // profile does not tell.
 double tool_radius_of(const Stations& stations, Eigen::Index i);
 
-// Slide coordinate x the tool stood at, mm, when it cut what lies under a sample.
-double tool_slide_of(const Stations& stations, Eigen::Index i);
-
 // Time, s, and revolution when it was cut; continuous where there are no grooves.
 double cutting_time_of(const Stations& stations, Eigen::Index i);
 double cutting_revolution_of(const Stations& stations, Eigen::Index i);

@@ -22,8 +22,11 @@ std::span<const Gate> gate_table() {
       Gate{"tie_share", &Gates::tie_share, "of the gain", 0.0, 0.1,
            "Two effects are rivals, too, within this share of what the better one lowers the BIC "
            "by.",
-           "5e-3: no law of the catalogue is known better than to 7 % of its size; a wave of one "
-           "cut was found up to 4e-3 better explained by another law than by its own"},
+           "a thousandth: no law of the catalogue is known better than to 3 % of its size"},
+      Gate{"wave_share", &Gates::wave_share, "of the gain", 0.0, 0.1,
+           "Two waves are rivals, too, within this share of what the better one lowers the BIC by.",
+           "5e-3: a wave stands in grooves that the next ones cut into, which no law describes; of "
+           "strong ones in one cut another law explained up to 4e-3 more than their own"},
       Gate{"exchange_bic", &Gates::exchange_bic, "", 0.0, 10.0,
            "A better effect takes the place of an accepted one from this difference of BIC on.",
            "Kass and Raftery (1995): below 2 the evidence is not worth a mention"},

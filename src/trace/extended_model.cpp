@@ -85,9 +85,10 @@ const FittedModel& ModelExtender::extended(const std::vector<AcceptedEffect>& ef
 const ModelResult& ModelExtender::summary(const std::vector<AcceptedEffect>& effects) {
   if (!coarser_) return summary_of_search(effects);
   return kept_or_made(summaries_, key_of(effects), [&] {
+    if (effects.empty()) return summarise(declared_.model, declared_.fit);
     limit_.check();
-    const FittedModel fine = in_declared_band(effects);
-    return summarise(fine.model, fine.fit);
+    last_fine_.emplace(key_of(effects), in_declared_band(effects));
+    return summarise(last_fine_->second.model, last_fine_->second.fit);
   });
 }
 
@@ -118,6 +119,7 @@ const SearchRound* ModelExtender::searched(const std::vector<AcceptedEffect>& ef
 }
 
 FittedModel ModelExtender::take_in_declared_band(const std::vector<AcceptedEffect>& effects) {
+  if (last_fine_ && last_fine_->first == key_of(effects)) return std::move(last_fine_->second);
   if (coarser_ || effects.empty()) return in_declared_band(effects);
   extended(effects);
   return std::move(models_.extract(key_of(effects)).mapped());

@@ -92,6 +92,7 @@ class ModelExtender {
   Dictionary dictionary_;
   std::optional<Calibration> calibration_;
   std::map<Key, FittedModel> models_;
+  std::optional<std::pair<Key, FittedModel>> last_fine_;  // of summary()
   std::map<Key, ModelResult> summaries_, search_summaries_;
   std::map<Key, SearchRound> rounds_;
 };

@@ -96,6 +96,15 @@ bool is_one_wave(const std::vector<const Observation*>& observations, const Whit
 
 }  // namespace
 
+bool is_wave(const Model& model, const Refined& refined) {
+  const ModelTerm& own = refined.candidate->term;
+  return std::ranges::any_of(fitted_observations(model), [&](const Observation* observation) {
+    const Profile& profile = *observation->profile;
+    return own.acts_on(profile) && own.effect->applies_to(profile.setup) &&
+           !own.effect->lines(profile.stations(model.machine), refined.shape).empty();
+  });
+}
+
 std::string part_of_a_line(const Model& model, const Eigen::VectorXd& shapes,
                            const Refined& refined) {
   const ModelTerm& own = refined.candidate->term;

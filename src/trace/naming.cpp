@@ -60,6 +60,8 @@ std::vector<UnnamedRival> unnamed_rivals(ModelExtender& extender, const Effects&
   const Whitened& named = extender.search(effects).data;
   const FittedModel& with = extender.extended(effects);
   const std::vector<ProcessVariable> variables = process_variables(with.model, with.fit.linear);
+  std::vector<ProcessVariable> but_slide = variables;
+  std::erase_if(but_slide, [](const auto& each) { return each.symbol == kSlideSymbol; });
   std::vector<UnnamedRival> out;
   const std::vector<std::size_t> members = questionable(effects);
   for (const std::vector<std::size_t>& absent : absences(members)) {
@@ -72,12 +74,11 @@ std::vector<UnnamedRival> unnamed_rivals(ModelExtender& extender, const Effects&
       gain -= penalty(named, candidate, candidate.amplitudes());
     }
     const bool is_way = only_carriage(effects, absent);
-    const std::vector<Process> processes = best_processes(data, variables);
-    for (std::size_t v = 0; v < variables.size(); ++v) {
-      if (is_way && variables[v].symbol == kSlideSymbol) continue;
-      out.push_back({"a process in " + variables[v].symbol, absent, true,
+    const std::vector<ProcessVariable>& rivals = is_way ? but_slide : variables;
+    const std::vector<Process> processes = best_processes(data, rivals);
+    for (std::size_t v = 0; v < rivals.size(); ++v)
+      out.push_back({"a process in " + rivals[v].symbol, absent, true,
                      0.5 * gain - processes[v].log_evidence});
-    }
     out.push_back({"heat that lifts and tilts the slide", absent, false,
                    0.5 * gain - heat_lifts_and_tilts(fitted.model, data, linear)});
     if (is_way && shows_slide_only(linear)) continue;

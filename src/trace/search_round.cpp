@@ -104,6 +104,7 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     if (tested.refined.candidate->term.profiles.empty())  // else the others lack their own share
       tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
     tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
+    tested.is_wave = is_wave(model, tested.refined);
     tested.part_of = part_of_a_line(model, fit.estimate.shapes, tested.refined);
     if (is_of_feed_marks(model, data, tested.refined, tested.fitted))
       tested.folded = "its line is that of the feed marks, folded by sampling";
@@ -233,7 +234,10 @@ std::vector<const TestedCandidate*> SearchRound::as_good_as(const TestedCandidat
   const auto are_of_place = [&](const TestedCandidate& each) {
     return is_of_place(*each.refined.candidate) && is_of_place(*chosen.refined.candidate);
   };
-  const double tie = std::max(gates.tie_bic, -gates.tie_share * chosen.refined.delta_bic);
+  const auto tie = [&](const TestedCandidate& each) {
+    const double share = each.is_wave && chosen.is_wave ? gates.wave_share : gates.tie_share;
+    return std::max(gates.tie_bic, -share * chosen.refined.delta_bic);
+  };
   for (const TestedCandidate& each : tested) {
     const bool counts =
         each.refused(gates).empty() ||
@@ -242,7 +246,8 @@ std::vector<const TestedCandidate*> SearchRound::as_good_as(const TestedCandidat
     const bool known =
         std::ranges::any_of(out, [&](const auto* other) { return is_same_effect(*other, each); });
     if (counts && !known && !is_same_effect(each, chosen) &&
-        each.refined.delta_bic <= chosen.refined.delta_bic + tie && alike(each, chosen, gates))
+        each.refined.delta_bic <= chosen.refined.delta_bic + tie(each) &&
+        alike(each, chosen, gates))
       out.push_back(&each);
   }
   return out;

@@ -17,6 +17,7 @@ struct TestedCandidate {
   /// What has folded another line to where its own is: feed_marks_at(), SampleResiduals::have();
   /// empty: nothing.
   std::string folded;
+  bool is_wave = false;  // is_wave()
 
   [[nodiscard]] const std::string& name() const { return refined.candidate->name(); }
   /// Why it is not accepted; empty: it passes.

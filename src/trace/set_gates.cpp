@@ -45,10 +45,9 @@ std::string too_small(ModelExtender& extender, const Gates& gates,
     return "";
   const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term->first_parameter);
   const double more = unnamed ? unnamed->variance(row) : 0.0;
-  const double size =
-      std::min(std::abs(fitted.fit.parameters.values[term->first_parameter]) /
-                   std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more)),
-               size_in_uncertainties(extender.summary(effects), *term));
+  double size = std::abs(fitted.fit.parameters.values[term->first_parameter]) /
+                std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more));
+  if (!(size < gates.size)) size = size_in_uncertainties(extender.summary(effects), *term);
   if (!(size < gates.size)) return "";
   return "its size is only " + significant(size, 2) + " of its standard uncertainties";
 }

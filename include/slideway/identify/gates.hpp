@@ -14,7 +14,8 @@ struct Gates {
   double delta_bic = 10.0;
   double size = 5.0;
   double tie_bic = 10.0;
-  double tie_share = 5e-3;
+  double tie_share = 1e-3;
+  double wave_share = 5e-3;
   double exchange_bic = 2.0;
   double left_over_bic = 30.0;
   double alike = 0.3;

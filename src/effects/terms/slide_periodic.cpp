@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../groove.hpp"
 #include "../locus.hpp"
 #include "../periodic_effect.hpp"
 #include "../request.hpp"
@@ -81,7 +80,7 @@ std::unique_ptr<Effect> make_slide_periodic(const Request& request) {
                                       "data-sheet pitch"},
       .rate = {"period_mm", "λ", "mm", 1.0, 1e-3, 1e5},
       .rate_is_period = true,
-      .reading = tool_slide_of,
+      .reading = slide_of,
       .range = slide_periodic_search,
       .applies_to = sees_carriage});
 }
