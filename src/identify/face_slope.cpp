@@ -1,7 +1,6 @@
 #include "face_slope.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "slideway/effects/catalogue.hpp"
@@ -51,21 +50,24 @@ std::optional<LinearSlope> linear_slope(const Model& model, const Estimate& esti
   return out;
 }
 
+FaceSlope slope_of(const LinearSlope& linear, const Estimate& estimate) {
+  const Eigen::VectorXd values = linear.by_amplitude * estimate.amplitudes;
+  return {linear.spacing_mm, {values.begin(), values.end()}};
+}
+
 }  // namespace
 
 std::shared_ptr<const FaceSlope> face_slope(const Model& model, const Estimate& estimate) {
   const std::optional<LinearSlope> linear = linear_slope(model, estimate);
-  if (!linear) return nullptr;
-  const Eigen::VectorXd values = linear->by_amplitude * estimate.amplitudes;
-  return std::make_shared<FaceSlope>(FaceSlope{linear->spacing_mm, {values.begin(), values.end()}});
+  return linear ? std::make_shared<FaceSlope>(slope_of(*linear, estimate)) : nullptr;
 }
 
 Eigen::RowVectorXd rms_slope_by_amplitude(const Model& model, const Estimate& estimate) {
   const std::optional<LinearSlope> linear = linear_slope(model, estimate);
   if (!linear) return Eigen::RowVectorXd::Zero(model.amplitudes());
-  const Eigen::VectorXd values = linear->by_amplitude * estimate.amplitudes;
-  const double rms = values.norm() / std::sqrt(static_cast<double>(values.size()));
-  return values.transpose() * linear->by_amplitude / (rms * static_cast<double>(values.size()));
+  const FaceSlope slope = slope_of(*linear, estimate);
+  const Eigen::Map<const Eigen::RowVectorXd> values(slope.values.data(), std::ssize(slope.values));
+  return values * linear->by_amplitude / (slope.rms() * static_cast<double>(values.size()));
 }
 
 bool follow_face(Model& model) {

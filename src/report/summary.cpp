@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -216,11 +215,16 @@ std::vector<std::string> objections(const Result& result) {
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::inconsistent)
     out.emplace_back("the run-out contradicts the squareness");
-  std::map<std::string, std::vector<std::string>> disagreeing;  // in what, by profiles
-  for (const ProfileCheck& check : result.crosscheck.profiles)
-    if (contradicts(check)) disagreeing[joined(check.profiles, " and ")].push_back(check.what);
-  for (const auto& [profiles, what] : disagreeing)
-    out.push_back(profiles + " disagree in " + joined(what, " and "));
+  for (const ProfileCheck& check : result.crosscheck.profiles) {
+    if (!contradicts(check)) continue;
+    const std::string who = joined(check.profiles, " and ") + " disagree in ";
+    const auto known =
+        std::ranges::find_if(out, [&](const std::string& each) { return each.starts_with(who); });
+    if (known == out.end())
+      out.push_back(who + check.what);
+    else
+      *known += " and " + check.what;
+  }
   for (const HeldOutCheck& check : result.crosscheck.held_out)
     if (contradicts(check)) out.push_back(check.profile + ", held out, does not fit");
   return out;

@@ -150,6 +150,7 @@ class Selector {
     out_.left.emplace_back(out_.effects[which].name(), why);
     if (out_.effects[which].candidate->raises_degree) out_.instead.clear();
     out_.effects = all_but(std::move(out_.effects), which);
+    for (AcceptedEffect& each : out_.effects) each.is_expected &= count_of_places(out_.effects) > 2;
   }
 
   /// Each effect once more against all candidates, the others as they are: a better one takes its
@@ -212,8 +213,7 @@ class Selector {
   }
 
   std::string reason_to_leave(std::size_t i) {
-    AcceptedEffect& effect = out_.effects[i];
-    effect.is_expected &= count_of_places(out_.effects) > 2;
+    const AcceptedEffect& effect = out_.effects[i];
     const SearchRound& round = extender_.search(all_but(out_.effects, i));
     if (!find_tested(round, effect, gates_)) {
       for (const TestedCandidate& each : round.tested)

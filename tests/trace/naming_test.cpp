@@ -146,8 +146,8 @@ TEST(Named, TimeAndRevolutionsAreOneClockAtOneSpeed) {
   EXPECT_THAT(result.advice, ::testing::Contains(HasSubstr("rev/min")));
 }
 
-// 0.4 µm, 40 times the noise, which no law describes to its last hundredth in a groove that the
-// next ones cut into: of strong waves, too, one cut does not tell whether they are of the slide.
+// 0.4 µm, 40 times the noise: its grooves overlap, and no law describes it to its last hundredth.
+// One cut does not tell of a strong wave, either, whether it is of the slide or of the spindle.
 TEST(Named, AStrongWaveOfOneCutIsOfTheSlideOrOfTheSpindle) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     RandomStream random(seed, "revolution_periodic");
