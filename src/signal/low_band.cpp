@@ -83,16 +83,6 @@ Eigen::Index grid_size(std::span<const double> positions) {
   return static_cast<Eigen::Index>(cells) + 1;
 }
 
-// REQUIRES signal.size() >= 2
-void interpolate(std::span<const Eigen::Index> cell, std::span<const double> weight,
-                 std::span<const double> signal, std::vector<double>& grid) {
-  grid.resize(cell.size());
-  for (std::size_t i = 0; i < cell.size(); ++i) {
-    const double* left = signal.data() + cell[i];
-    grid[i] = (1.0 - weight[i]) * left[0] + weight[i] * left[1];
-  }
-}
-
 }  // namespace
 
 // Room for the grid and each level, so that a matrix of columns allocates once.
@@ -175,10 +165,27 @@ void LowBand::find_beyond_ends(std::vector<char>& is_unmeasured) const {
       is_unmeasured[j < ends ? j : is_unmeasured.size() - share.size() + j] = 1;
 }
 
+LowBand::Samples LowBand::samples_of(Eigen::Index first_point, Eigen::Index points) const {
+  if (!resampled()) return {first_point, points};
+  const Eigen::Index* const cell = cell_.data() + first_point;
+  return {cell[0], cell[points - 1] + 2 - cell[0]};
+}
+
+void LowBand::bring_to_grid(std::span<const double> samples, Eigen::Index first_point,
+                            std::span<double> grid) const {
+  const Eigen::Index* const cell = cell_.data() + first_point;
+  const double* const weight = weight_.data() + first_point;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    const double* const left = samples.data() + (cell[i] - cell[0]);
+    grid[i] = (1.0 - weight[i]) * left[0] + weight[i] * left[1];
+  }
+}
+
 void LowBand::apply(std::span<const double> signal, std::span<double> coefficients,
                     Workspace& workspace) const {
   if (resampled()) {
-    interpolate(cell_, weight_, signal, workspace.grid);
+    workspace.grid.resize(cell_.size());
+    bring_to_grid(signal, 0, workspace.grid);
     signal = workspace.grid;
   }
   std::ranges::copy(transform(signal, options_.boundary, workspace), coefficients.begin());

@@ -21,10 +21,9 @@ bool is_local(Boundary boundary) {
 // dropped.
 class Part {
  public:
-  Part(const LowBand& low_band, Eigen::Index samples, const FillColumns& fill)
+  Part(const LowBand& low_band, const FillColumns& fill)
       : low_band_(low_band),
         wavelet_(daubechies(low_band.options().wavelet)),
-        samples_(samples),
         fill_(fill),
         block_(Eigen::Index{1} << low_band.options().level),
         early_(((wavelet_.taps() - 2) * (block_ - 1) + block_ - 1) / block_) {}
@@ -33,11 +32,18 @@ class Part {
   void transform(Eigen::Index from, Eigen::Index to, Eigen::MatrixXd& out) {
     const Eigen::Index skip = std::min(from, early_), first = (from - skip) * block_;
     const bool is_last = to == low_band_.values();
-    columns_.resize((is_last ? samples_ : to * block_) - first, out.cols());
-    fill_(first, columns_);
+    const Eigen::Index points = (is_last ? low_band_.samples() : to * block_) - first;
+    const LowBand::Samples samples = low_band_.samples_of(first, points);
+    columns_.resize(samples.count, out.cols());
+    fill_(samples.first, columns_);
+    if (low_band_.resampled()) grid_.resize(static_cast<std::size_t>(points));
     for (Eigen::Index j = 0; j < out.cols(); ++j) {
       std::span<const double> band(columns_.col(j).data(),
                                    static_cast<std::size_t>(columns_.rows()));
+      if (low_band_.resampled()) {
+        low_band_.bring_to_grid(band, first, grid_);
+        band = grid_;
+      }
       levels_.resize(static_cast<std::size_t>(low_band_.options().level));
       for (Band& low : levels_) {
         dwt(wavelet_, low_band_.options().boundary, band, low, nullptr);
@@ -52,10 +58,10 @@ class Part {
  private:
   const LowBand& low_band_;
   Wavelet wavelet_;
-  Eigen::Index samples_;
   const FillColumns& fill_;
   Eigen::Index block_, early_;
   Eigen::MatrixXd columns_;
+  std::vector<double> grid_;
   std::vector<Band> levels_;
 };
 
@@ -68,8 +74,7 @@ Eigen::MatrixXd apply_in_parts(const LowBand& low_band, Eigen::Index samples, Ei
   const LowBandOptions& options = low_band.options();
   const Eigen::Index values = low_band.values();
   const Eigen::Index size = std::max(kSamples >> options.level, kLeast);  // coefficients of a part
-  const Eigen::Index parts =
-      samples > kWhole && is_local(options.boundary) && !low_band.resampled() ? values / size : 0;
+  const Eigen::Index parts = samples > kWhole && is_local(options.boundary) ? values / size : 0;
   if (parts < 2) {
     Eigen::MatrixXd columns(samples, count);
     fill(0, columns);
@@ -77,7 +82,7 @@ Eigen::MatrixXd apply_in_parts(const LowBand& low_band, Eigen::Index samples, Ei
   }
   Eigen::MatrixXd out(values, count);
   const auto transform = [&](std::size_t /*task*/, std::size_t first, std::size_t last) {
-    Part part(low_band, samples, fill);
+    Part part(low_band, fill);
     for (auto i = static_cast<Eigen::Index>(first); i < static_cast<Eigen::Index>(last); ++i)
       part.transform(i * size, i + 1 == parts ? values : (i + 1) * size, out);
   };

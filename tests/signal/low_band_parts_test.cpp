@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -38,17 +39,40 @@ TEST(ApplyInParts, IsTheTransformOfTheWholeToTheLastBit) {
       }
 }
 
-TEST(ApplyInParts, TakesNoLevelManyLevelsAndAGrid) {
+TEST(ApplyInParts, TakesNoLevelAndManyLevels) {
   const Eigen::Index n = 80'000;
-  std::vector<double> positions = uniform(n);
+  const std::vector<double> positions = uniform(n);
   Eigen::MatrixXd whole(n, 1);
   fill(0, whole);
   for (const int level : {0, 1, 10})
     EXPECT_EQ(apply_in_parts(LowBand({"db4", level}, positions), n, 1, fill),
               LowBand({"db4", level}, positions).apply(whole));
-  for (double& position : positions) position += 0.3 * std::sin(position);
-  EXPECT_EQ(apply_in_parts(LowBand({"db4", 5}, positions), n, 1, fill),
-            LowBand({"db4", 5}, positions).apply(whole));
+}
+
+// Positions that are not uniform, with gaps longer than a part, rising and falling: the same to the
+// last bit, and never more samples at once than a part and its start are made of.
+TEST(ApplyInParts, BringsPositionsToAGridPartByPart) {
+  constexpr Eigen::Index kMostAtOnce = 8192;
+  std::vector<double> uneven = uniform(80'000), gaps = uniform(80'000);
+  for (double& position : uneven) position += 0.3 * std::sin(position);
+  for (std::size_t i = 30'000; i < gaps.size(); ++i) gaps[i] += i < 50'000 ? 240.0 : 240.09;
+  std::vector<double> falling = gaps;
+  for (double& position : falling) position = -position;
+  for (const std::vector<double>& positions : {uneven, gaps, falling}) {
+    const LowBand low_band({"db4", 5}, positions);
+    ASSERT_TRUE(low_band.resampled());
+    std::atomic<Eigen::Index> most = 0;
+    const auto watched = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
+      Eigen::Index before = most;
+      while (before < rows.rows() && !most.compare_exchange_weak(before, rows.rows())) continue;
+      fill(first, rows);
+    };
+    const auto n = std::ssize(positions);
+    Eigen::MatrixXd whole(n, 2);
+    fill(0, whole);
+    EXPECT_EQ(apply_in_parts(low_band, n, 2, watched), low_band.apply(whole));
+    EXPECT_LE(most, kMostAtOnce);
+  }
 }
 
 }  // namespace

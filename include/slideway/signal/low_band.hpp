@@ -45,6 +45,17 @@ class LowBand {
   /// from beyond the ends, rising.
   [[nodiscard]] const std::vector<Eigen::Index>& unmeasured() const { return unmeasured_; }
 
+  /// The samples that some points of the uniform grid are made of: the first one, and how many.
+  struct Samples {
+    Eigen::Index first = 0, count = 0;
+  };
+  [[nodiscard]] Samples samples_of(Eigen::Index first_point, Eigen::Index points) const;
+
+  /// Those points by linear interpolation, where positions are resampled().
+  /// @param samples  those of samples_of()
+  void bring_to_grid(std::span<const double> samples, Eigen::Index first_point,
+                     std::span<double> grid) const;
+
   /// Samples -> #values coefficients. Scaled as the orthonormal transform has it: white noise
   /// keeps its standard deviation, a constant c becomes c * sqrt(2)^level.
   void apply(std::span<const double> signal, std::span<double> coefficients) const;
