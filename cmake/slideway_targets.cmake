@@ -2,6 +2,10 @@
 add_library(slideway_options INTERFACE)
 target_compile_options(slideway_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
                        -Wno-sign-conversion -Wno-missing-field-initializers -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # GCC 12 takes "a" + text for what overflows
+  target_compile_options(slideway_options INTERFACE -Wno-array-bounds -Wno-restrict
+                         -Wno-stringop-overflow)
+endif()
 target_link_options(slideway_options INTERFACE -Wl,-z,relro,-z,now,-z,noexecstack)
 if(SLIDEWAY_SANITIZE)
   target_compile_options(slideway_options INTERFACE -fsanitize=${SLIDEWAY_SANITIZE}

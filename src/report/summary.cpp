@@ -178,23 +178,23 @@ std::string squareness_of(const Result& result) {
 std::string lead_of(const Result& result) {
   const FittedParameter* const angle = squareness_parameter(result);
   const bool has_angle = angle != nullptr && is_known(*angle);
-  const std::optional<double> form =
-      result.final->straightness ? result.final->straightness->end_point_um : std::nullopt;
+  const auto& way = result.final->straightness;
+  const bool has_form = way && way->end_point_um;
   const std::string straightness = straightness_of(result), squareness = squareness_of(result);
-  if (!angle && form)
+  if (!angle && has_form)
     return "the slide is straight to " + straightness.substr(std::string("E_ZX ").size());
   const Dominant& dominant = result.dominant;
   const auto& leader = dominant.by_fit ? dominant.by_fit : dominant.by_correlation;
   if (!dominant.doubt.empty() || !leader)
-    return has_angle && form ? "no error clearly dominates" : "";
+    return has_angle && has_form ? "no error clearly dominates" : "";
   const auto named = [](bool is_clear, const std::string& error) {
     return is_clear ? error + ", dominates" : "no error clearly dominates";
   };
   if (motion_error_of(*leader) == MotionError::squareness && has_angle)
     return named(std::abs(*angle->value) > *angle->expanded_uncertainty,
                  "squareness, " + squareness);
-  if (motion_error_of(*leader) == MotionError::straightness && form)
-    return named(*form > result.final->straightness->expanded_uncertainty_um.value_or(0.0),
+  if (motion_error_of(*leader) == MotionError::straightness && has_form)
+    return named(*way->end_point_um > way->expanded_uncertainty_um.value_or(0.0),
                  "straightness, " + straightness);
   return effect_title(*leader) + " dominates";
 }

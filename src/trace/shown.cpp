@@ -216,12 +216,12 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
   return out;
 }
 
-constexpr double kVisible = 0.25;  // of the noise of a value: several of them show together
+constexpr double kVisibleTogether = 0.25;  // of the noise of a value: several of them show together
 
 /// The values into which the low band carries what the first and the last turn leave within one
-/// feed of the rim and of the axis, by more than kVisible of the noise: as much as the marks, at
-/// the axis as much as one groove leaves a feed beside it, f²/(2 r_ε). A wavelet of many taps
-/// carries it further than one value. None where they are most of the profile.
+/// feed of the rim and of the axis, by more than kVisibleTogether of the noise: as much as the
+/// marks, at the axis as much as one groove leaves a feed beside it, f²/(2 r_ε). A wavelet of many
+/// taps carries it further than one value. None where they are most of the profile.
 ValueIndices ends_of(const Observation& observation, const ShownEffect& shown,
                      const Machine& machine, const Gates& gates, double noise) {
   const Setup& setup = observation.profile->setup;
@@ -237,7 +237,7 @@ ValueIndices ends_of(const Observation& observation, const ShownEffect& shown,
   const Eigen::VectorXd carried = observation.low_band.apply(ends);
   ValueIndices out;
   for (Eigen::Index i = 0; i < carried.size(); ++i)
-    if (std::abs(carried[i]) > kVisible * noise) out.push_back(i);
+    if (std::abs(carried[i]) > kVisibleTogether * noise) out.push_back(i);
   if (static_cast<double>(out.size()) >= gates.most_lost * static_cast<double>(carried.size()))
     out.clear();
   return out;

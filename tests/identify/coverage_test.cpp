@@ -148,7 +148,9 @@ TEST_P(Coverage, OfA95PercentIntervalIs95Percent) {
     RecordProperty(name, count);
     EXPECT_GE(count, kFewest) << name;
     // Under correlated noise more is no fault: its memory may be longer than one face shows.
-    if (GetParam().noise_correlation_mm == 0.0) EXPECT_LE(count, kMost) << name;
+    if (GetParam().noise_correlation_mm == 0.0) {
+      EXPECT_LE(count, kMost) << name;
+    }
   }
 }
 

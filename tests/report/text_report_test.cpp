@@ -249,7 +249,9 @@ TEST(TextReport, CutsNoNameOfAParameterOrAnEffect) {
   expect_fits(text);
   expect_fits(short_text(result, trace));
   for (const std::string& line : lines_of(text))  // only the name of a profile is cut
-    if (line.find("…") != std::string::npos) EXPECT_THAT(line, HasSubstr("the_"));
+    if (line.find("…") != std::string::npos) {
+      EXPECT_THAT(line, HasSubstr("the_"));
+    }
   EXPECT_THAT(text, HasSubstr("  straightness of the second carriage b_2"));
   EXPECT_THAT(text, HasSubstr("deflection of the boring bar under the cut"));
   EXPECT_THAT(text, HasSubstr("cycles_per_revolution = 0.00397"));

@@ -41,7 +41,9 @@ Closed of_two(const std::vector<Profile>& profiles) {
 /// No name but the instrument's stands alone.
 void expect_no_other_name_alone(const Closed& result) {
   for (const TraceRound& round : result.rounds)
-    if (round.accepted != kInstrument) EXPECT_THAT(round.ambiguous_with, Contains(kInstrument));
+    if (round.accepted != kInstrument) {
+      EXPECT_THAT(round.ambiguous_with, Contains(kInstrument));
+    }
 }
 
 /// Slopes of a polished surface, in rad: a random walk that is held back, 0.1 µrad; the instrument

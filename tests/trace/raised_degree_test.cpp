@@ -50,8 +50,9 @@ TEST(RaisedDegree, DoesNotStandAloneForTwoCauses) {
     problem.trace.candidates = effect_names();
     const Closed result = closed(problem, faces_of_two_causes(seed));
     SCOPED_TRACE(story(result));
-    if (round_of(result, "straightness") != nullptr)
+    if (round_of(result, "straightness") != nullptr) {
       EXPECT_NE(result.verdict, TraceVerdict::explained);
+    }
     const FittedParameter* squareness = find(result.final.parameters, "squareness.dbeta_xz");
     if (squareness != nullptr && squareness->standard_uncertainty &&
         std::abs(*squareness->value - kSquareness) > 2.0 * *squareness->standard_uncertainty)

@@ -71,8 +71,9 @@ TEST_P(Rounds, EndAndLeaveOnlyWhatPassesItsGates) {
     EXPECT_LE(round.delta_bic, -gates.delta_bic) << round.accepted;
     EXPECT_LE(round.p_value, gates.significance) << round.accepted;
   }
-  if (!trace.rounds.empty())
+  if (!trace.rounds.empty()) {
     EXPECT_LT(*analysis.result.final->rms_um, *analysis.result.declared->rms_um);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Noise, Rounds,

@@ -42,7 +42,7 @@ TEST_P(Ways, GetNoNameAloneAndASquarenessWithinItsUncertainty) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, Ways, ::testing::ValuesIn(kWays),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& way) { return way.param.name; });
 
 }  // namespace
 }  // namespace slideway

@@ -9,7 +9,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kFarthest = 0.1;  // of the radius of the cut
+constexpr double kFarthestFromAxis = 0.1;  // of the radius of the cut
 
 // (|x| - |x - off|)/off is sgn x outside a ramp between 0 and the offset.
 double centring_value(double x, double off) {
@@ -23,7 +23,7 @@ double centring_derivative(double x, double off) {
 }
 
 std::pair<double, double> centring_search(const Stations& stations) {
-  const double farthest = kFarthest * *stations.setup().cut_radius_mm;
+  const double farthest = kFarthestFromAxis * *stations.setup().cut_radius_mm;
   return {-farthest, farthest};
 }
 
