@@ -39,6 +39,11 @@ std::vector<std::string> Effect::lacking_together(
   return {};
 }
 
+std::vector<std::string> Effect::lacking_to_be_told(
+    const std::vector<const Setup*>& /*setups*/) const {
+  return {};
+}
+
 void Effect::columns_of_shapes(const Stations& stations,
                                std::span<const std::vector<double>> shapes,
                                Eigen::Ref<Eigen::MatrixXd> out) const {

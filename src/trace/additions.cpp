@@ -14,7 +14,8 @@ bool is_own_place(const Candidate& candidate) { return candidate.only && is_of_p
 const TestedCandidate* best_that_is_possible(const SearchRound& round, const Gates& gates,
                                              const std::vector<std::string>& excluded) {
   const auto found = std::ranges::find_if(round.tested, [&](const TestedCandidate& each) {
-    return each.is_possible() && each.refined.delta_bic <= -gates.delta_bic &&
+    return each.is_possible() && each.refined.candidate->takes.empty() &&
+           each.refined.delta_bic <= -gates.delta_bic &&
            std::ranges::count(excluded, each.name()) == 0;
   });
   return found == round.tested.end() ? nullptr : &*found;

@@ -98,18 +98,25 @@ class Viewer {
   Eigen::Index rows_;
 };
 
+/// The fitted profiles an effect acts on.
+std::vector<const Setup*> setups_of(const Model& model, const ModelTerm& term) {
+  std::vector<const Setup*> out;
+  for (const Observation* observation : fitted_observations(model))
+    if (term.acts_on(*observation->profile)) out.push_back(&observation->profile->setup);
+  return out;
+}
+
 /// What the problem lacks for an effect to be looked for, or nothing.
 std::string needs(const Model& model, const ModelTerm& term) {
-  std::vector<const Setup*> shown;
   std::vector<std::string> keys;
   for (const Observation& observation : model.observations) {
     const Setup& setup = observation.profile->setup;
     if (!term.acts_on(*observation.profile)) continue;
-    if (observation.profile->role == Role::fit) shown.push_back(&setup);
     for (const std::string& key : term.effect->lacking(setup))
       if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
   }
   if (!keys.empty()) return joined(keys);
+  const std::vector<const Setup*> shown = setups_of(model, term);
   return shown.empty() ? "a reading that shows it" : joined(term.effect->lacking_together(shown));
 }
 
@@ -174,6 +181,9 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
       missing = error.what();
     }
     if (!missing.empty()) continue;
+    candidate.takes =
+        joined(candidate.term.effect->lacking_to_be_told(setups_of(model, candidate.term)));
+    if (!candidate.takes.empty()) out.not_testable.push_back({name, candidate.takes});
     lay_out(model, viewer, candidate);
     out.candidates.push_back(std::move(candidate));
     added = true;

@@ -17,6 +17,7 @@ struct Candidate {
   EffectOptions options;
   bool raises_degree = false;  // of the declared effect; the columns are the terms that one lacks
   ShapeLattice grid;           // its points are the atoms
+  std::string takes;           // Effect::lacking_to_be_told(); empty: it may be named
   bool coarse = false;         // the grid: shapes are refined over all of it
   bool is_searched = true;     // false: each surface has a form of its own, looked for alone
   /// Stacked rows by (#amplitudes * #atoms), not whitened; shared with the same effect in one

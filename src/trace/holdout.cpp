@@ -7,6 +7,8 @@
 namespace slideway {
 namespace {
 
+constexpr double kTakenByLevelling = 1e-9;  // of a column, what is left of it at most
+
 /// White columns [model, effect, residual] of one profile, free of its nuisances and loose values,
 /// as the triangle that has the same inner products.
 Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, std::size_t i,
@@ -21,7 +23,10 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
   data.noise()[i].whiten(rows);
   const Eigen::MatrixXd basis = orthonormal(rows.leftCols(rows.cols() - k - a - 1));
   Eigen::MatrixXd rest = rows.rightCols(k + a + 1);
+  const Eigen::VectorXd before = rest.colwise().norm();
   rest -= basis * (basis.transpose() * rest).eval();
+  for (Eigen::Index j = k; j < k + a; ++j)
+    if (rest.col(j).norm() <= kTakenByLevelling * before[j]) rest.col(j).setZero();
   return upper_triangle(rest);
 }
 

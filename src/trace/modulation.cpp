@@ -33,6 +33,17 @@ double amplitude_on(const Model& model, const Refined& refined, const Profile& p
   return std::sqrt(2.0 * signal.squaredNorm() / static_cast<double>(signal.size()));
 }
 
+/// How often a wave goes up and down along a trace, of which a line counts what lies over the
+/// radius of a face, or over the trace where the effect is of the measurement.
+double cycles_along(const Setup& setup, const Effect& effect, const LineBand& line) {
+  const IndependentVariable variable = effect.description().variable;
+  if (setup.kind != Kind::face || variable == IndependentVariable::trace ||
+      variable == IndependentVariable::measuring_time)
+    return line.low;
+  const double radius = std::max(setup.last_mm - setup.center_mm, setup.center_mm - setup.first_mm);
+  return line.low * (setup.last_mm - setup.first_mm) / radius;
+}
+
 /// Largest amplitude, mm, that feed marks can have where the lines of an effect in one face lie:
 /// that of the lowest harmonic that sampling folds there, nearer than the gate folded_widths.
 /// Infinite where the nose is not known, 0 where no harmonic is near.
@@ -42,17 +53,13 @@ double largest_mark_at(const Profile& profile, const Effect& effect,
   const auto samples = static_cast<double>(profile.positions.size());
   if (setup.kind != Kind::face || !setup.feed_mm_per_min || !setup.spindle_rpm || samples < 2.0)
     return 0.0;
-  const double trace = setup.last_mm - setup.first_mm, spacing = trace / (samples - 1.0);
-  const double radius = std::max(setup.last_mm - setup.center_mm, setup.center_mm - setup.first_mm);
-  const IndependentVariable variable = effect.description().variable;
-  const double extent =
-      variable == IndependentVariable::trace || variable == IndependentVariable::measuring_time
-          ? trace
-          : radius;
+  const double spacing = (setup.last_mm - setup.first_mm) / (samples - 1.0);
   const double marks = spacing * *setup.spindle_rpm / *setup.feed_mm_per_min;  // cycles a sample
   const auto at = [&](const LineBand& line) {
     for (int m = 1; m <= static_cast<int>(gates.feed_harmonics); ++m)
-      if (std::abs(folded(line.low * spacing / extent) - folded(m * marks)) * samples <=
+      if (std::abs(folded(cycles_along(setup, effect, line) / (samples - 1.0)) -
+                   folded(m * marks)) *
+              samples <=
           gates.folded_widths)
         return largest_feed_mark(setup, m).value_or(INFINITY);
     return 0.0;
@@ -103,6 +110,17 @@ bool is_wave(const Model& model, const Refined& refined) {
     return own.acts_on(profile) && own.effect->applies_to(profile.setup) &&
            !own.effect->lines(profile.stations(model.machine), refined.shape).empty();
   });
+}
+
+bool is_too_fine(const Model& model, const Refined& refined, const Observation& observation) {
+  constexpr double kValuesACycle = 4.0;
+  const Effect& effect = *refined.candidate->term.effect;
+  const Profile& profile = *observation.profile;
+  const auto cycles = static_cast<double>(observation.values.size() - 1) / kValuesACycle;
+  return std::ranges::any_of(
+      effect.lines(profile.stations(model.machine), refined.shape), [&](const LineBand& line) {
+        return cycles_along(profile.setup, effect, line) > cycles + 1.0;  // one: its width
+      });
 }
 
 std::string part_of_a_line(const Model& model, const Eigen::VectorXd& shapes,

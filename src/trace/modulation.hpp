@@ -7,6 +7,9 @@ namespace slideway {
 /// Whether it is a wave in a fitted profile: it makes lines.
 bool is_wave(const Model& model, const Refined& refined);
 
+/// Whether it is a wave of which a profile's low band has fewer than four values a cycle.
+bool is_too_fine(const Model& model, const Refined& refined, const Observation& observation);
+
 /// What the line of an effect is of a line in the model instead of one of its own: "a modulation
 /// of" it, where in every fitted profile all of its lines lie beside those of that effect, nearer
 /// than the gates modulation_widths (in resolutions of the profile's spectrum, one cycle a profile)

@@ -216,7 +216,8 @@ class Planner {
       if (!effect.lacking(profile->setup).empty()) return false;
       shown.push_back(&profile->setup);
     }
-    return !shown.empty() && effect.lacking_together(shown).empty();
+    return !shown.empty() && effect.lacking_together(shown).empty() &&
+           effect.lacking_to_be_told(shown).empty();
   }
 
   // --- what is reported -------------------------------------------------------------------------

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <thread>
 
+#include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
 
 namespace slideway {
@@ -118,6 +119,30 @@ std::vector<Finding> search(const Whitened& data, const Candidates& candidates) 
   for (std::size_t b = 0; b < blocks.size(); ++b)
     if (best[b].delta_bic < out[blocks[b].candidate].delta_bic) out[blocks[b].candidate] = best[b];
   return out;
+}
+
+double noise_beside_line(const Whitened& data, const Finding& line, const Eigen::VectorXd& rest,
+                         const Gates& gates) {
+  constexpr Eigen::Index kNearest = 6, kFarthest = 30;  // atoms: 2 to 10 cycles over the reading
+  constexpr double kAtomsACycle = 3.0, kFewest = 6.0;   // cycles
+  const Candidate& candidate = *line.candidate;
+  if (candidate.grid.axes().size() != 1) return 1.0;
+  double sum = 0.0, amplitudes = 0.0, atoms = 0.0;
+  const auto add = [&](Eigen::Index first, Eigen::Index end) {
+    first = std::max<Eigen::Index>(first, 0), end = std::min(end, candidate.atoms());
+    if (first >= end) return;
+    for_block(data, candidate, first, end - first, rest,
+              [&](Eigen::Index, const GramRoot& root, const auto& products) {
+                sum += (root.root * products).squaredNorm();
+                amplitudes += static_cast<double>(root.rank);
+                atoms += 1.0;
+              });
+  };
+  add(line.atom - kFarthest, line.atom - kNearest + 1);
+  add(line.atom + kNearest, line.atom + kFarthest + 1);
+  if (atoms < kFewest * kAtomsACycle || amplitudes == 0.0) return 1.0;
+  const double freedom = amplitudes / kAtomsACycle, level = sum / amplitudes;
+  return chi_squared_tail(freedom, freedom * level) < gates.significance ? level : 1.0;
 }
 
 Projection project(const Whitened& data, const Eigen::MatrixXd& columns) {

@@ -25,6 +25,14 @@ double penalty(const Whitened& data, const Candidate& candidate, Eigen::Index ra
 /// Best atom of every candidate, in the order of the dictionary.
 std::vector<Finding> search(const Whitened& data, const Candidates& candidates);
 
+/// How strong the noise is beside a line: what the atoms near it, but for the nearest, take of the
+/// residual without the line, over what they take of the noise of the data. 1 where that is no more
+/// than chance (Gates::significance), and where the lattice has too few of them or is none of one
+/// rate.
+/// @param rest  the white residual without the line
+double noise_beside_line(const Whitened& data, const Finding& line, const Eigen::VectorXd& rest,
+                         const Gates& gates);
+
 /// Columns (not whitened) of one effect, held against the data: the residual's square it takes away
 /// with its amplitudes free, and the normal equations of those.
 struct Projection {

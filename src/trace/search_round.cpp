@@ -100,13 +100,19 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
   const auto test = [&](const Finding& finding) {
     TestedCandidate tested;
     tested.refined = refine(model, data, finding);
-    tested.p_value = calibration.p_value(-tested.refined.delta_bic);
     if (tested.refined.candidate->term.profiles.empty())  // else the others lack their own share
       tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
     tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
     tested.is_wave = is_wave(model, tested.refined);
+    if (tested.is_wave)
+      tested.noise_beside =
+          noise_beside_line(data, finding, data.residual() - tested.fitted, model.gates);
+    tested.p_value = calibration.p_value(-tested.delta_bic_beside());
     tested.part_of = part_of_a_line(model, fit.estimate.shapes, tested.refined);
-    if (is_of_feed_marks(model, data, tested.refined, tested.fitted))
+    const std::optional<std::size_t> only = finding.candidate->only;
+    if (only && is_too_fine(model, tested.refined, *fit.linear.observations[*only]))
+      tested.folded = "its profile has fewer than four values a cycle";
+    else if (is_of_feed_marks(model, data, tested.refined, tested.fitted))
       tested.folded = "its line is that of the feed marks, folded by sampling";
     else if (!samples.have(tested.refined))
       tested.folded = "the samples do not have its line: the low band has folded another";
@@ -161,19 +167,32 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
 
 }  // namespace
 
+double TestedCandidate::delta_bic_beside() const {
+  return refined.delta_bic + refined.projection.gain * (1.0 - 1.0 / noise_beside);
+}
+
 std::string TestedCandidate::refused(const Gates& gates) const {
+  if (std::string why = fails(gates); !why.empty()) return why;
+  const std::string& takes = refined.candidate->takes;
+  if (!takes.empty()) return "it may be, but it takes " + takes + " to be told";
+  if (held_out && !held_out->helps) return "it predicts left-out profiles worse";
+  return "";
+}
+
+std::string TestedCandidate::fails(const Gates& gates) const {
   if (refined.projection.rank == 0) return "the model makes the same columns";
   if (!part_of.empty()) return "its line is " + part_of;
   if (!folded.empty()) return folded;
   if (refined.delta_bic > -gates.delta_bic)
     return "gains too little: difference in BIC " + significant(refined.delta_bic, 3);
+  if (delta_bic_beside() > -gates.delta_bic)
+    return "the noise beside its line is " + significant(noise_beside, 2) + " times as strong";
   if (p_value > gates.significance) return "noise gives as much: p = " + significant(p_value, 2);
   if (std::string why = implausible(refined); !why.empty()) return why;
   if (refined.at_end) return "its shape runs to the end of what is possible";
   if (refined.size_in_uncertainties < gates.size)
     return "its size is only " + significant(refined.size_in_uncertainties, 2) +
            " of its standard uncertainties";
-  if (held_out && !held_out->helps) return "it predicts left-out profiles worse";
   return "";
 }
 
@@ -230,6 +249,14 @@ std::vector<const TestedCandidate*> SearchRound::as_good_as(const TestedCandidat
   const auto unknowns = [](const TestedCandidate& each) {
     return each.refined.candidate->unknowns(each.refined.projection.rank);
   };
+  // The same in other cuts; not of traces, each of which lies in a place of its own.
+  const auto is_known = [&](const TestedCandidate& each) {
+    if (!is_same_effect(each, chosen))
+      return std::ranges::any_of(out,
+                                 [&](const auto* other) { return is_same_effect(*other, each); });
+    return each.name() == chosen.name() || is_of_place(*each.refined.candidate) ||
+           is_kinematic(*each.refined.candidate);
+  };
   // What is of a trace's place is one form where the values do not show how far it is off.
   const auto are_of_place = [&](const TestedCandidate& each) {
     return is_of_place(*each.refined.candidate) && is_of_place(*chosen.refined.candidate);
@@ -239,13 +266,12 @@ std::vector<const TestedCandidate*> SearchRound::as_good_as(const TestedCandidat
     return std::max(gates.tie_bic, -share * chosen.refined.delta_bic);
   };
   for (const TestedCandidate& each : tested) {
+    const bool is_untold = !each.refined.candidate->takes.empty();
     const bool counts =
-        each.refused(gates).empty() ||
+        (is_untold ? each.fails(gates) : each.refused(gates)).empty() ||
         (each.is_possible() && (unknowns(each) <= unknowns(chosen) || are_of_place(each) ||
                                 chosen.refined.candidate->term.effect->is_carriage()));
-    const bool known =
-        std::ranges::any_of(out, [&](const auto* other) { return is_same_effect(*other, each); });
-    if (counts && !known && !is_same_effect(each, chosen) &&
+    if (counts && !is_known(each) &&
         each.refined.delta_bic <= chosen.refined.delta_bic + tie(each) &&
         alike(each, chosen, gates))
       out.push_back(&each);

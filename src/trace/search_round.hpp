@@ -17,11 +17,16 @@ struct TestedCandidate {
   /// What has folded another line to where its own is: feed_marks_at(), SampleResiduals::have();
   /// empty: nothing.
   std::string folded;
-  bool is_wave = false;  // is_wave()
+  bool is_wave = false;       // is_wave()
+  double noise_beside = 1.0;  // of a wave: noise_beside_line()
 
   [[nodiscard]] const std::string& name() const { return refined.candidate->name(); }
+  /// Difference in BIC under the noise beside its line.
+  [[nodiscard]] double delta_bic_beside() const;
   /// Why it is not accepted; empty: it passes.
   [[nodiscard]] std::string refused(const Gates& gates) const;
+  /// Why it does not explain the data, whatever they take for it to be said; empty: it does.
+  [[nodiscard]] std::string fails(const Gates& gates) const;
   /// Physically possible, and not of the model's own span.
   [[nodiscard]] bool is_possible() const;
 };
@@ -42,10 +47,11 @@ struct SearchRound {
       const TestedCandidate& choice, const Gates& gates,
       const std::vector<std::string>& excluded = {}) const;
 
-  /// Other effects that take the same part of the residual, within tie_bic of `chosen`: those that
-  /// pass, and those too uncertain to pass that need no more unknowns. Where the chosen one is a
-  /// carriage's polynomial, which comes near every smooth effect, all that are possible; where it
-  /// is a measured cause, not what is neither measured nor a carriage's.
+  /// Other effects, and the same one in other cuts, that take the same part of the residual, within
+  /// tie_bic of `chosen`: those that pass, those that take more cuts to be told, and those too
+  /// uncertain to pass that need no more unknowns. Where the chosen one is a carriage's polynomial,
+  /// which comes near every smooth effect, all that are possible; where it is a measured cause, not
+  /// what is neither measured nor a carriage's.
   [[nodiscard]] std::vector<const TestedCandidate*> rivals(const TestedCandidate& chosen,
                                                            const Gates& gates) const;
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "set_gates.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 
@@ -10,10 +12,12 @@ struct Selection {
   std::vector<AcceptedEffect> effects;  // with their rivals
   std::vector<AcceptedEffect> instead;  // a set that explains as much; empty: none
   std::vector<std::pair<std::string, std::string>> left;  // accepted, then taken back; why
-  std::vector<std::string> notes;
+  std::vector<std::string> notes, advice;
   LackOfFit lack_of_fit;            // of what these effects leave
   bool withheld = false;            // effects left because what has no name fits better
   std::vector<std::size_t> unsure;  // effects that what has no name may stand in place of
+  /// Models that explain as much, one profile corrected in each; without observations.
+  std::vector<std::shared_ptr<const FittedModel>> otherwise;
 };
 
 /// Adds effects one by one, each the best of a search; exchanges them for better ones; takes back

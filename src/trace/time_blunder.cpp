@@ -74,6 +74,20 @@ Eigen::VectorXd shapes_with(const Eigen::VectorXd& shapes, const std::vector<dou
   return out;
 }
 
+/// Whether profiles hold no more than noise of what a model lacks, and do not disagree.
+struct Left {
+  bool is_noise = true, agrees = true;
+};
+
+Left what_is_left(const FittedModel& fitted, const Gates& gates) {
+  const Linearisation& linear = fitted.fit.linear;
+  return {
+      !lack_of_fit(linear, noise_beside(linear, gates), gates).significant(gates),
+      disagreement(fitted, noise_of_each(linear, fitted.fit.noise, gates)).p_value >=
+          gates.disagreement_p,
+  };
+}
+
 /// The model of all profiles with an effect as those but one show it.
 FittedModel as_the_others_show(const FittedModel& all, const FittedModel& others,
                                const AcceptedEffect& effect) {
@@ -86,6 +100,12 @@ FittedModel as_the_others_show(const FittedModel& all, const FittedModel& others
   return out;
 }
 
+std::vector<Blunder> blunders_of(const std::vector<TimeBlunder>& found) {
+  std::vector<Blunder> out;
+  std::ranges::transform(found, std::back_inserter(out), &TimeBlunder::blunder);
+  return out;
+}
+
 class TimeFinder {
  public:
   TimeFinder(const Problem& problem, ModelExtender& extender, const std::vector<ShownEffect>& shown)
@@ -94,101 +114,128 @@ class TimeFinder {
         shown_(shown),
         noise_(noise_beside(extender.base().fit.linear, problem.trace.gates)) {}
 
-  /// Holds each profile out that has a clock. Heat that tilts the slide shows in each cut in
-  /// another way: a wrong clock that does not explain more, by what noise of the size that it
-  /// leaves gives, is none.
+  /// Holds each profile out that has a clock.
   void try_all() {
-    const FittedModel& base = extender_.base();
-    for (const Observation* const observation : fitted_observations(base.model))
+    for (const Observation* const observation : fitted_observations(extender_.base().model))
       if (observation->profile->setup.cut_direction) try_profile(observation->profile->name);
+  }
+
+  /// Those that are said by themselves. A wrong clock that does not explain more than one effect of
+  /// the profiles as they are, or heat that tilts the slide and so shows in each cut in another
+  /// way, by what noise of the size that it leaves gives, is none; nor is one of a profile beside
+  /// another one without which the rest lacks nothing.
+  void keep_certain() {
+    std::erase_if(found_, [&](const TimeBlunder& each) {
+      return std::ranges::any_of(
+          odd_, [&](const std::string& odd) { return odd != each.blunder.profile; });
+    });
     if (found_.empty()) return;
+    const FittedModel& base = extender_.base();
     const Whitened data(base.fit.linear, noise_);
-    const double heat = data.residual().squaredNorm() -
-                        2.0 * heat_lifts_and_tilts(base.model, data, base.fit.linear);
-    const double least =
-        std::ranges::min(found_, {}, [](const auto& each) { return each.first; }).first;
+    const double square = data.residual().squaredNorm();
+    double without = square - 2.0 * heat_lifts_and_tilts(base.model, data, base.fit.linear);
+    for (const Finding& each : search(data, extender_.candidates_beside({})))
+      if (each.rank > 0) without = std::min(without, square + each.delta_bic);
+    const double least = std::ranges::min_element(found_, {}, &TimeBlunder::cost)->cost;
     const double noise = std::max(1.0, least / static_cast<double>(data.values()));
-    if (heat - least < problem_.trace.gates.tie_bic * noise) found_.clear();
+    if (without - least < problem_.trace.gates.tie_bic * noise) found_.clear();
   }
 
   /// Those that leave the least, one of a kind in each profile. A start may be any: where one
-  /// leaves the least, all that leave no more than noise are told.
-  [[nodiscard]] std::vector<Blunder> best() {
-    std::ranges::stable_sort(found_, {}, [](const auto& each) { return each.first; });
-    std::vector<Blunder> out;
-    for (const std::pair<double, Blunder>& each : found_) {
-      const Blunder& blunder = each.second;
-      const auto is_known = [&](const Blunder& known) {
-        return known.profile == blunder.profile && known.what == blunder.what;
+  /// leaves the least, all that leave no more than noise are told, unless any cut may be the wrong
+  /// one.
+  [[nodiscard]] std::vector<TimeBlunder> best() {
+    std::ranges::stable_sort(found_, {}, &TimeBlunder::cost);
+    std::vector<TimeBlunder> out;
+    for (const TimeBlunder& each : found_) {
+      const auto is_known = [&](const TimeBlunder& known) {
+        return known.blunder.profile == each.blunder.profile &&
+               known.blunder.what == each.blunder.what;
       };
-      if (!out.empty() && out.front().what != BlunderKind::clock &&
-          each.first > found_.front().first + problem_.trace.gates.tie_bic)
+      if (!out.empty() && out.front().blunder.what != BlunderKind::clock &&
+          each.cost > found_.front().cost + problem_.trace.gates.tie_bic)
         break;
-      if (std::ranges::none_of(out, is_known)) out.push_back(blunder);
+      if (std::ranges::none_of(out, is_known)) out.push_back(each);
     }
+    if (out.size() > 1 && out.size() == tried_) out.clear();
     return out;
   }
 
   /// The best that cost no more.
-  [[nodiscard]] std::vector<Blunder> best_below(double cost) {
-    std::erase_if(found_, [&](const auto& each) { return each.first > cost; });
+  [[nodiscard]] std::vector<TimeBlunder> best_below(double cost) {
+    std::erase_if(found_, [&](const auto& each) { return each.cost > cost; });
     return best();
   }
 
-  /// The best, unless a model of the profiles as they are costs less.
-  [[nodiscard]] std::vector<Blunder> best_instead_of(const std::vector<AcceptedEffect>& effects) {
+  /// Held against a model of the profiles as they are.
+  [[nodiscard]] TimeBlundersInPlace in_place_of(const std::vector<AcceptedEffect>& effects) {
     const Whitened data(extender_.extended(effects).fit.linear, noise_);
     double cost = data.residual().squaredNorm();
     for (const AcceptedEffect& each : effects)
       cost += penalty(data, *each.candidate, each.candidate->amplitudes());
-    return best_below(cost - std::log(static_cast<double>(data.values())));  // of the start
+    TimeBlundersInPlace out;
+    out.as_good = best_below(cost + problem_.trace.gates.tie_bic);
+    keep_certain();
+    out.better = blunders_of(
+        best_below(cost - std::log(static_cast<double>(data.values()))));  // of the start
+    return out;
   }
 
  private:
   void try_profile(const std::string& odd) {
+    ++tried_;
     extender_.limit().check();
     std::vector<Profile> profiles = extender_.profiles();
     std::ranges::find(profiles, odd, &Profile::name)->role = Role::holdout;
     const FittedModel others = fitted_to(problem_, profiles, shown_);
+    const Left left = what_is_left(others, problem_.trace.gates);
+    if (left.is_noise && left.agrees) odd_.push_back(odd);
     const Dictionary dictionary =
         make_dictionary(others.model, problem_, others.fit.linear.prior_rows.rows());
     for (const AcceptedEffect& effect : shown_effects(problem_, others, dictionary))
       for (const CorrectedBlunder& each :
            find_blunders_of_time(as_the_others_show(extender_.base(), others, effect), odd))
-        if (const auto left = left_by(each, effect)) found_.emplace_back(*left, each.blunder);
+        if (auto found = tested(each, effect)) found_.push_back(*std::move(found));
   }
 
   /// Square of the white residual of all profiles, one of them corrected, with the effect and its
   /// price; nothing where that is still more than noise.
-  [[nodiscard]] std::optional<double> left_by(const CorrectedBlunder& corrected,
-                                              const AcceptedEffect& effect) const {
+  [[nodiscard]] std::optional<TimeBlunder> tested(const CorrectedBlunder& corrected,
+                                                  const AcceptedEffect& effect) const {
     extender_.limit().check();
     std::vector<Profile> profiles = extender_.profiles();
     *std::ranges::find(profiles, corrected.meant.name, &Profile::name) = corrected.meant;
     const bool turned = corrected.blunder.what == BlunderKind::cut_direction;
     const FittedModel declared = fitted_to(
         problem_, profiles, turned ? of_any_phase_in(shown_, corrected.meant.name) : shown_);
-    const FittedModel fitted = fit_model(with(declared.model, effect),
-                                         shapes_with(declared.fit.estimate.shapes, effect.shape));
+    FittedModel fitted = fit_model(with(declared.model, effect),
+                                   shapes_with(declared.fit.estimate.shapes, effect.shape));
     const Gates& gates = problem_.trace.gates;
-    if (lack_of_fit(fitted.fit.linear, noise_, gates).significant(gates)) return std::nullopt;
+    if (lack_of_fit(fitted.fit.linear, noise_, gates).significant(gates) ||
+        !what_is_left(fitted, gates).agrees)
+      return std::nullopt;
     const Whitened data(fitted.fit.linear, noise_);
-    return data.residual().squaredNorm() +
-           penalty(data, *effect.candidate, effect.candidate->amplitudes());
+    const double cost = data.residual().squaredNorm() +
+                        penalty(data, *effect.candidate, effect.candidate->amplitudes());
+    fitted.model.observations.clear();  // they are of the profiles here
+    fitted.fit.linear.observations.clear();
+    return TimeBlunder{corrected.blunder, cost,
+                       std::make_shared<const FittedModel>(std::move(fitted))};
   }
 
   Problem problem_;
   ModelExtender& extender_;
   const std::vector<ShownEffect>& shown_;
   std::vector<Noise> noise_;
-  std::vector<std::pair<double, Blunder>> found_;
+  std::vector<TimeBlunder> found_;
+  std::vector<std::string> odd_;  // profiles without which the others lack nothing
+  std::size_t tried_ = 0;         // profiles
 };
 
 /// The declared model of the profiles, the sign of one of them turned.
 struct Turned {
   double cost = 0.0;  // square of the white residual
-  bool is_noise = true;
-  bool agrees = true;  // no two profiles differ by more than noise
+  Left left;
 };
 
 Turned with_sign_turned(const Problem& problem, ModelExtender& extender,
@@ -202,10 +249,21 @@ Turned with_sign_turned(const Problem& problem, ModelExtender& extender,
   Turned out;
   out.cost =
       Whitened(linear, noise_beside(extender.base().fit.linear, gates)).residual().squaredNorm();
-  out.is_noise = !lack_of_fit(linear, noise_beside(linear, gates), gates).significant(gates);
-  out.agrees = disagreement(fitted, noise_of_each(linear, fitted.fit.noise, gates)).p_value >=
-               gates.disagreement_p;
+  out.left = what_is_left(fitted, gates);
   return out;
+}
+
+bool is_of_some_in_time(const AcceptedEffect& each) {
+  return is_of_time(*each.candidate->term.effect) && !each.candidate->term.profiles.empty();
+}
+
+/// Whether another profile has an effect of the same name, with a size of its own.
+bool is_in_another_profile(const AcceptedEffect& effect,
+                           const std::vector<AcceptedEffect>& effects) {
+  return std::ranges::any_of(effects, [&](const AcceptedEffect& other) {
+    return other.candidate->effect_name() == effect.candidate->effect_name() &&
+           other.name() != effect.name();
+  });
 }
 
 bool can_tell(const ModelExtender& extender) {
@@ -220,22 +278,46 @@ std::vector<Blunder> find_time_blunders(const Problem& problem, ModelExtender& e
   if (!can_tell(extender)) return {};
   TimeFinder finder(problem, extender, shown);
   finder.try_all();
-  return finder.best();
+  finder.keep_certain();
+  return blunders_of(finder.best());
 }
 
-std::vector<Blunder> time_blunders_instead(const std::vector<AcceptedEffect>& effects,
+TimeBlundersInPlace time_blunders_in_place(const std::vector<AcceptedEffect>& effects,
                                            const Problem& problem, ModelExtender& extender,
                                            const std::vector<ShownEffect>& shown) {
-  const auto of_all_in_time = [](const AcceptedEffect& each) {
-    return each.candidate->term.profiles.empty() && is_of_time(*each.candidate->term.effect);
+  const auto is_of_all = [&](const AcceptedEffect& each) {
+    if (!is_of_time(*each.candidate->term.effect)) return false;
+    return each.candidate->term.profiles.empty() || is_in_another_profile(each, effects);
   };
   const auto may_not_be = [](const AcceptedEffect& each) { return !is_kinematic(*each.candidate); };
-  if (std::ranges::none_of(effects, of_all_in_time) ||
-      std::ranges::count_if(effects, may_not_be) < 2 || !can_tell(extender))
-    return {};
+  const bool may_be_better =
+      std::ranges::any_of(effects, is_of_all) && std::ranges::count_if(effects, may_not_be) >= 2;
+  const bool may_be_as_good = std::ranges::any_of(effects, is_of_some_in_time);
+  if (!(may_be_better || may_be_as_good) || !can_tell(extender)) return {};
   TimeFinder finder(problem, extender, shown);
   finder.try_all();
-  return finder.best_instead_of(effects);
+  TimeBlundersInPlace out = finder.in_place_of(effects);
+  if (!may_be_better) out.better.clear();
+  if (!may_be_as_good) out.as_good.clear();
+  return out;
+}
+
+void add_as_rivals(const std::vector<TimeBlunder>& blunders, Selection& selection) {
+  if (blunders.empty()) return;
+  for (std::size_t i = 0; i < selection.effects.size(); ++i) {
+    AcceptedEffect& effect = selection.effects[i];
+    if (!is_of_some_in_time(effect)) continue;
+    std::vector<std::string>& rivals = effect.round.ambiguous_with;
+    if (std::ranges::count(rivals, kUnnamedRival) == 0) rivals.emplace_back(kUnnamedRival);
+    if (std::ranges::count(selection.unsure, i) == 0) selection.unsure.push_back(i);
+  }
+  std::ranges::sort(selection.unsure);
+  for (const auto& [blunder, cost, fitted] : blunders) {
+    selection.advice.push_back("profile " + blunder.profile + ": " +
+                               std::string(text_of(blunder.what)) +
+                               " would explain as much; check it");
+    selection.otherwise.push_back(fitted);
+  }
 }
 
 std::vector<Blunder> held_against_time(std::vector<Blunder> found, const Problem& problem,
@@ -245,11 +327,13 @@ std::vector<Blunder> held_against_time(std::vector<Blunder> found, const Problem
   const Gates& gates = problem.trace.gates;
   const bool is_sure = found.front().left <= gates.blunder_left * gates.blunder_left;
   const Turned turned = with_sign_turned(problem, extender, shown, found.front().profile);
-  if (turned.is_noise && is_sure) return found;
+  if (turned.left.is_noise && is_sure) return found;
   TimeFinder finder(problem, extender, shown);
   finder.try_all();
-  std::vector<Blunder> of_time = turned.is_noise ? finder.best_below(turned.cost) : finder.best();
-  if (of_time.empty() && (is_sure || turned.is_noise || turned.agrees)) return found;
+  finder.keep_certain();
+  std::vector<Blunder> of_time =
+      blunders_of(turned.left.is_noise ? finder.best_below(turned.cost) : finder.best());
+  if (of_time.empty() && (is_sure || turned.left.is_noise || turned.left.agrees)) return found;
   return of_time;
 }
 

@@ -65,9 +65,11 @@ class Loop {
                                            : nothing_selected(extender_, gates);
     judge(selection, blunders.empty());
     if (blunders.empty() && !limit_.allows([&] {
-          blunders = profiles_differ()
-                         ? find_time_blunders(problem_, extender_, shown_)
-                         : time_blunders_instead(selection.effects, problem_, extender_, shown_);
+          if (profiles_differ())
+            return void(blunders = find_time_blunders(problem_, extender_, shown_));
+          auto found = time_blunders_in_place(selection.effects, problem_, extender_, shown_);
+          blunders = std::move(found.better);
+          add_as_rivals(found.as_good, selection);
         }))
       out.not_looked_at.emplace_back("another direction or start of one cut");
     if (!blunders.empty()) selection = nothing_selected(extender_, gates);
@@ -116,6 +118,7 @@ class Loop {
                               check_squareness(extender_.base().model, problem_.runout,
                                                extender_.summary(selection.effects)),
                               extender_.summary(selection.effects));
+    out.advice.insert(out.advice.begin(), selection.advice.begin(), selection.advice.end());
     if (!other_cause.empty()) out.advice.insert(out.advice.begin(), other_cause);
     if (!out.blunders.empty()) out.advice.insert(out.advice.begin(), blunder_advice(out.blunders));
     out.verdict = verdict(out, !other_cause.empty());
@@ -319,15 +322,16 @@ class Loop {
       closed.widening = widening_instead(selection, fitted, without);
       if (of_another_cause) closed.widening->add_absence(fitted, without);
     }
-    if (!selection.instead.empty()) {
+    const auto widened = [&]() -> Widening& {
       if (!closed.widening) closed.widening.emplace(fitted.fit.linear.prior_rows.cols());
-      closed.widening->add_absence(fitted, extender_.extended(selection.instead));
-    }
+      return *closed.widening;
+    };
+    if (!selection.instead.empty())
+      widened().add_absence(fitted, extender_.extended(selection.instead));
+    for (const auto& each : selection.otherwise) widened().add_absence(fitted, *each);
     for (std::size_t i = 0; i < selection.effects.size(); ++i) {
       const WithoutEffect place = without_effect(selection, i);
-      if (place.rivals.empty()) continue;
-      if (!closed.widening) closed.widening.emplace(fitted.fit.linear.prior_rows.cols());
-      closed.widening->add_rivals(fitted, place.fitted, place.rivals);
+      if (!place.rivals.empty()) widened().add_rivals(fitted, place.fitted, place.rivals);
     }
   }
 

@@ -170,16 +170,17 @@ TEST(Hysteresis, ChangesSignWithTheDirection) {
   EXPECT_EQ(make("hysteresis")->lacking_together({&inward, &inward}).size(), 1U);
 }
 
-TEST(Hysteresis, NeedsTwoFacesOfEachDirectionAndOneReading) {
+TEST(Hysteresis, TakesTwoFacesOfEachDirectionToBeToldAndOneReading) {
   Case inward = face({0.0, 5.0, 10.0}), outward = inward;
   inward.setup.cut_direction = CutDirection::inward;
   outward.setup.cut_direction = CutDirection::outward;
   const slideway::Setup &in = inward.setup, &out = outward.setup;
   const auto effect = make("hysteresis");
-  EXPECT_EQ(effect->lacking_together({&in, &in, &out}).size(), 1U);
-  EXPECT_TRUE(effect->lacking_together({&in, &out, &in, &out}).empty());
+  EXPECT_TRUE(effect->lacking_together({&in, &in, &out}).empty());
+  EXPECT_EQ(effect->lacking_to_be_told({&in, &in, &out}).size(), 1U);
+  EXPECT_TRUE(effect->lacking_to_be_told({&in, &out, &in, &out}).empty());
   inward.setup.kind = outward.setup.kind = Kind::slide;
-  EXPECT_TRUE(effect->lacking_together({&in, &out}).empty());
+  EXPECT_TRUE(effect->lacking_to_be_told({&in, &out}).empty());
 }
 
 }  // namespace

@@ -209,6 +209,11 @@ class Effect {
   [[nodiscard]] virtual std::vector<std::string> lacking_together(
       const std::vector<const Setup*>& setups) const;
 
+  /// What they lack for the effect to be told from what one of them has by itself: with less it may
+  /// explain the data, and no other name stands alone beside it, but it is not said.
+  [[nodiscard]] virtual std::vector<std::string> lacking_to_be_told(
+      const std::vector<const Setup*>& setups) const;
+
   /// Fills `out` (#stations by #amplitudes): mm per unit of amplitude for heights, rad for slopes.
   /// Finite for every shape inside the bounds. REQUIRES lacking(stations.setup()) empty.
   virtual void columns(const Stations& stations, std::span<const double> shape,

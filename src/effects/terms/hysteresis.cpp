@@ -33,6 +33,14 @@ Description describe_hysteresis() {
           "has does not"};
 }
 
+std::ptrdiff_t of_rarer_direction(const std::vector<const Setup*>& setups) {
+  const auto count = [&](CutDirection direction) {
+    return std::ranges::count(setups, direction,
+                              [](const Setup* setup) { return setup->cut_direction; });
+  };
+  return std::min(count(CutDirection::inward), count(CutDirection::outward));
+}
+
 double relative_place(const Stations& stations, Eigen::Index i) {
   const Setup& setup = stations.setup();
   if (setup.kind == Kind::face) return stations.radius(i) / *setup.cut_radius_mm;
@@ -60,14 +68,16 @@ class Hysteresis : public LinearEffect {
 
   [[nodiscard]] std::vector<std::string> lacking_together(
       const std::vector<const Setup*>& setups) const override {
-    int inward = 0, outward = 0, needed = 1;
-    for (const Setup* setup : setups) {
-      inward += setup->cut_direction == CutDirection::inward;
-      outward += setup->cut_direction == CutDirection::outward;
-      if (setup->kind == Kind::face) needed = 2;
-    }
-    if (std::min(inward, outward) >= needed) return {};
-    return {needed == 1 ? "readings of both cut_direction" : "two cuts of each cut_direction"};
+    if (of_rarer_direction(setups) > 0) return {};
+    return {"readings of both cut_direction"};
+  }
+
+  [[nodiscard]] std::vector<std::string> lacking_to_be_told(
+      const std::vector<const Setup*>& setups) const override {
+    const bool of_faces =
+        std::ranges::any_of(setups, [](const Setup* setup) { return setup->kind == Kind::face; });
+    if (!of_faces || of_rarer_direction(setups) > 1) return {};
+    return {"two cuts of each cut_direction"};
   }
 
   void columns(const Stations& stations, std::span<const double> /*shape*/,
