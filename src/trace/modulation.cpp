@@ -103,12 +103,11 @@ bool is_one_wave(const std::vector<const Observation*>& observations, const Whit
 
 }  // namespace
 
-bool is_wave(const Model& model, const Refined& refined) {
-  const ModelTerm& own = refined.candidate->term;
+bool is_wave(const Model& model, const ModelTerm& term, std::span<const double> shape) {
   return std::ranges::any_of(fitted_observations(model), [&](const Observation* observation) {
     const Profile& profile = *observation->profile;
-    return own.acts_on(profile) && own.effect->applies_to(profile.setup) &&
-           !own.effect->lines(profile.stations(model.machine), refined.shape).empty();
+    return term.acts_on(profile) && term.effect->applies_to(profile.setup) &&
+           !term.effect->lines(profile.stations(model.machine), shape).empty();
   });
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <span>
+
 #include "refine.hpp"
 
 namespace slideway {
 
-/// Whether it is a wave in a fitted profile: it makes lines.
-bool is_wave(const Model& model, const Refined& refined);
+/// Whether an effect is a wave in a fitted profile: it makes lines.
+bool is_wave(const Model& model, const ModelTerm& term, std::span<const double> shape);
 
 /// Whether it is a wave of which a profile's low band has fewer than four values a cycle.
 bool is_too_fine(const Model& model, const Refined& refined, const Observation& observation);

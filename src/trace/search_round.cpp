@@ -11,6 +11,7 @@
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/left_out.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
 
 namespace slideway {
@@ -90,6 +91,20 @@ bool alike(const TestedCandidate& a, const TestedCandidate& b, const Gates& gate
   return std::abs(a.fitted.dot(b.fitted)) > gates.alike * a.fitted.norm() * b.fitted.norm();
 }
 
+/// White columns, orthonormal, of the best finding that is no wave, and of its neighbours on the
+/// grid; none where it would not be accepted.
+Eigen::MatrixXd columns_of_no_wave(const Model& model, const Whitened& data,
+                                   const std::vector<Finding>& findings) {
+  for (const Finding& each : findings) {
+    if (each.delta_bic >= -model.gates.delta_bic) break;
+    const std::vector<double>& shape =
+        each.candidate->grid.points()[static_cast<std::size_t>(each.atom)];
+    if (!is_wave(model, each.candidate->term, shape))
+      return orthonormal(data.outside(each.candidate->columns_around(each.atom)));
+  }
+  return Eigen::MatrixXd(data.rows(), 0);
+}
+
 /// Candidates refined to their best shapes, best BIC first: those near the best, and on down until
 /// several effects pass.
 std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
@@ -97,16 +112,19 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
                                        const Calibration& calibration) {
   std::ranges::stable_sort(findings, {}, &Finding::delta_bic);
   const SampleResiduals samples(model, fit);
+  const Eigen::MatrixXd no_wave = columns_of_no_wave(model, data, findings);
   const auto test = [&](const Finding& finding) {
     TestedCandidate tested;
     tested.refined = refine(model, data, finding);
     if (tested.refined.candidate->term.profiles.empty())  // else the others lack their own share
       tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
     tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
-    tested.is_wave = is_wave(model, tested.refined);
-    if (tested.is_wave)
-      tested.noise_beside =
-          noise_beside_line(data, finding, data.residual() - tested.fitted, model.gates);
+    tested.is_wave = is_wave(model, finding.candidate->term, tested.refined.shape);
+    if (tested.is_wave) {
+      Eigen::VectorXd rest = data.residual() - tested.fitted;
+      rest -= no_wave * (no_wave.transpose() * rest).eval();
+      tested.noise_beside = noise_beside_line(data, finding, rest, model.gates);
+    }
     tested.p_value = calibration.p_value(-tested.delta_bic_beside());
     tested.part_of = part_of_a_line(model, fit.estimate.shapes, tested.refined);
     const std::optional<std::size_t> only = finding.candidate->only;
@@ -216,7 +234,8 @@ const TestedCandidate* SearchRound::choice(const Gates& gates,
     if (!each->refused(gates).empty() || std::ranges::count(excluded, each->name()) > 0) continue;
     const double least = least_of_effect(*each);
     const auto stands_before = [&](const TestedCandidate& better) {
-      return better.folded.empty() && std::ranges::count(excluded, better.name()) == 0 &&
+      return better.folded.empty() && better.refined.candidate->takes.empty() &&
+             std::ranges::count(excluded, better.name()) == 0 &&
              better.refined.candidate->effect_name() != each->refined.candidate->effect_name() &&
              better.refined.delta_bic < least - gates.tie_bic && alike(better, *each, gates);
     };
