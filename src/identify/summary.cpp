@@ -212,7 +212,8 @@ void add_nuisances(const Solution& fit, ModelResult& out) {
       nuisance.symbol = observation.nuisance_names[j];
       nuisance.unit = offset ? "um" : "rad";
       const double variance = fit.uncertainty.nuisance_covariances[i](j, j);
-      nuisance.identifiable = variance > 0.0;  // else the low band does not show it
+      // Else the low band does not show it, or not to the digits there are.
+      nuisance.identifiable = variance > 0.0 && std::isfinite(variance);
       if (nuisance.identifiable)
         Reported::set(fit.estimate.nuisances[i][j],
                       Spread{std::sqrt(variance), levelling_freedom(fit, i)},
