@@ -140,6 +140,15 @@ void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
   lay_out(viewer, ShapeLattice(shape_axes(model, candidate.term)), candidate);
 }
 
+/// Adds a candidate whose effect is set, with what it takes to be named.
+void add(const Model& model, const Viewer& viewer, Candidate candidate, Dictionary& out) {
+  const ModelTerm& term = candidate.term;
+  candidate.takes = joined(term.effect->lacking_to_be_told(setups_of(model, term)));
+  if (!candidate.takes.empty()) out.not_testable.push_back({term.name, candidate.takes});
+  lay_out(model, viewer, candidate);
+  out.candidates.push_back(std::move(candidate));
+}
+
 /// Those of an error of an instrument are looked for with each instrument.
 std::vector<EffectOptions> hypotheses_of(const Effect& effect, const EffectOptions* declared,
                                          const Model& model) {
@@ -181,11 +190,7 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
       missing = error.what();
     }
     if (!missing.empty()) continue;
-    candidate.takes =
-        joined(candidate.term.effect->lacking_to_be_told(setups_of(model, candidate.term)));
-    if (!candidate.takes.empty()) out.not_testable.push_back({name, candidate.takes});
-    lay_out(model, viewer, candidate);
-    out.candidates.push_back(std::move(candidate));
+    add(model, viewer, std::move(candidate), out);
     added = true;
   }
   if (!added && !missing.empty()) out.not_testable.push_back({name, missing});
@@ -202,8 +207,7 @@ void add_own(const Model& model, const Problem& problem, const DeclaredEffect& o
   candidate.term.effect = make_effect(own.name, own.options, model.machine, model.range);
   const std::string missing = needs(model, candidate.term);
   if (!missing.empty()) return out.not_testable.push_back({candidate.term.name, missing});
-  lay_out(model, viewer, candidate);
-  out.candidates.push_back(std::move(candidate));
+  add(model, viewer, std::move(candidate), out);
 }
 
 /// The same effect in each profile alone, where several show it: a step in one cut, a warm-up that

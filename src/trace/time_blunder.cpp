@@ -74,18 +74,16 @@ Eigen::VectorXd shapes_with(const Eigen::VectorXd& shapes, const std::vector<dou
   return out;
 }
 
-/// Whether profiles hold no more than noise of what a model lacks, and do not disagree.
-struct Left {
-  bool is_noise = true, agrees = true;
-};
-
-Left what_is_left(const FittedModel& fitted, const Gates& gates) {
+/// Whether profiles hold no more than noise of what a model lacks.
+bool leaves_noise(const FittedModel& fitted, const Gates& gates) {
   const Linearisation& linear = fitted.fit.linear;
-  return {
-      !lack_of_fit(linear, noise_beside(linear, gates), gates).significant(gates),
-      disagreement(fitted, noise_of_each(linear, fitted.fit.noise, gates)).p_value >=
-          gates.disagreement_p,
-  };
+  return !lack_of_fit(linear, noise_beside(linear, gates), gates).significant(gates);
+}
+
+/// Whether no two profiles differ by more than noise.
+bool profiles_agree(const FittedModel& fitted, const Gates& gates) {
+  const std::vector<Noise> of_each = noise_of_each(fitted.fit.linear, fitted.fit.noise, gates);
+  return disagreement(fitted, of_each).p_value >= gates.disagreement_p;
 }
 
 /// The model of all profiles with an effect as those but one show it.
@@ -188,8 +186,8 @@ class TimeFinder {
     std::vector<Profile> profiles = extender_.profiles();
     std::ranges::find(profiles, odd, &Profile::name)->role = Role::holdout;
     const FittedModel others = fitted_to(problem_, profiles, shown_);
-    const Left left = what_is_left(others, problem_.trace.gates);
-    if (left.is_noise && left.agrees) odd_.push_back(odd);
+    const Gates& gates = problem_.trace.gates;
+    if (leaves_noise(others, gates) && profiles_agree(others, gates)) odd_.push_back(odd);
     const Dictionary dictionary =
         make_dictionary(others.model, problem_, others.fit.linear.prior_rows.rows());
     for (const AcceptedEffect& effect : shown_effects(problem_, others, dictionary))
@@ -212,7 +210,7 @@ class TimeFinder {
                                    shapes_with(declared.fit.estimate.shapes, effect.shape));
     const Gates& gates = problem_.trace.gates;
     if (lack_of_fit(fitted.fit.linear, noise_, gates).significant(gates) ||
-        !what_is_left(fitted, gates).agrees)
+        !profiles_agree(fitted, gates))
       return std::nullopt;
     const Whitened data(fitted.fit.linear, noise_);
     const double cost = data.residual().squaredNorm() +
@@ -235,7 +233,8 @@ class TimeFinder {
 /// The declared model of the profiles, the sign of one of them turned.
 struct Turned {
   double cost = 0.0;  // square of the white residual
-  Left left;
+  bool is_noise = true;
+  bool agrees = true;
 };
 
 Turned with_sign_turned(const Problem& problem, ModelExtender& extender,
@@ -249,7 +248,8 @@ Turned with_sign_turned(const Problem& problem, ModelExtender& extender,
   Turned out;
   out.cost =
       Whitened(linear, noise_beside(extender.base().fit.linear, gates)).residual().squaredNorm();
-  out.left = what_is_left(fitted, gates);
+  out.is_noise = leaves_noise(fitted, gates);
+  out.agrees = profiles_agree(fitted, gates);
   return out;
 }
 
@@ -327,13 +327,13 @@ std::vector<Blunder> held_against_time(std::vector<Blunder> found, const Problem
   const Gates& gates = problem.trace.gates;
   const bool is_sure = found.front().left <= gates.blunder_left * gates.blunder_left;
   const Turned turned = with_sign_turned(problem, extender, shown, found.front().profile);
-  if (turned.left.is_noise && is_sure) return found;
+  if (turned.is_noise && is_sure) return found;
   TimeFinder finder(problem, extender, shown);
   finder.try_all();
   finder.keep_certain();
   std::vector<Blunder> of_time =
-      blunders_of(turned.left.is_noise ? finder.best_below(turned.cost) : finder.best());
-  if (of_time.empty() && (is_sure || turned.left.is_noise || turned.left.agrees)) return found;
+      blunders_of(turned.is_noise ? finder.best_below(turned.cost) : finder.best());
+  if (of_time.empty() && (is_sure || turned.is_noise || turned.agrees)) return found;
   return of_time;
 }
 

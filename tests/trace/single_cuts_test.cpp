@@ -147,8 +147,8 @@ TEST_P(SingleCuts, AWrongDirectionBesideADriftOfAllIsNamedWithItsCut) {
   }
 }
 
-// A reading that rings: white noise through a resonance at 0.05 cycles a sample, 0.4 a value, its
-// peak three times as strong as the noise is in the mean. Of waves no name may stand alone: one in
+// A reading that rings: white noise through a resonance at 0.05 cycles a sample, whose spectral
+// density there is 4 times that of the slow noise. Of waves no name may stand alone: one in
 // a hundred searches may find one (Gates::significance).
 TEST_P(SingleCuts, ResonanceOfTheReadingIsNoWave) {
   const NoiseOfReading ringing = [](std::size_t samples, RandomStream& random) {
