@@ -115,6 +115,9 @@ Areal areal(const Grid& grid) {
 std::vector<double> even_positions(std::size_t count, double start, double step) {
   std::vector<double> positions(count);
   for (std::size_t i = 0; i < count; ++i) positions[i] = start + static_cast<double>(i) * step;
+  if (count > 0 && !std::isfinite(positions.back()))
+    throw DataError("spacing: " + std::to_string(count) + " points " + shortest(step) +
+                    " apart; accepted: one that leaves positions finite");
   return positions;
 }
 

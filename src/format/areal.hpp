@@ -21,6 +21,7 @@ struct Grid {
 };
 
 /// `count` positions from `start`, `step` apart.
+/// @throws DataError where the last is no finite number
 std::vector<double> even_positions(std::size_t count, double start, double step);
 
 /// Points given row after row as a grid: a row ends where y changes.

@@ -54,6 +54,15 @@ double read_positive(std::string_view field, const std::string& place) {
   return number;
 }
 
+void multiply(std::span<double> values, double scale, const std::string& place) {
+  for (double& value : values) {
+    value *= scale;
+    if (std::isinf(value))
+      throw DataError(place + ": " + shortest(scale) +
+                      "; accepted: one that leaves heights finite");
+  }
+}
+
 std::size_t read_count(std::string_view field, const std::string& place) {
   constexpr double kMost = 9007199254740992.0;  // whole numbers are exact up to here
   const std::optional<double> number = parse_double(field);

@@ -40,6 +40,9 @@ std::size_t read_count(std::string_view field, const std::string& place);
 std::vector<double> read_numbers(std::string_view text, std::size_t count, const std::string& place,
                                  std::span<const std::string_view> missing = {});
 
+/// @throws DataError where a product is no finite number
+void multiply(std::span<double> values, double scale, const std::string& place);
+
 /// @throws DataError if `bytes` cannot hold so many values of at least `size` bytes each
 void check_count(std::size_t count, std::size_t bytes, std::size_t size, const std::string& place);
 

@@ -99,7 +99,7 @@ Trace Prf::read(std::string_view bytes, const TraceRequest& request) const {
   trace.values = read_numbers(take_record(bytes, "heights"), z.count, "heights");
   if (trimmed(bytes) != "EOF")
     throw DataError("behind the heights: no line EOF; is the file cut off?");
-  for (double& value : trace.values) value *= z.scale;
+  multiply(trace.values, z.scale, "CZ, scale");
   trace.positions = even_positions(trace.values.size(), 0.0, spacing);
   return trace;
 }

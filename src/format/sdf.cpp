@@ -215,10 +215,7 @@ Trace Sdf::read(std::string_view bytes, const TraceRequest& request) const {
     header = read_text_header(bytes.substr(0, end));
     heights = read_text_values(bytes.substr(end + 1), header);
   }
-  for (double& height : heights) {
-    height *= header.z_scale;
-    if (std::isinf(height)) refuse("Zscale", header.z_scale, "one that leaves heights finite");
-  }
+  multiply(heights, header.z_scale, "header: Zscale");
   const Grid grid{even_positions(header.points, 0.0, header.x_scale),
                   even_positions(header.profiles, 0.0, header.y_scale), std::move(heights)};
   Trace trace = line_of(grid, request, "m");

@@ -119,8 +119,7 @@ Trace Smd::read(std::string_view bytes, const TraceRequest& request) const {
   trace.position_unit = x.unit();
   trace.value_unit = z.unit();
   trace.values = read_numbers(records[2], z.count(), "record 3");
-  const double scale = z.scale();
-  for (double& value : trace.values) value *= scale;
+  multiply(trace.values, z.scale(), z.place + ", scale");
   trace.positions = even_positions(trace.values.size(), 0.0, spacing);
   return trace;
 }

@@ -74,6 +74,7 @@ TEST(Prf, RefusesHostileFiles) {
               HasSubstr("are declared"));
   EXPECT_THAT(wrong("UM", "YARD"), HasSubstr("YARD"));
   EXPECT_THAT(wrong("1.000000e-006", "0"), HasSubstr("scale"));
+  EXPECT_THAT(wrong("1.000000e-006", "1e308"), HasSubstr("leaves heights finite"));
   EXPECT_THAT(wrong("SPACING CX", "PACING CX"), HasSubstr("SPACING CX is missing"));
   EXPECT_THAT(wrong("2.500000e-004", "-1"), HasSubstr("SPACING"));
   EXPECT_THAT(wrong("-270753", "12x"), HasSubstr("value 2"));

@@ -88,6 +88,10 @@ TEST(Smd, RefusesHostileFiles) {
   EXPECT_THAT(wrong("PRF\0"s, "SUR\0"s), HasSubstr("feature type 'SUR'"));
   EXPECT_THAT(wrong("mm\0"s, "furlong\0"s), HasSubstr("furlong"));
   EXPECT_THAT(wrong("2.5e-4", "0"), HasSubstr("increment"));
+  EXPECT_THAT(refusal(smd, replaced(npl("1\r\n1e308\r\n1\r\n"), "um\0 1.0e0"s, "um\0 10"s),
+                      {.ignore_checksum = true}),
+              HasSubstr("CZ, scale: 10; accepted: one that leaves heights finite"));
+  EXPECT_THAT(wrong("2.5e-4", "1e308"), HasSubstr("leaves positions finite"));
   EXPECT_THAT(wrong("2.5e-4", ""), HasSubstr("CX"));
   EXPECT_THAT(wrong("-0.270753", "abc"), HasSubstr("value 2"));
   EXPECT_THAT(wrong("-0.270753", "nan"), HasSubstr("value 2"));
