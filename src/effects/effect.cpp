@@ -81,7 +81,8 @@ std::optional<ShownBySamples> Effect::shown_by(const Stations& /*stations*/,
 
 std::string Effect::fault(const Stations& /*stations*/) const { return ""; }
 
-double Effect::noise_share(const Stations& /*stations*/, std::span<const double> /*shape*/) const {
+double Effect::noise_variance(const Stations& /*stations*/,
+                              std::span<const double> /*shape*/) const {
   return 0.0;
 }
 

@@ -156,29 +156,37 @@ void explain_noise(const Solution& fit, ModelResult& out) {
   }
 }
 
-/// Errors in variables: noise of a measured cause makes its amplitude too small, by its share of
-/// the square in the profile that shows the cause best.
+/// Errors in variables: of the information on an amplitude, 1/u², noise of its measured cause makes
+/// a part Σ n v/σ², with v its variance in n values of noise σ. The estimate is too small by that
+/// share (Fuller 1987, Measurement Error Models, Eq. (1.1.7)).
 void explain_noise_of_causes(const Model& model, const Solution& fit, ModelResult& out) {
   constexpr double kMatters = 0.1;  // of U
   for (const ModelTerm& term : model.terms) {
-    std::optional<double> share;
-    for (const Observation* observation : fit.linear.observations) {
-      const Profile& profile = *observation->profile;
+    double information = 0.0;
+    for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
+      const Observation& observation = *fit.linear.observations[i];
+      const Profile& profile = *observation.profile;
       if (!term.acts_on(profile)) continue;
-      std::vector<double> positions = observation->low_band.positions(profile.positions);
+      std::vector<double> positions = observation.low_band.positions(profile.positions);
       std::ranges::sort(positions);
-      const double here = term.effect->noise_share({positions, profile.setup, model.machine},
-                                                   shapes_of(term, fit.estimate.shapes));
-      share = std::min(share.value_or(here), here);
+      const double noise = fit.noise[i].standard_deviation() / low_band_scale(observation);
+      information += static_cast<double>(observation.values.size() - observation.left_out()) *
+                     term.effect->noise_variance({positions, profile.setup, model.machine},
+                                                 shapes_of(term, fit.estimate.shapes)) /
+                     (noise * noise);
     }
     const std::string name = term.name + "." + term.effect->parameters().front().name;
     const FittedParameter* size = out.find(name);
-    if (!share || !size || !size->value || !size->expanded_uncertainty) continue;
-    const double bias = *share * std::abs(*size->value);
-    if (bias > kMatters * *size->expanded_uncertainty)
-      out.notes.push_back(name + " is too small by " + significant(bias, 2) + " " + size->unit +
-                          " (" + significant(100.0 * *share, 2) +
-                          " %), because what was logged is noisy; U does not hold that");
+    if (information == 0.0 || !size || !size->value || !size->expanded_uncertainty) continue;
+    const Eigen::RowVectorXd row = fit.uncertainty.basis.row(term.first_amplitude);
+    const double share = std::min(information * row.dot(row * fit.uncertainty.covariance), 1.0);
+    const double bias = std::abs(*size->value) * share / (1.0 - share);
+    if (!(bias > kMatters * *size->expanded_uncertainty)) continue;
+    const std::string why = ", because the log is noisy; U does not include this";
+    out.notes.push_back(share < 1.0 ? name + " is too small by about " + significant(bias, 2) +
+                                          " " + size->unit + " (" + significant(100.0 * share, 2) +
+                                          " % of it)" + why
+                                    : name + " says nothing: what moves in the log is noise" + why);
   }
 }
 

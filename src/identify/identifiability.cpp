@@ -6,6 +6,9 @@
 #include <cmath>
 #include <set>
 
+#include "slideway/base/text.hpp"
+#include "slideway/identify/solve.hpp"
+
 namespace slideway {
 namespace {
 
@@ -55,6 +58,15 @@ std::string advice(const Model& model, const std::vector<bool>& in_direction) {
     for (std::size_t p = 0; p < parameters.size(); ++p)
       if (in_direction[static_cast<std::size_t>(model.terms[t].first_parameter) + p])
         parts[t].own.push_back(parameters[p].name);
+  }
+  for (std::size_t t = 0; t < parts.size(); ++t) {
+    std::vector<const Setup*> setups;
+    for (const Observation* observation : fitted_observations(model))
+      if (model.terms[t].acts_on(*observation->profile))
+        setups.push_back(&observation->profile->setup);
+    const std::vector<std::string> lacking = model.terms[t].effect->lacking_together(setups);
+    if (!parts[t].own.empty() && !lacking.empty())
+      return model.terms[t].name + " takes " + joined(lacking);
   }
   for (std::size_t t = 0; t < parts.size(); ++t) {
     if (parts[t].own.empty()) continue;

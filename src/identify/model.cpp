@@ -318,6 +318,11 @@ Model build_model(const Problem& problem, const std::vector<Profile>& profiles,
   return model;
 }
 
+double low_band_scale(const Observation& observation) {
+  return std::sqrt(static_cast<double>(observation.low_band.samples()) /
+                   static_cast<double>(observation.values.size()));
+}
+
 Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
                                  const Observation& observation, std::span<const double> shape) {
   const Profile& profile = *observation.profile;

@@ -94,12 +94,13 @@ Channel read_channel(const Section& section, const ProblemRules& rules, Problem&
   return channel;
 }
 
-/// What the loop asks of every log: the quantity, or what follows it slowly.
+/// What the loop asks of every log: the quantity, or what follows it later or slowly.
 DeclaredEffect follower_of(const Section& section, const Channel& channel, const Problem& problem) {
   check_name_is_free(section, "name", channel.name, problem.own_effects);
   try {
     return {channel.name,
-            {.own = channel_effect(channel, {.name = channel.name, .free_tau = true})},
+            {.own = channel_effect(channel,
+                                   {.name = channel.name, .free_lag = true, .free_tau = true})},
             {}};
   } catch (const UsageError& error) {
     section.fail("file", error.what());

@@ -42,6 +42,21 @@ ResidualSummary residual_summary(const Observation& observation, const Eigen::Ve
   return out;
 }
 
+/// "µm, slope: µrad" as the fitted readings that show the term have it.
+std::string unit_in(const std::string& unit, const Solution& fit, const ModelTerm& term) {
+  constexpr std::string_view kOfSlopes = ", slope: ";
+  const std::size_t at = unit.find(kOfSlopes);
+  if (at == std::string::npos) return unit;
+  bool heights = false, slopes = false;
+  for (const Observation* observation : fit.linear.observations) {
+    const Setup& setup = observation->profile->setup;
+    if (term.acts_on(*observation->profile) && term.effect->applies_to(setup))
+      (setup.quantity == Quantity::slope ? slopes : heights) = true;
+  }
+  if (heights == slopes) return unit;
+  return heights ? unit.substr(0, at) : unit.substr(at + kOfSlopes.size());
+}
+
 void add_parameters(const Model& model, const Reported& reported, ModelResult& out) {
   const Solution& fit = reported.solution();
   for (const ModelTerm& term : model.terms) {
@@ -52,7 +67,7 @@ void add_parameters(const Model& model, const Reported& reported, ModelResult& o
       FittedParameter parameter;
       parameter.name = term.name + "." + parameters[p].name;
       parameter.symbol = parameters[p].symbol;
-      parameter.unit = parameters[p].unit;
+      parameter.unit = unit_in(parameters[p].unit, fit, term);
       parameter.standard_name = term.effect->description().standard_name;
       parameter.identifiable = fit.null.identifiable[index];
       if (parameter.identifiable)

@@ -15,9 +15,10 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kFewLetters = 38;            // names that leave room for a sentence
-constexpr std::size_t kShortNames = 30;            // and for its end
-constexpr std::size_t kBoxText = kLineWidth - 11;  // beside the label
+constexpr std::size_t kFewLetters = 38;               // names that leave room for a sentence
+constexpr std::size_t kShortNames = 30;               // and for its end
+constexpr std::size_t kBoxText = kLineWidth - 11;     // beside the label
+constexpr std::size_t kTwoLines = 2 * kBoxText - 20;  // with the badge, and words that do not break
 
 std::string in_expanded_uncertainties(double shift) {
   return number(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " U";  // no -0
@@ -44,33 +45,46 @@ std::vector<TraceRound> found_effects(const TraceResult& trace) {
   return out;
 }
 
-std::string found(const TraceResult& trace) {
+/// What was raised to a higher degree was in the model before.
+std::string title_in(const Analysis& analysis, const std::string& name) {
+  const auto& declared = analysis.result.declared;
+  const bool is_raised = declared && std::ranges::count(declared->effects, name) > 0;
+  return (is_raised ? "a higher degree of " : "") + effect_title(name);
+}
+
+/// "(a or b) and c"
+std::string found(const Analysis& analysis) {
+  const std::vector<TraceRound> effects = found_effects(*analysis.trace);
   std::vector<std::string> out;
-  for (const TraceRound& effect : found_effects(trace))
-    out.push_back(effect_titles(names_of(effect), " or "));
+  for (const TraceRound& effect : effects) {
+    std::vector<std::string> titles;
+    for (const std::string& name : names_of(effect)) titles.push_back(title_in(analysis, name));
+    const std::string names = joined(titles, " or ");
+    const bool is_choice = effects.size() > 1 && !effect.ambiguous_with.empty();
+    out.push_back(is_choice ? "(" + names + ")" : names);
+  }
   return joined(out, " and ");
 }
 
-/// The same in so many letters, if it can be: rivals are counted, then the last effects, and the
-/// rivals are left out.
-std::string found_in_brief(const TraceResult& trace, std::size_t letters) {
-  const std::vector<TraceRound> effects = found_effects(trace);
+/// The same in so many letters, if it can be: rivals are counted, then the last effects.
+std::string found_in_brief(const Analysis& analysis, std::size_t letters) {
+  const std::vector<TraceRound> effects = found_effects(*analysis.trace);
   const std::size_t count = effects.size();
-  const auto first = [&](std::size_t named, bool with_rivals) {
+  const auto first = [&](std::size_t named) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < named; ++i) {
       const TraceRound& round = effects[i];
-      const std::size_t rivals = with_rivals ? round.ambiguous_with.size() : 0;
-      names.push_back(effect_title(round.accepted) +
+      const std::size_t rivals = round.ambiguous_with.size();
+      names.push_back(title_in(analysis, round.accepted) +
                       (rivals > 0 ? " (" + counted(rivals, "rival") + ")" : std::string()));
     }
     if (named < count) names.push_back(std::to_string(count - named) + " more");
     return joined(names, " and ");
   };
-  std::string out = found(trace);
+  std::string out = found(analysis);
   for (std::size_t named = count; named > 0 && code_points(out) > letters; --named)
-    out = first(named, true);
-  return code_points(out) > letters ? first(1, false) : out;
+    out = first(named);
+  return out;
 }
 
 /// Root mean square of what the missing effects make in the profiles, "" where it is not known.
@@ -98,7 +112,7 @@ std::string moved_by(const Shift& shift) {
 std::string what_was_missing(const Analysis& analysis) {
   const TraceResult& trace = *analysis.trace;
   const std::size_t count = found_effects(trace).size();
-  const std::string names = found(trace);
+  const std::string names = found(analysis);
   const std::string lacked =
       "the model lacked " + (names.size() <= kFewLetters ? names : counted(count, "effect"));
   const std::optional<Shift> shift = largest_shift(analysis.result);
@@ -108,7 +122,7 @@ std::string what_was_missing(const Analysis& analysis) {
 }
 
 std::string what_may_be_missing(const Analysis& analysis) {
-  const std::string names = found(*analysis.trace);
+  const std::string names = found(analysis);
   const std::string open =
       names.size() <= kFewLetters
           ? "the model lacks " + names +
@@ -254,15 +268,24 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   if (!clauses.empty()) out.alarm = std::max(out.alarm, Alarm::warn);
   const bool harms = out.alarm == Alarm::warn || out.alarm == Alarm::bad;
   if (harms) clauses.push_back(finding);
-  if (const std::string lead = lead_of(result); out.alarm != Alarm::bad && !lead.empty())
-    clauses.push_back(lead);
+  const std::string lead = lead_of(result);
+  const bool has_room = !harms || code_points(joined(clauses, "; ") + lead) < kTwoLines;
+  if (out.alarm != Alarm::bad && !lead.empty() && has_room) clauses.push_back(lead);
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::consistent)
     clauses.emplace_back("the run-out agrees");
   if (!harms) clauses.push_back(finding);
   out.verdict = joined(clauses, "; ");
   out.verdict_names_missing = analysis.trace && was_extended(analysis) &&
-                              out.verdict.find(found(*analysis.trace)) != std::string::npos;
+                              out.verdict.find(found(analysis)) != std::string::npos;
+}
+
+/// "" where nothing was compared.
+std::string agreement_of(const std::vector<ProfileCheck>& checks) {
+  std::optional<double> most;
+  for (const ProfileCheck& check : checks)
+    if (check.En) most = std::max(most.value_or(0.0), *check.En);
+  return most ? "the profiles agree, E_n up to " + en_text(*most) : "";
 }
 
 void say_crosscheck(const Result& result, Summary& out) {
@@ -291,6 +314,8 @@ void say_crosscheck(const Result& result, Summary& out) {
   }
   const std::size_t contradictions = parts.size();
   std::ranges::move(consistent, std::back_inserter(parts));
+  const std::string agreement = contradictions == 0 ? agreement_of(checks.profiles) : "";
+  if (!agreement.empty()) parts.push_back(agreement);
   out.has_crosscheck = !parts.empty();
   const std::string none = angle && !angle->reason.empty() ? ": " + angle->reason : "";
   out.crosscheck = parts.empty() ? "none" + none : joined(parts, "; ");
@@ -298,6 +323,8 @@ void say_crosscheck(const Result& result, Summary& out) {
                : parts.empty()        ? out.conformity + "; no cross-check" + none
                                       : out.conformity + "; " + out.crosscheck;
   out.checks_in_brief = out.checks;
+  if (!agreement.empty() && parts.size() > 1 && code_points(out.checks) > kBoxText)
+    out.checks_in_brief.erase(out.checks.size() - agreement.size() - 2);  // "; "
   if (contradictions > 1 && code_points(out.checks) > kBoxText)
     out.checks_in_brief = (out.conformity.empty() ? "" : out.conformity + "; ") + parts.front() +
                           "; " + std::to_string(contradictions - 1) + " more";
@@ -324,8 +351,8 @@ void say_missing(const Analysis& analysis, Summary& out) {
   const std::string what =
       moved ? ", which moved " + moved_by(*shift) : size_of_missing(analysis.result);
   const std::size_t left = kBoxText - std::min(kBoxText, code_points(what));
-  out.missing = found(*analysis.trace) + what;
-  out.missing_in_brief = found_in_brief(*analysis.trace, left) + what;
+  out.missing = found(analysis) + what;
+  out.missing_in_brief = found_in_brief(analysis, left) + what;
 }
 
 }  // namespace

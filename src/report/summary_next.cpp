@@ -96,6 +96,9 @@ std::string next_of_loop(const Analysis& analysis) {
   if (trace.verdict == TraceVerdict::ambiguous && is_harmless(analysis)) return "";
   if (trace.unfinished) return "run it again with a longer time limit";
   if (!trace.advice.empty()) return with_titles(trace.advice.front());
+  if (trace.verdict == TraceVerdict::unnamed && trace.unnamed && !trace.unnamed->forms.empty())
+    return "formulas of " + trace.unnamed->clock +
+           " describe what is left: --full prints each as a candidate to look for";
   if (trace.verdict == TraceVerdict::unnamed)
     return "look at the residual on the page: where the structure is, and over what it repeats";
   return "";

@@ -180,11 +180,24 @@ std::string separating_measurement(const Problem& problem, const std::vector<Pro
   }
   const std::string pair = effect.candidate->name() + " and " + rival.candidate->name();
   if (best < model.gates.tie_bic)
-    return pair + ": none of the cuts and traces tried on paper would tell them apart; " +
-           effect.candidate->name() + " is separated by " +
-           effect.candidate->term.effect->description().separated_by;
+    return pair + ": no cut or trace tried on paper tells them apart; " + effect.candidate->name() +
+           " is separated by " + effect.candidate->term.effect->description().separated_by;
   return pair + ": " + name + " would tell them apart best; predicted difference in BIC " +
          significant(best, 2);
+}
+
+std::string finer_band_advice(const Linearisation& linear, const TestedCandidate& wave,
+                              bool is_coarser) {
+  const std::vector<std::string>& cuts = wave.refined.candidate->term.profiles;
+  const auto observation = std::ranges::find_if(linear.observations, [&](const auto* each) {
+    return wave.refined.candidate->term.acts_on(*each->profile);
+  });
+  const int level = (*observation)->low_band.options().level;
+  const std::string found = "a wave of " + (cuts.empty() ? "the profiles" : joined(cuts, " and ")) +
+                            " may be the image of a faster one: ";
+  if (is_coarser) return found + "search more values (the gate search_values)";
+  if (level == 0) return found + "read it with a smaller spacing";
+  return found + "take the low band at level " + std::to_string(level - 1) + " or lower";
 }
 
 }  // namespace slideway

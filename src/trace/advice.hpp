@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "refine.hpp"
+#include "search_round.hpp"
 #include "slideway/identify/problem.hpp"
 
 namespace slideway {
@@ -18,5 +18,10 @@ namespace slideway {
 std::string separating_measurement(const Problem& problem, const std::vector<Profile>& profiles,
                                    const Model& model, const Solution& fit, const Whitened& data,
                                    const Refined& effect, const Refined& rival);
+
+/// What shows whether a wave of the search is the image of another one: a finer low band.
+/// @param is_coarser  whether the search has a coarser one than was declared
+std::string finer_band_advice(const Linearisation& linear, const TestedCandidate& wave,
+                              bool is_coarser);
 
 }  // namespace slideway

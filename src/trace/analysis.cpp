@@ -65,6 +65,11 @@ Analysis analyse(const Problem& problem, const std::vector<Profile>& profiles,
   }
 }
 
+TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles,
+                       const Progress& progress) {
+  return *analyse(problem, profiles, {}, progress).trace;
+}
+
 bool is_negative(const Analysis& analysis) {
   return is_negative(analysis.result) || (analysis.trace && is_negative(*analysis.trace));
 }

@@ -43,6 +43,9 @@ class ModelExtender {
   /// The declared model, in the low band of the search.
   [[nodiscard]] const FittedModel& base() const { return coarser_ ? coarser_->fitted : declared_; }
 
+  /// Whether that is coarser than the declared one.
+  [[nodiscard]] bool is_coarser() const { return coarser_ != nullptr; }
+
   /// The profiles of base().
   [[nodiscard]] const std::vector<Profile>& profiles() const {
     return coarser_ ? coarser_->profiles : profiles_;

@@ -11,7 +11,6 @@
 #include "process.hpp"
 #include "quick_formula.hpp"
 #include "slideway/base/parallel.hpp"
-#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/uncertainty.hpp"
 #include "structure.hpp"
 
@@ -300,11 +299,21 @@ std::vector<UnnamedForm> describe_in_forms(ModelExtender& extender,
 }
 
 std::string what_separates(const Unnamed& unnamed) {
-  for (const std::string& name : effect_names())
-    if (const Effect& effect = specimen(name);
-        !effect.is_carriage() && effect.description().variable == clock_of(unnamed).variable)
-      return effect.description().separated_by;
-  return "";
+  switch (clock_of(unnamed).variable) {
+    case IndependentVariable::slide:
+      return "the workpiece or the straightedge moved along the slide, or the slide read with an "
+             "autocollimator: a form of the slide stays at its x";
+    case IndependentVariable::time:
+      return "the same cut begun later, or a log of temperature, pressure or power beside it: "
+             "[[channel]]";
+    case IndependentVariable::distance:
+      return "a fresh tool, or a tool changed half way: what goes with the distance begins anew";
+    case IndependentVariable::reading_time:
+      return "the same stations read back: what goes with the reading time turns round";
+    default:
+      return "the same trace read once more, the workpiece turned on the instrument: what is of "
+             "the reading stays where it was in the trace";
+  }
 }
 
 }  // namespace slideway

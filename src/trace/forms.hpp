@@ -18,7 +18,7 @@ std::vector<UnnamedForm> describe_in_forms(ModelExtender& extender,
                                            const std::vector<AcceptedEffect>& effects,
                                            const Unnamed& unnamed);
 
-/// What tells causes of that variable apart, as the catalogue has it.
+/// What shows whether the cause goes with that variable.
 std::string what_separates(const Unnamed& unnamed);
 
 }  // namespace slideway

@@ -7,8 +7,8 @@
 
 namespace slideway {
 
-Known known_before_search(const Problem& problem, const FittedModel& declared) {
-  Known out{.shown = shown_by_samples(problem, declared)};
+Known known_before_search(std::vector<ShownEffect> shown, const FittedModel& declared) {
+  Known out{.shown = std::move(shown)};
   if (!out.shown.empty()) {
     ShownModel with = with_shown(declared, out.shown);
     out.fitted.emplace(std::move(with.fitted));

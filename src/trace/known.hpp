@@ -12,6 +12,7 @@ struct Known {
   std::optional<FittedModel> fitted;  // with all that; none: as declared
 };
 
-Known known_before_search(const Problem& problem, const FittedModel& declared);
+/// @param shown  shown_by_samples()
+Known known_before_search(std::vector<ShownEffect> shown, const FittedModel& declared);
 
 }  // namespace slideway

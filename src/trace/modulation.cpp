@@ -112,10 +112,10 @@ bool is_wave(const Model& model, const ModelTerm& term, std::span<const double> 
 }
 
 bool is_too_fine(const Model& model, const Refined& refined, const Observation& observation) {
-  constexpr double kValuesACycle = 4.0;
   const Effect& effect = *refined.candidate->term.effect;
   const Profile& profile = *observation.profile;
-  const auto cycles = static_cast<double>(observation.values.size() - 1) / kValuesACycle;
+  const double cycles =
+      static_cast<double>(observation.values.size() - 1) / model.gates.values_per_cycle;
   return std::ranges::any_of(
       effect.lines(profile.stations(model.machine), refined.shape), [&](const LineBand& line) {
         return cycles_along(profile.setup, effect, line) > cycles + 1.0;  // one: its width

@@ -77,8 +77,9 @@ std::vector<UnnamedRival> unnamed_rivals(ModelExtender& extender, const Effects&
     const std::vector<ProcessVariable>& rivals = is_way ? but_slide : variables;
     const std::vector<Process> processes = best_processes(data, rivals);
     for (std::size_t v = 0; v < rivals.size(); ++v)
-      out.push_back({"a process in " + rivals[v].symbol, absent, true,
-                     0.5 * gain - processes[v].log_evidence});
+      out.push_back({rivals[v].symbol == kOfEachProfile ? "a process of each profile"
+                                                        : "a process in " + rivals[v].symbol,
+                     absent, true, 0.5 * gain - processes[v].log_evidence});
     out.push_back({"heat that lifts and tilts the slide", absent, false,
                    0.5 * gain - heat_lifts_and_tilts(fitted.model, data, linear)});
     if (is_way && shows_slide_only(linear)) continue;

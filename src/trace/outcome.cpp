@@ -5,6 +5,7 @@
 
 #include "fit_numbers.hpp"
 #include "slideway/base/text.hpp"
+#include "structure.hpp"
 
 namespace slideway {
 
@@ -91,6 +92,27 @@ void doubt_what_is_uncertain(const Model& model, const ModelResult& final, Trace
                         " of its standard uncertainties, which hold what else may have made the "
                         "form");
   }
+}
+
+void report_untestable(const Dictionary& dictionary, const Problem& problem, TraceResult& out) {
+  for (const Untestable& effect : dictionary.not_testable) {
+    out.not_testable.push_back({effect.effect, effect.needs});
+    if (std::ranges::count(problem.own_effects, effect.effect, &DeclaredEffect::name) > 0)
+      out.notes.push_back(effect.effect + " was not looked for: it needs " + effect.needs);
+  }
+}
+
+void report_unnamed(const FittedModel& fitted, const Whitened& data, double p_value,
+                    const std::vector<TestedCandidate>& tested, ClosedLoop& closed) {
+  const Structure structure = find_structure(fitted.model, data, fitted.fit.linear);
+  std::optional<Unnamed>& unnamed = closed.trace.unnamed;
+  unnamed = describe(fitted.model, structure, data, fitted.fit.linear);
+  unnamed->p_value = p_value;
+  closed.widening = widening(fitted.model, fitted.fit, structure, tested);
+}
+
+bool is_negative(const TraceResult& trace) {
+  return trace.verdict == TraceVerdict::unnamed || trace.verdict == TraceVerdict::not_identifiable;
 }
 
 TraceVerdict verdict(const TraceResult& out, bool other_cause) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "extended_model.hpp"
+#include "loop.hpp"
 #include "search_round.hpp"
 
 namespace slideway {
@@ -26,6 +27,14 @@ std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck&
 /// An effect that is no longer so many times larger than its uncertainty as it must be, once that
 /// holds its rivals, those of the others and what has no name, is not said alone.
 void doubt_what_is_uncertain(const Model& model, const ModelResult& final, TraceResult& out);
+
+/// What the data cannot show; of the problem's own effects with a note.
+void report_untestable(const Dictionary& dictionary, const Problem& problem, TraceResult& out);
+
+/// Says what is left without a name, and widens the uncertainties by what it may be.
+/// @param p_value  of the test that found it
+void report_unnamed(const FittedModel& fitted, const Whitened& data, double p_value,
+                    const std::vector<TestedCandidate>& tested, ClosedLoop& closed);
 
 TraceVerdict verdict(const TraceResult& out, bool other_cause);
 

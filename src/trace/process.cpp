@@ -172,11 +172,6 @@ std::vector<Eigen::MatrixXd> ProcessVariable::columns(const Linearisation& linea
   return out;
 }
 
-double low_band_scale(const Observation& observation) {
-  return std::sqrt(static_cast<double>(observation.low_band.samples()) /
-                   static_cast<double>(observation.values.size()));
-}
-
 std::vector<Eigen::VectorXd> slide_positions(const Model& model, const Linearisation& linear) {
   return readings(model, linear, variables().front());
 }
@@ -216,7 +211,7 @@ std::vector<ProcessVariable> process_variables(const Model& model, const Lineari
   std::vector<std::size_t> all(linear.observations.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   if (all.size() < 2) return out;
-  out.push_back(own_processes(linear, all, "per profile"));
+  out.push_back(own_processes(linear, all, kOfEachProfile));
   for (const std::size_t i : all)
     out.push_back(own_processes(linear, {i}, linear.observations[i]->profile->name + " alone"));
   return out;

@@ -10,6 +10,7 @@
 namespace slideway {
 
 inline constexpr const char* kSlideSymbol = "r";  // of the slide coordinate, as the paper has it
+inline constexpr const char* kOfEachProfile = "per profile";
 
 /// What something without a name may depend on, with cosines of it as a basis.
 struct ProcessVariable {
@@ -23,9 +24,6 @@ struct ProcessVariable {
   /// Per fitted profile: its rows of all coefficients.
   [[nodiscard]] std::vector<Eigen::MatrixXd> columns(const Linearisation& linear) const;
 };
-
-/// Low-band value of a height (slope) of 1 that varies slowly: the root of samples a value.
-double low_band_scale(const Observation& observation);
 
 /// Slide coordinate of the low-band values of every fitted profile, mm.
 std::vector<Eigen::VectorXd> slide_positions(const Model& model, const Linearisation& linear);

@@ -103,7 +103,8 @@ void move_shapes(const Model& model, const Whitened& data, const ModelTerm& term
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   for (std::size_t j = 0; j < moving.size(); ++j)
-    shape[moving[j]] = term.effect->shapes()[moving[j]].outer(x[j]);
+    shape[moving[j]] = std::clamp(term.effect->shapes()[moving[j]].outer(x[j]), bounds[j].first,
+                                  bounds[j].second);  // its logarithm rounds
 }
 
 /// Brings the smooth shapes to their best together, between the neighbours on the grid, or over the
@@ -178,16 +179,15 @@ void move_stepwise_shapes(const Model& model, const Whitened& data, const Findin
   }
 }
 
-/// Whether a smooth shape stands at an end of what the search covers.
+/// Whether a smooth shape stands at an end of what the search covers that is no law of its own.
 bool is_at_end(const Candidate& candidate, const std::vector<double>& shape) {
   for (std::size_t s = 0; s < shape.size(); ++s) {
     const Shape& kind = candidate.term.effect->shapes()[s];
     const std::vector<double>& axis = candidate.grid.axes()[s];
     const double first = kind.inner(axis.front()), last = kind.inner(axis.back());
     const double at = kind.inner(shape[s]);
-    if (!kind.stepwise && !kind.higher_order &&
-        std::min(at - first, last - at) < 1e-6 * (last - first))
-      return true;
+    const double left = kind.may_begin ? last - at : std::min(at - first, last - at);
+    if (!kind.stepwise && !kind.higher_order && left < 1e-6 * (last - first)) return true;
   }
   return false;
 }

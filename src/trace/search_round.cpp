@@ -129,8 +129,8 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     tested.part_of = part_of_a_line(model, fit.estimate.shapes, tested.refined);
     const std::optional<std::size_t> only = finding.candidate->only;
     if (only && is_too_fine(model, tested.refined, *fit.linear.observations[*only]))
-      tested.folded = "its profile has fewer than four values a cycle";
-    else if (is_of_feed_marks(model, data, tested.refined, tested.fitted))
+      tested.folded = "its profile has too few low-band values a cycle";
+    else if ((tested.of_feed_marks = is_of_feed_marks(model, data, tested.refined, tested.fitted)))
       tested.folded = "its line is that of the feed marks, folded by sampling";
     else if (!samples.have(tested.refined))
       tested.folded = "the samples do not have its line: the low band has folded another";

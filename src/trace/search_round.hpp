@@ -14,11 +14,11 @@ struct TestedCandidate {
   std::optional<HeldOut> held_out;
   Eigen::VectorXd fitted;  // what it takes of the white residual
   std::string part_of;     // part_of_a_line()
-  /// What has folded another line to where its own is: feed_marks_at(), SampleResiduals::have();
-  /// empty: nothing.
+  /// Why its line may be another one, folded to where its own is; empty: it is none.
   std::string folded;
-  bool is_wave = false;       // is_wave()
-  double noise_beside = 1.0;  // of a wave: noise_beside_line()
+  bool of_feed_marks = false;  // is_of_feed_marks(): that is the other one
+  bool is_wave = false;        // is_wave()
+  double noise_beside = 1.0;   // of a wave: noise_beside_line()
 
   [[nodiscard]] const std::string& name() const { return refined.candidate->name(); }
   /// Difference in BIC under the noise beside its line.

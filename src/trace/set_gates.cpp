@@ -69,10 +69,19 @@ bool has_part_in(const std::vector<AcceptedEffect>& effects, const TestedCandida
 }
 
 bool finds_too_much(const TestedCandidate& each, const Gates& gates) {
-  return each.refined.projection.rank > 0 && each.part_of.empty() && each.folded.empty() &&
-         !is_kinematic(*each.refined.candidate) && each.p_value <= gates.lack_of_fit_p &&
-         each.refined.delta_bic <= -gates.left_over_bic &&
+  const bool is_known =
+      !each.part_of.empty() || each.of_feed_marks || is_kinematic(*each.refined.candidate);
+  if (each.refined.projection.rank == 0 || is_known) return false;
+  if (!each.folded.empty()) return each.delta_bic_beside() <= -gates.left_over_bic;
+  return each.p_value <= gates.lack_of_fit_p && each.refined.delta_bic <= -gates.left_over_bic &&
          !(each.held_out && !each.held_out->helps);
+}
+
+const TestedCandidate* folded_wave(const SearchRound& round, const Gates& gates) {
+  const auto at = std::ranges::find_if(round.tested, [&](const TestedCandidate& each) {
+    return !each.folded.empty() && finds_too_much(each, gates);
+  });
+  return at == round.tested.end() ? nullptr : &*at;
 }
 
 }  // namespace slideway

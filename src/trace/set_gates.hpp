@@ -36,4 +36,8 @@ bool has_part_in(const std::vector<AcceptedEffect>& effects, const TestedCandida
 /// marks apart, which every cut has.
 bool finds_too_much(const TestedCandidate& each, const Gates& gates);
 
+/// The best wave of a search that finds too much, though its line may be the image of another one;
+/// null: none.
+const TestedCandidate* folded_wave(const SearchRound& round, const Gates& gates);
+
 }  // namespace slideway

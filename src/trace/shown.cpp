@@ -6,7 +6,9 @@
 #include <span>
 
 #include "dictionary.hpp"
+#include "fit_numbers.hpp"
 #include "search.hpp"
+#include "slideway/base/distribution.hpp"
 #include "slideway/base/statistics.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/effects/catalogue.hpp"
@@ -276,6 +278,24 @@ TraceRound round_of(const ShownEffect& shown, const FittedModel& without, const 
   return out;
 }
 
+bool is_absent(const ShownEffect& shown, const ModelResult& fit, const Gates& gates) {
+  constexpr double kKnown = 0.25;  // of the variance of the bounds
+  const std::vector<Prior>& bounds = shown.effect.priors;
+  if (!shown.is_settled || bounds.empty()) return false;
+  double before = 0.0, after = 0.0, found = 0.0;
+  const std::vector<FittedParameter> sizes =
+      parameters_of(fit, term_name(shown.effect.name, shown.effect.options.profiles));
+  for (std::size_t p = 0; p < bounds.size(); ++p) {
+    const FittedParameter& size = sizes[p];
+    if (bounds[p].value != 0.0 || !size.value || !size.standard_uncertainty) return false;
+    before += std::pow(bounds[p].standard_uncertainty, 2);
+    after += std::pow(*size.standard_uncertainty, 2);
+    found += std::pow(*size.value / *size.standard_uncertainty, 2);
+  }
+  return after < kKnown * before &&
+         chi_squared_tail(static_cast<double>(bounds.size()), found) > gates.significance;
+}
+
 }  // namespace
 
 std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedModel& declared) {
@@ -292,6 +312,14 @@ std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedMo
     for (ShownEffect& each : own) each.is_settled = any;  // none of all profiles beside one
   }
   return out;
+}
+
+std::vector<ShownEffect> without_absent(std::vector<ShownEffect> shown, const FittedModel& fitted) {
+  if (shown.empty()) return shown;
+  const ModelResult fit = summarise(fitted.model, fitted.fit);
+  std::erase_if(shown,
+                [&](const ShownEffect& each) { return is_absent(each, fit, fitted.model.gates); });
+  return shown;
 }
 
 std::vector<ShownEffect> of_any_phase_in(std::vector<ShownEffect> shown,

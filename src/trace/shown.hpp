@@ -28,6 +28,11 @@ struct ShownEffect {
 /// where what the low band has faster than slow cosines holds less than half of them.
 std::vector<ShownEffect> shown_by_samples(const Problem& problem, const FittedModel& declared);
 
+/// Without those that a fit says are not there: their samples give nothing but bounds, the fit
+/// knows them twice as well, and the sizes it finds are those of noise.
+/// @param fitted  with them
+std::vector<ShownEffect> without_absent(std::vector<ShownEffect> shown, const FittedModel& fitted);
+
 /// The same, where one profile is meant in another way, its sign turned or its direction: of the
 /// effects of its own only the size is known then, not the phase.
 std::vector<ShownEffect> of_any_phase_in(std::vector<ShownEffect> shown,

@@ -17,12 +17,12 @@
 #include "own_noise.hpp"
 #include "selection.hpp"
 #include "sensitivity.hpp"
+#include "set_gates.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/agreement.hpp"
 #include "slideway/identify/crosscheck.hpp"
 #include "slideway/identify/left_out.hpp"
 #include "slideway/identify/noise_model.hpp"
-#include "slideway/trace/analysis.hpp"
 #include "time_blunder.hpp"
 #include "widening.hpp"
 
@@ -33,10 +33,10 @@ class Loop {
  public:
   /// @param declared  with what is shown
   Loop(const Problem& problem, const std::vector<Profile>& profiles, const FittedModel& declared,
-       const std::vector<ShownEffect>& shown, const Progress& progress)
+       const std::vector<ShownEffect>& shown, TimeLimit& limit, const Progress& progress)
       : problem_(problem),
         progress_(progress),
-        limit_(problem.trace.time_limit_s),
+        limit_(limit),
         shown_(shown),
         extender_(problem, profiles, declared, shown, limit_, progress),
         statistics_(extender_) {}
@@ -165,15 +165,6 @@ class Loop {
       if (!effect.refused) effect.refused = otherwise;
   }
 
-  static void report_unnamed(const FittedModel& fitted, const Whitened& data, double p_value,
-                             const std::vector<TestedCandidate>& tested, ClosedLoop& closed) {
-    const Structure structure = find_structure(fitted.model, data, fitted.fit.linear);
-    std::optional<Unnamed>& unnamed = closed.trace.unnamed;
-    unnamed = describe(fitted.model, structure, data, fitted.fit.linear);
-    unnamed->p_value = p_value;
-    closed.widening = widening(fitted.model, fitted.fit, structure, tested);
-  }
-
   /// Whether an effect of all profiles leaves less of the residual than the blunder that leaves
   /// least, or leaves no profile that disagrees: the sign of a drift, too, turns with the direction
   /// of the cut. None outweighs a trace that is as long as no other, and as some in another unit.
@@ -295,6 +286,11 @@ class Loop {
       found_p = std::min(found_p, std::exp(-evidence));
       is_wrong = evidence > gates.shared_evidence;
     }
+    if (const TestedCandidate* const wave = folded_wave(last, gates)) {
+      found_p = std::min(found_p, std::exp(0.5 * wave->delta_bic_beside()));
+      is_wrong = true;
+      out.advice.push_back(finer_band_advice(fitted.fit.linear, *wave, extender_.is_coarser()));
+    }
     if (!is_wrong) return;
     report_unnamed(fitted, last.data, found_p, last.tested, closed);
     if (profiles_differ() && out.blunders.empty())
@@ -344,8 +340,7 @@ class Loop {
   }
 
   void report_limits(const Selection& selection, TraceResult& out) {
-    for (const Untestable& effect : extender_.dictionary().not_testable)
-      out.not_testable.push_back({effect.effect, effect.needs});
+    report_untestable(extender_.dictionary(), problem_, out);
     const FittedModel& fitted = extender_.extended(selection.effects);
     const Whitened& data = extender_.search(selection.effects).data;
     out.not_separable =
@@ -363,7 +358,7 @@ class Loop {
 
   const Problem& problem_;
   const Progress& progress_;
-  TimeLimit limit_;
+  TimeLimit& limit_;
   const std::vector<ShownEffect>& shown_;
   ModelExtender extender_;
   SetStatistics statistics_;
@@ -373,16 +368,22 @@ class Loop {
 
 }  // namespace
 
-TraceResult close_loop(const Problem& problem, const std::vector<Profile>& profiles,
-                       const Progress& progress) {
-  return *analyse(problem, profiles, {}, progress).trace;
-}
-
 ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profiles,
                       const FittedModel& declared, const Progress& progress) {
-  Known known = known_before_search(problem, declared);
-  const FittedModel& begun = known.fitted ? *known.fitted : declared;
-  ClosedLoop out = Loop(problem, profiles, begun, known.shown, progress).run();
+  TimeLimit limit(problem.trace.time_limit_s);
+  Known known = known_before_search(shown_by_samples(problem, declared), declared);
+  const auto run = [&] {
+    const FittedModel& begun = known.fitted ? *known.fitted : declared;
+    return Loop(problem, profiles, begun, known.shown, limit, progress).run();
+  };
+  ClosedLoop out = run();
+  auto present = without_absent(known.shown, out.extended   ? *out.extended
+                                             : known.fitted ? *known.fitted
+                                                            : declared);
+  if (present.size() < known.shown.size()) {
+    known = known_before_search(std::move(present), declared);
+    out = run();
+  }
   TraceResult& trace = out.trace;
   trace.notes.insert(trace.notes.begin(), known.notes.begin(), known.notes.end());
   if (!known.rounds.empty() && trace.verdict == TraceVerdict::nothing_missing)
@@ -391,10 +392,6 @@ ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profil
   if ((!known.notes.empty() || !known.rounds.empty()) && !out.extended)
     out.extended = std::move(known.fitted);
   return out;
-}
-
-bool is_negative(const TraceResult& trace) {
-  return trace.verdict == TraceVerdict::unnamed || trace.verdict == TraceVerdict::not_identifiable;
 }
 
 }  // namespace slideway

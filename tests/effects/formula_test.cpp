@@ -203,6 +203,31 @@ TEST(Formula, RefusesParametersThatDoNotFit) {
   EXPECT_THAT(refusal("a * x / 0", {{"a", "um"}}), HasSubstr("not finite"));
 }
 
+// Of t in s and r in mm.
+TEST(Formula, RefusesUnitsThatDoNotFit) {
+  EXPECT_THAT(refusal("a * t", {{"a", "um/min"}}),
+              AllOf(StartsWith("column 1: 'a' is in \"um/min\""), HasSubstr("accepted: um/s,")));
+  EXPECT_THAT(refusal("a * r * t", {{"a", "um/s"}}), HasSubstr("accepted: um/(mm s),"));
+  EXPECT_THAT(refusal("a * t^2 / r", {{"a", "um/s^2"}}), HasSubstr("accepted: mm um/s^2,"));
+  EXPECT_THAT(refusal("a * (1 - exp(-t / tau))", {{"a", "um"}, {"tau", "min", 0.1, 5.0}}),
+              AllOf(StartsWith("column 19: 'tau' is in \"min\""), HasSubstr("accepted: s,")));
+  EXPECT_THAT(refusal("a * t", {{"a", "um/"}}), HasSubstr("cannot be read"));
+  for (const auto& [text, parameters] :
+       std::initializer_list<std::pair<const char*, std::vector<FormulaParameter>>>{
+           {"a * t", {{"a", "um/s"}}},
+           {"a * t", {{"a", "um"}}},  // in the units of the variables
+           {"a * t / 60", {{"a", "um/min"}}},
+           {"a * s", {{"a", "um/m"}}},
+           {"a * r^2 * rpm / feed", {{"a", "um mm^-1"}}},
+           {"a * sqrt(t)", {{"a", "um"}}},
+           {"a * sin(2 * pi * f * t + p)",
+            {{"a", "um"}, {"f", "Hz", 0.1, 1.0}, {"p", "rad", 0, 6}}},
+           {"a * (1 - exp(-max(t - t0, 0) / tau))",
+            {{"a", "um"}, {"t0", "s", 0.0, 9.0}, {"tau", "s", 1.0, 9.0}}}})
+    EXPECT_NO_THROW((void)formula_effect({.name = "own", .text = text, .parameters = parameters}))
+        << text;
+}
+
 TEST(Formula, SaysWhereOnAProfileItIsNotFinite) {
   const Case face = all_cases()[0], diameter = all_cases()[2];
   EXPECT_THAT(fault("a * x + a * 3 / r", {{"a", "um"}}, face),

@@ -325,6 +325,7 @@ TEST(SpindleRunout, GrowsAlongTheReading) {
   // counts -1 at the first and +1 at the last position.
   Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), {0.0, 50.0, 100.0, 100.25}};
   profile.setup.feed_mm_per_min = 60.0;
+  profile.setup.spindle_rpm = 60.0;
   profile.setup.cut_direction = CutDirection::outward;
   const Eigen::VectorXd first =
       height_um("spindle_runout", profile, {1.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 60.0});
@@ -342,6 +343,7 @@ TEST(SpindleRunout, GrowsAlongTheReading) {
 TEST(SpindleRunout, DriftOfTheSpeedTurnsThePhase) {
   Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), {0.0, 50.0, 100.0}};
   profile.setup.feed_mm_per_min = 60.0;  // whole turns at whole mm
+  profile.setup.spindle_rpm = 60.0;
   const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(10);
   values[0] = 1.0;
@@ -361,6 +363,7 @@ TEST(SpindleRunout, DriftOfTheSpeedTurnsThePhase) {
 TEST(SpindleRunout, ADriftingWaveIsThatOfItsFormula) {
   Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 650), spaced(0, 650, 25001)};
   profile.setup.feed_mm_per_min = 60.0;
+  profile.setup.spindle_rpm = 600.0;
   profile.setup.cut_direction = CutDirection::outward;
   const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(10);
@@ -380,6 +383,7 @@ TEST(SpindleRunout, ADriftingWaveIsThatOfItsFormula) {
 TEST(SpindleRunout, AnOddDriftFollowsTheTimeAndNotThePosition) {
   Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), {0.0, 100.0}};
   profile.setup.feed_mm_per_min = 60.0;
+  profile.setup.spindle_rpm = 60.0;
   const auto effect = make_effect("spindle_runout", {.degree = 3}, lathe(), kTravel);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(11);
   values[1] = 1.0;  // a sine
@@ -397,6 +401,7 @@ TEST(SpindleRunout, AnOddDriftFollowsTheTimeAndNotThePosition) {
 TEST(SpindleRunout, ItsLinesCoverTheDrift) {
   Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), spaced(0, 100, 10001)};
   profile.setup.feed_mm_per_min = 60.0;
+  profile.setup.spindle_rpm = 60.0;
   const Stations stations(profile.positions, profile.setup, lathe());
   const auto effect = make_effect("spindle_runout", {.degree = 2}, lathe(), kTravel);
   const std::vector<LineBand> lines = effect->lines(stations, std::vector<double>{60.0, 0.5});
@@ -404,6 +409,40 @@ TEST(SpindleRunout, ItsLinesCoverTheDrift) {
   EXPECT_NEAR(lines[0].low, 97.0, 1e-3);  // steps of the profile: a chord over 1e-4 of it
   EXPECT_NEAR(lines[0].high, 103.0, 1e-3);
   EXPECT_NEAR(lines[1].high, 206.0, 2e-3);
+}
+
+// At 60 and at 90 1/min: the speed that is searched, 61, is that of the first reading alone.
+TEST(SpindleRunout, KeepsToTheSpeedOfEachReading) {
+  for (const auto& [nominal, turns] : {std::pair{60.0, 61.0}, std::pair{90.0, 90.0}}) {
+    Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 100), {0.0, 0.25, 7.0}};
+    profile.setup.feed_mm_per_min = 60.0;
+    profile.setup.spindle_rpm = nominal;
+    profile.setup.cut_direction = CutDirection::outward;
+    const Eigen::VectorXd z =
+        height_um("spindle_runout", profile, {1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 61.0});
+    for (Eigen::Index i = 0; i < 3; ++i)
+      EXPECT_NEAR(
+          z[i], std::cos(2.0 * kPi * turns / 60.0 * profile.positions[static_cast<std::size_t>(i)]),
+          1e-12);
+  }
+}
+
+// Along a slide the first two orders of the turn are the run-out's, 600 turns here; a cycle beside
+// them, and on a face, a motion is asynchronous.
+TEST(Periodic, AlongASlideAnAsynchronousMotionIsNoRunOut) {
+  Case profile{"", setup_of(Kind::slide, Quantity::height, 0, 600), spaced(0, 600, 2401)};
+  profile.setup.feed_mm_per_min = 60.0;
+  profile.setup.spindle_rpm = 60.0;
+  profile.setup.cut_direction = CutDirection::outward;
+  const auto size = [&](double cycles) {
+    return height_um("revolution_periodic", profile, {1.0, cycles, 0.0}).norm();
+  };
+  for (const double order : {1.0, 2.0}) {
+    EXPECT_EQ(size(order), 0.0);
+    EXPECT_EQ(size(order + 0.9 / 600.0), 0.0);
+    EXPECT_GT(size(order - 1.1 / 600.0), 1.0);
+  }
+  EXPECT_GT(size(0.5), 1.0);
 }
 
 TEST(SpindleRunout, AFaceKnowsNoDrift) {

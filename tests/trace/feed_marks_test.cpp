@@ -103,6 +103,43 @@ TEST(FeedMarks, OfEachCutAreNamedWhereSamplingFoldsThem) {
   }
 }
 
+// Sampled every fifth feed, marks would be one slow wave: no spectrum tells them from a bump of the
+// way, the fit does. These faces were honed: they have none.
+TEST(FeedMarks, ThatAreNotThereDoNotStayForAnotherForm) {
+  constexpr double kRadius = 80.0, kFeed = 0.04;  // mm, mm a turn
+  constexpr int kSamples = 800;
+  const turning::Carriage carriage{{0.0, 0.0, 2.4e-7, -1.7e-9}, {}, 1.2e-5};
+  std::vector<Profile> profiles;
+  for (const double feeds : {1.0, 2.5, 1.0}) {
+    Profile& profile = profiles.emplace_back();
+    profile.name = "cut" + std::to_string(profiles.size());
+    RandomStream random(7, profile.name);
+    auto& setup = profile.setup;
+    setup.center_mm = setup.cut_radius_mm.emplace(kRadius);
+    setup.feed_mm_per_min = 1000.0 * feeds * kFeed;
+    setup.spindle_rpm = 1000.0;
+    setup.nose_radius_mm = 0.8;
+    setup.cut_direction = profiles.size() < 3 ? CutDirection::inward : CutDirection::outward;
+    for (int i = 0; i < kSamples; ++i) {
+      const double x = 2.0 * kRadius * i / (kSamples - 1), r = std::abs(x - kRadius);
+      turning::ToolPoint point;
+      point.r = point.x = r;
+      profile.positions.push_back(x);
+      profile.values.push_back(turning::one_lever(carriage, point) +
+                               4e-4 * std::exp(-0.5 * std::pow((r - 45.0) / 8.0, 2)) +
+                               2e-5 * random.normal());
+    }
+    setup.first_mm = profile.positions.front();
+    setup.last_mm = profile.positions.back();
+  }
+  Problem problem = problem_of();
+  problem.low_band.level = 2;
+  const Closed result = closed(problem, profiles);
+  SCOPED_TRACE(story(result));
+  EXPECT_EQ(round_of(result, "feed_marks"), nullptr);
+  EXPECT_NE(round_of(result, "local_form"), nullptr);
+}
+
 TEST(FeedMarks, OfAnOrdinaryFeedAreTakenFromTheSamples) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     Problem problem = problem_of();

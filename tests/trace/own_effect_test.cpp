@@ -93,6 +93,39 @@ TEST(OwnEffect, ThatWasMeasuredIsNamedWhereNoLawFits) {
   expect_within_4u(round->parameters, "spindle_temperature.a", 0.2);
 }
 
+/// What a log of heat, read every 2 s, makes 0.25 µm a degree of, so much later.
+struct LateCause {
+  double lag_s;
+  void expect_found() const {
+    const auto power = [](double t) { return std::exp(-std::pow((t - 60.0) / 18.0, 2)); };
+    Channel log{.name = "heat", .unit = "degC"};
+    for (int i = 0; i <= 200; ++i) {
+      log.at.push_back(2.0 * i - 20.0);
+      log.values.push_back(2.0 * power(log.at.back()));
+    }
+    Problem problem = problem_of();
+    problem.trace.own = problem.own_effects = {
+        {log.name,
+         {.own = channel_effect(log, {.name = log.name, .free_lag = true, .free_tau = true})},
+         {}}};
+    const turning::Hidden heat{
+        "heat", [&](const turning::ToolPoint& tool) { return 0.5e-3 * power(tool.t - lag_s); }};
+    const Closed result = closed(problem, quarter_faces(heat, 3, kBlunt, 61));
+    SCOPED_TRACE(story(result));
+    EXPECT_THAT(named(result), ElementsAre("heat"));
+    const TraceRound* round = round_of(result, "heat");
+    ASSERT_NE(round, nullptr);
+    EXPECT_THAT(round->ambiguous_with, IsEmpty());
+    expect_within_4u(round->parameters, "heat.a", 0.25);
+    expect_within_4u(round->parameters, "heat.lag_s", lag_s);
+  }
+};
+
+// At once is no end of what is searched: the law is the log itself.
+TEST(OwnEffect, ThatWasMeasuredMayActAtOnce) { LateCause{0.0}.expect_found(); }
+
+TEST(OwnEffect, ThatWasMeasuredMayActLater) { LateCause{8.0}.expect_found(); }
+
 /// A log that rises evenly: a linear drift fits as well, and nobody measured that.
 TEST(OwnEffect, ThatWasMeasuredOutranksADriftThatFitsAsWell) {
   Channel log{.name = "room_temperature", .unit = "degC"};

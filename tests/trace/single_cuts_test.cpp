@@ -168,6 +168,30 @@ TEST_P(SingleCuts, ResonanceOfTheReadingIsNoWave) {
   EXPECT_THAT(named(result), IsEmpty());
 }
 
+// A wave of one cut of which the low band has 2.5 or 3 values a cycle may be the image of another
+// one: no name, and not "nothing missing". A finer low band tells it.
+TEST_P(SingleCuts, AWaveThatTheLowBandMayHaveFoldedIsSeen) {
+  const std::vector<CutOfSeries> cuts{{10.0, true}, {25.0, true}, {10.0, false}};
+  for (const double values_a_cycle : {2.5, 3.0}) {
+    Problem problem = problem_of();
+    const double values = 1600.0 / std::exp2(problem.low_band.level);
+    const double cycles = 0.5 * values / values_a_cycle;  // over the radius
+    const ErrorOfCut wave = [&](const CutOfSeries& cut, std::size_t which) {
+      const double period = 60.0 * kRadius / cut.feed / cycles;
+      return which > 0 ? nothing() : [=](const ToolPoint& p) {
+        return 6e-5 * std::sin(2.0 * kPi * p.t / period);
+      };
+    };
+    const std::vector<Profile> profiles = series(cuts, wave, GetParam());
+    const Closed coarse = closed(problem, profiles);
+    SCOPED_TRACE(story(coarse));
+    EXPECT_NE(coarse.verdict, TraceVerdict::nothing_missing);
+    EXPECT_NE(coarse.verdict, TraceVerdict::explained);
+    problem.low_band.level -= 2;
+    EXPECT_THAT(named(closed(problem, profiles)), ::testing::Not(IsEmpty()));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(, SingleCuts, ::testing::Values(1U, 2U, 3U));
 
 }  // namespace

@@ -35,8 +35,7 @@ double noise_of(const Channel& channel);
 /// The effect h = gain · q, on the clock reading_time also of slopes: q, straight between its
 /// values, is taken through the response and averaged over the spacing of the stations, which is
 /// the filter against aliases.
-/// @throws UsageError  fewer than three values, places that do not increase, a number beyond 1e100,
-///                     a free lag and a free τ at once
+/// @throws UsageError  fewer than three values, places that do not increase, a number beyond 1e30
 EffectFactory channel_effect(Channel channel, const ChannelResponse& response);
 
 }  // namespace slideway

@@ -84,6 +84,7 @@ struct Shape {
   bool stepwise = false;     // columns are piecewise constant in it: scanned, not differentiated
   /// A correction of higher order: 0 on a search grid, moved from there once those before it are.
   bool higher_order = false;
+  bool may_begin = false;  // its lower end is a law of its own, not where the search ended
 
   /// The optimiser's view of a value and back: its logarithm where it is logarithmic.
   [[nodiscard]] double inner(double value) const { return logarithmic ? std::log(value) : value; }
@@ -282,10 +283,10 @@ class Effect {
   /// search_range().
   [[nodiscard]] virtual std::string fault(const Stations& stations) const;
 
-  /// Share of the square of its columns over a profile, their mean taken out, that is noise of a
-  /// measured cause: an estimated amplitude is too small by it. REQUIRES as columns().
-  [[nodiscard]] virtual double noise_share(const Stations& stations,
-                                           std::span<const double> shape) const;
+  /// Variance of the noise that a measured cause brings into its columns at these stations.
+  /// REQUIRES as columns().
+  [[nodiscard]] virtual double noise_variance(const Stations& stations,
+                                              std::span<const double> shape) const;
 
   /// Keys of [machine] the effect cannot do without and the problem does not give.
   [[nodiscard]] virtual std::vector<std::string> lacking_of_machine(const TravelRange& range) const;

@@ -24,6 +24,7 @@ struct Gates {
   double modulation_share = 0.1;
   double feed_harmonics = 16.0;
   double folded_widths = 2.0;
+  double values_per_cycle = 4.0;
 
   // What a name must be better than.
   double process_margin = 0.0;

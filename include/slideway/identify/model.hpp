@@ -110,6 +110,9 @@ void append_term(Model& model, const DeclaredEffect& declared, const TravelRange
 /// name.
 void remake_term(Model& model, const std::string& name, const EffectOptions& options);
 
+/// Low-band value of a height (slope) of 1 that varies slowly: the root of samples a value.
+double low_band_scale(const Observation& observation);
+
 /// Columns of one effect in the low band of one observation: #values by #amplitudes; zero where the
 /// reading cannot see the effect.
 Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,

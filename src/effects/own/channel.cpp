@@ -16,6 +16,7 @@ namespace slideway {
 namespace {
 
 constexpr double kLongestLag = 0.25;       // of the log
+constexpr double kFastest = 0.1;           // of the spacing of the log: at once
 constexpr double kSlowest = 2.0;           // times the log: a first-order lag that integrates
 constexpr double kFirstStep = 0.02;        // of a derivative, of the lag or of its range
 constexpr double kWidestGap = 0.2;         // of a profile's stretch on the clock
@@ -120,14 +121,16 @@ std::vector<Parameter> parameters_of(const Channel& channel, const ChannelRespon
         {"lag_s", "lag", unit_of_clock(channel), length / 100.0, 0.0, kLongestLag * length});
   if (response.free_tau)
     out.push_back({"tau_s", "τ", unit_of_clock(channel), length / 10.0,
-                   length / static_cast<double>(channel.at.size()), kSlowest * length});
+                   kFastest * length / static_cast<double>(channel.at.size()), kSlowest * length});
   return out;
 }
 
 std::vector<Shape> shapes_of(const ChannelResponse& response) {
-  if (response.free_lag) return {{.parameter = 1}};
-  if (response.free_tau) return {{.parameter = 1, .logarithmic = true}};
-  return {};
+  std::vector<Shape> out;
+  if (response.free_lag) out.push_back({.parameter = 1, .may_begin = true});
+  if (response.free_tau)
+    out.push_back({.parameter = response.free_lag ? 2 : 1, .logarithmic = true, .may_begin = true});
+  return out;
 }
 
 class ChannelEffect : public LinearEffect {
@@ -146,8 +149,13 @@ class ChannelEffect : public LinearEffect {
                Eigen::Ref<Eigen::MatrixXd> out) const override;
   void derivatives(const Stations& stations, std::span<const double> shape, int which,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
-  [[nodiscard]] double noise_share(const Stations& stations,
-                                   std::span<const double> shape) const override;
+  [[nodiscard]] double noise_variance(const Stations& stations,
+                                      std::span<const double> shape) const override;
+  [[nodiscard]] double resolution(int shape, double value,
+                                  const Stations& stations) const override {
+    const double coarser = shapes().size() > 1 ? 2.0 : 1.0;  // a grid of two is finer between
+    return coarser * LinearEffect::resolution(shape, value, stations);
+  }
 
  private:
   [[nodiscard]] VariableReading reading() const {
@@ -166,7 +174,7 @@ class ChannelEffect : public LinearEffect {
     return response_.free_lag ? shape[0] : response_.lag_s;
   }
   [[nodiscard]] double tau(std::span<const double> shape) const {
-    return response_.free_tau ? shape[0] : response_.tau_s.value_or(0.0);
+    return response_.free_tau ? shape.back() : response_.tau_s.value_or(0.0);
   }
 
   std::shared_ptr<const Channel> channel_;
@@ -183,18 +191,18 @@ std::vector<std::string> ChannelEffect::lacking(const Setup& setup) const {
   if (acts_on_the_reading(*channel_)) ends = setup.reading_times->positions_mm;
   const Machine machine(Machine::paper_lathe(), Lever::paper);
   const VariableRange range = range_of({ends, setup, machine}, reading());
-  const double rounding = kOfTheEnds * range.extent();
+  const double rounding = kOfTheEnds * range.extent(), earliest = range.low - response_.lag_s;
   const std::vector<double>& at = channel_->at;
-  const std::string where = " from " + significant(range.low, 5) + " to " +
+  const std::string where = " from " + significant(earliest, 5) + " to " +
                             significant(range.high, 5) + " " + unit_of_clock(*channel_);
-  if (range.low < at.front() - rounding || range.high > at.back() + rounding)
+  if (earliest < at.front() - rounding || range.high > at.back() + rounding)
     return {"the log " + channel_->name + where + " (it has " + significant(at.front(), 5) +
             " to " + significant(at.back(), 5) + ")"};
   for (std::size_t i = 1; i < at.size(); ++i) {
     const double gap = std::min(at[i], range.high) - std::max(at[i - 1], range.low);
     if (gap > kWidestGap * range.extent())
       return {"the log " + channel_->name + where + " without the gap at " +
-              significant(at[i - 1], 5)};
+              significant(at[i - 1], 5) + " " + unit_of_clock(*channel_)};
   }
   return {};
 }
@@ -218,31 +226,31 @@ void ChannelEffect::columns(const Stations& stations, std::span<const double> sh
 void ChannelEffect::derivatives(const Stations& stations, std::span<const double> shape, int which,
                                 Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
+  const auto w = static_cast<std::size_t>(which);
   const auto at = [&](double value) {
+    std::vector<double> moved(shape.begin(), shape.end());
+    moved[w] = value;
     Eigen::MatrixXd result(out.rows(), out.cols());
-    columns(stations, std::array{value}, result);
+    columns(stations, moved, result);
     return result;
   };
-  const Parameter& parameter = parameters()[1];
-  const double step = kFirstStep * (shapes()[static_cast<std::size_t>(which)].logarithmic
-                                        ? shape[0]
-                                        : parameter.upper - parameter.lower);
-  out = numeric_derivative(at, shape[0], step, parameter.lower, parameter.upper).value;
+  const Shape& kind = shapes()[w];
+  const Parameter& parameter = parameters()[static_cast<std::size_t>(kind.parameter)];
+  const double step =
+      kFirstStep * (kind.logarithmic ? shape[w] : parameter.upper - parameter.lower);
+  out = numeric_derivative(at, shape[w], step, parameter.lower, parameter.upper).value;
 }
 
-// White noise of the log, averaged over the spacing of the stations and over τ, beside the variance
-// of the columns.
-double ChannelEffect::noise_share(const Stations& stations, std::span<const double> shape) const {
-  Eigen::MatrixXd column(stations.size(), 1);
-  columns(stations, shape, column);
-  const Eigen::VectorXd centred = column.col(0).array() - column.mean();
-  const double variance = centred.squaredNorm() / static_cast<double>(centred.size());
+// White noise of the log, averaged over the spacing of the stations and over τ.
+double ChannelEffect::noise_variance(const Stations& stations,
+                                     std::span<const double> shape) const {
+  if (!applies_to(stations.setup())) return 0.0;
   const double spacing =
       (channel_->at.back() - channel_->at.front()) / static_cast<double>(channel_->at.size() - 1);
   const double averaged =
       std::max(1.0, (range_of(stations, reading()).step + 2.0 * tau(shape)) / spacing);
-  const double noise = noise_of(*channel_);
-  return variance > 0.0 ? std::min(1.0, noise * noise / averaged / variance) : 0.0;
+  const double unit = is_height(stations.setup()) ? 1.0 : kMicroradian / kMicrometre;
+  return std::pow(unit * noise_of(*channel_), 2) / averaged;
 }
 
 }  // namespace
@@ -271,8 +279,6 @@ EffectFactory channel_effect(Channel channel, const ChannelResponse& response) {
     throw UsageError("channel '" + channel.name + "' has places closer than 1e-30 to each other");
   if (!is_possible(response.lag_s) || !is_possible(response.tau_s.value_or(0.0)))
     throw UsageError("a lag_s or tau_s beyond 1e30");
-  if (response.free_lag && response.free_tau)
-    throw UsageError("a free lag_s and a free tau_s; accepted: one of the two free");
   auto shared = std::make_shared<const Channel>(std::move(channel));
   return [shared, response](const Machine&, const TravelRange&) {
     return std::make_unique<ChannelEffect>(shared, response);

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "../variable_range.hpp"
 #include "formula_probes.hpp"
+#include "formula_units.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 
@@ -81,25 +83,25 @@ bool is_logarithmic(double lower, double upper) {
 const std::vector<FormulaVariable>& formula_variables() {
   using enum IndependentVariable;
   static const std::vector<FormulaVariable> kAll{
-      {"r", radius_of, radius, true},
-      {"x", slide_of, slide},
-      {"X", [](const Stations& s, Eigen::Index i) { return s.trace(i); }, trace},
-      {"z", [](const Stations& s, Eigen::Index) { return s.setup().z_mm; }, std::nullopt},
-      {"theta", azimuth_of, std::nullopt, true},
-      {"t", time_of, time},
-      {"m", measuring_time_of, measuring_time},
-      {"t_read", reading_time_of, reading_time},
-      {"k", revolution_of, revolution},
-      {"s", distance_m_of, distance, true},
+      {"r", radius_of, "mm", radius, true},
+      {"x", slide_of, "mm", slide},
+      {"X", [](const Stations& s, Eigen::Index i) { return s.trace(i); }, "mm", trace},
+      {"z", [](const Stations& s, Eigen::Index) { return s.setup().z_mm; }, "mm", std::nullopt},
+      {"theta", azimuth_of, "rad", std::nullopt, true},
+      {"t", time_of, "s", time},
+      {"m", measuring_time_of, "s", measuring_time},
+      {"t_read", reading_time_of, "s", reading_time},
+      {"k", revolution_of, "turns", revolution},
+      {"s", distance_m_of, "m", distance, true},
       {"R", [](const Stations& s, Eigen::Index) { return s.setup().cut_radius_mm.value_or(0.0); },
-       std::nullopt, true, "cut_radius_mm",
+       "mm", std::nullopt, true, "cut_radius_mm",
        [](const Setup& setup) { return setup.cut_radius_mm.has_value(); }},
       {"feed",
        [](const Stations& s, Eigen::Index) { return s.setup().feed_mm_per_min.value_or(0.0); },
-       std::nullopt, false, "feed_mm_per_min",
+       "mm/min", std::nullopt, false, "feed_mm_per_min",
        [](const Setup& setup) { return setup.feed_mm_per_min.has_value(); }},
       {"rpm", [](const Stations& s, Eigen::Index) { return s.setup().spindle_rpm.value_or(0.0); },
-       std::nullopt, false, "spindle_rpm",
+       "1/min", std::nullopt, false, "spindle_rpm",
        [](const Setup& setup) { return setup.spindle_rpm.has_value(); }}};
   return kAll;
 }
@@ -112,6 +114,7 @@ FormulaParts::FormulaParts(const Formula& formula)
     throw UsageError("column 1: no variable: the effect is the same everywhere; accepted: " +
                      std::string("r x X z theta t m t_read k s R feed rpm"));
   sort_parameters();
+  check_sizes();
   check_units();
   describe_parameters();
 }
@@ -160,7 +163,7 @@ void FormulaParts::sort_parameters() {
   }
 }
 
-void FormulaParts::check_units() {
+void FormulaParts::check_sizes() {
   const std::size_t first = formula_variables().size();
   std::vector<bool> is_slope;
   for (const std::size_t place : amplitudes_) {
@@ -176,6 +179,62 @@ void FormulaParts::check_units() {
                                  "all in um or all in urad");
   }
   quantity_ = is_slope.front() ? Quantity::slope : Quantity::height;
+}
+
+// Each unit is scaled alone: the formula has to follow as its sizes do. A number in it may carry a
+// unit, a law that is no power of a unit shows none, and a size in um alone is in the units of the
+// variables.
+void FormulaParts::check_units() {
+  if (formula_.function || has_number_with_unit(formula_.text)) return;
+  const std::string of_size = quantity_ == Quantity::slope ? "urad" : "um";
+  const std::size_t first = formula_variables().size();
+  std::vector<UnitPowers> powers;
+  std::set<std::string> known;
+  for (std::size_t i = 0; i < first; ++i) {
+    powers.push_back(powers_of(formula_variables()[i].unit));
+    if (!expression_.uses(i)) continue;
+    for (const auto& [symbol, power] : powers.back()) known.insert(symbol);
+  }
+  const std::vector<std::string> of_variables(known.begin(), known.end());
+  known.insert(of_size);
+  std::set<std::string> all = known;
+  for (const FormulaParameter& parameter : formula_.parameters) {
+    try {
+      powers.push_back(powers_of(parameter.unit));
+    } catch (const UsageError& error) {
+      refuse(parameter.name, std::string("has a unit that cannot be read: ") + error.what());
+    }
+    for (const auto& [symbol, power] : powers.back()) all.insert(symbol);
+  }
+  const auto refuse_unit = [&](std::size_t name, const std::string& why,
+                               const std::string& accepted) {
+    const FormulaParameter& parameter = formula_.parameters[name - first];
+    refuse(parameter.name, "is in \"" + parameter.unit + "\": " + why + "; accepted: " + accepted +
+                               ", or a number in the formula that converts it");
+  };
+  FormulaProbes probes(formula_, expression_);
+  UnitPowers too_much;
+  for (const std::string& symbol : all) {
+    const auto power_of = [&](std::size_t name) {
+      const auto at = powers[name].find(symbol);
+      return at == powers[name].end() ? 0.0 : at->second;
+    };
+    std::vector<double> exponents;
+    for (std::size_t name = 0; name < powers.size(); ++name) exponents.push_back(power_of(name));
+    if (const std::optional<double> degree = probes.degree(exponents)) {
+      const double more = std::round(2.0 * (*degree - (symbol == of_size ? 1.0 : 0.0))) / 2.0;
+      if (more != 0.0) too_much[symbol] = more;
+    } else if (!known.contains(symbol)) {
+      for (std::size_t name = first; name < powers.size(); ++name)
+        if (power_of(name) != 0.0)
+          refuse_unit(name, "no variable of the formula is", joined(of_variables, " "));
+    }
+  }
+  const std::size_t size = amplitudes_.front();
+  if (too_much.empty() || powers[size].size() == 1) return;
+  UnitPowers fitting = powers[size];
+  for (const auto& [symbol, more] : too_much) fitting[symbol] -= more;
+  refuse_unit(size, "the formula is then not in " + of_size, spelled(fitting));
 }
 
 void FormulaParts::describe_parameters() {

@@ -13,6 +13,7 @@ namespace slideway {
 struct FormulaVariable {
   const char* name;
   double (*read)(const Stations&, Eigen::Index);
+  const char* unit;
   std::optional<IndependentVariable> needs;  // whose metadata it needs
   bool of_faces = false;
   const char* key = nullptr;  // of the problem file, that it is, where that may be left out
@@ -47,6 +48,7 @@ class FormulaParts {
 
  private:
   void sort_parameters();
+  void check_sizes();
   void check_units();
   void describe_parameters();
   [[noreturn]] void refuse(const std::string& name, const std::string& what) const;

@@ -110,6 +110,22 @@ bool FormulaProbes::moves_a_jump(std::size_t parameter) {
   return static_cast<double>(little) <= kRarely * static_cast<double>(much);
 }
 
+std::optional<double> FormulaProbes::degree(const std::vector<double>& exponents) {
+  constexpr double kScale = 2.0, kSame = 1e-6;
+  std::optional<double> out;
+  for (const std::vector<double>& place : places_) {
+    std::vector<double> scaled = place;
+    for (std::size_t i = 0; i < scaled.size(); ++i) scaled[i] *= std::pow(kScale, exponents[i]);
+    const double here = value(place), there = value(scaled);
+    if (std::abs(here) < kUnderflow || std::abs(there) < kUnderflow || !std::isfinite(there))
+      continue;
+    const double p = std::log(std::abs(there / here)) / std::log(kScale);
+    if (there * here < 0.0 || std::abs(p - out.value_or(p)) > kSame) return std::nullopt;
+    out = out.value_or(p);
+  }
+  return out;
+}
+
 bool FormulaProbes::vanishes_without(const std::vector<std::size_t>& parameters) {
   return std::ranges::all_of(places_, [&](std::vector<double> place) {
     const double size = std::abs(value(place));

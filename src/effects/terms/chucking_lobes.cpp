@@ -52,6 +52,9 @@ double direction_of(double azimuth_deg) {
   return direction <= -kHalfTurn / 2.0 + kSameAzimuth ? direction + kHalfTurn : direction;
 }
 
+/// A lobe that no trace crosses has a column of zeros: sin 180° is none of 1e-16.
+double without_rounding(double value) { return std::abs(value) < 1e-12 ? 0.0 : value; }
+
 class ChuckingLobes : public LinearEffect {
  public:
   ChuckingLobes()
@@ -86,8 +89,8 @@ class ChuckingLobes : public LinearEffect {
       const double ratio = stations.trace(i) / *stations.setup().cut_radius_mm;
       for (int n = kFewestLobes; n <= kMostLobes; ++n) {
         const double power = std::pow(ratio, n);
-        out(i, 2 * (n - kFewestLobes)) = power * std::cos(n * azimuth);
-        out(i, 2 * (n - kFewestLobes) + 1) = power * std::sin(n * azimuth);
+        out(i, 2 * (n - kFewestLobes)) = power * without_rounding(std::cos(n * azimuth));
+        out(i, 2 * (n - kFewestLobes) + 1) = power * without_rounding(std::sin(n * azimuth));
       }
     }
   }

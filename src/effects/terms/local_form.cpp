@@ -25,7 +25,7 @@ Eigen::ArrayXd gaussian(const Eigen::ArrayXd& u) {
 
 Description describe_local_form() {
   return {.name = "local_form",
-          .plain_name = "local form of the slide",
+          .plain_name = "local form",
           .standard_name = "E_ZX, local straightness error of X (ISO 230-1)",
           .formula = "A exp(-(x - x_0)²/(2 w²))",
           .source = "a deviation of the way at one place; Gaussian, so that it has no other end",

@@ -24,9 +24,38 @@ std::pair<double, double> revolution_periodic_search(const Stations& stations) {
   return {least, std::min(most_cycles(stations), 0.5)};
 }
 
+// Along a slide the lines of the first orders of a turn are its run-out (spindle_runout): a motion
+// that keeps to the turn is none that does not.
+bool is_of_run_out(const Stations& stations, double cycles) {
+  constexpr double kOrders = 2.0, kNear = 1.0;  // cycles over the reading
+  const double order = std::round(cycles);
+  return stations.setup().kind == Kind::slide && order >= 1.0 && order <= kOrders &&
+         std::abs(cycles - order) * range_of(stations, revolution_of).extent() < kNear;
+}
+
 class RevolutionPeriodic final : public PeriodicEffect {
  public:
   using PeriodicEffect::PeriodicEffect;
+
+  void columns(const Stations& stations, std::span<const double> shape,
+               Eigen::Ref<Eigen::MatrixXd> out) const override {
+    if (is_of_run_out(stations, shape[0])) return void(out.setZero());
+    PeriodicEffect::columns(stations, shape, out);
+  }
+
+  void columns_of_shapes(const Stations& stations, std::span<const std::vector<double>> shapes,
+                         Eigen::Ref<Eigen::MatrixXd> out) const override {
+    PeriodicEffect::columns_of_shapes(stations, shapes, out);
+    for (std::size_t s = 0; s < shapes.size(); ++s)
+      if (is_of_run_out(stations, shapes[s][0]))
+        out.middleCols(static_cast<Eigen::Index>(2 * s), 2).setZero();
+  }
+
+  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+                   Eigen::Ref<Eigen::MatrixXd> out) const override {
+    if (is_of_run_out(stations, shape[0])) return void(out.setZero());
+    PeriodicEffect::derivatives(stations, shape, which, out);
+  }
 
   // Between the slow lines of both signs the readings of a face resolve none.
   [[nodiscard]] double resolution(int shape, double value,

@@ -53,7 +53,8 @@ Description describe_spindle_runout() {
           "Σ_h (a_h + a'_h ξ) cos 2πhκ + (b_h + b'_h ξ) sin 2πhκ, h = 1, 2; ξ the position from "
           "-1 to 1; κ the angle of the spindle in turns, t n/60 + Σ_d q_d P_d(τ), d = 2 to degree "
           "(1 if not given: constant speed), P_d of Legendre, τ the time from -1 to 1 over a "
-          "reading along the slide",
+          "reading along the slide; n the speed of readings whose spindle_rpm is near it, others "
+          "keep to theirs",
       .source = "ISO 230-7",
       .cause =
           "eccentric and tilted axis: one and two lines per turn that grow along the "
@@ -94,6 +95,11 @@ Legendre legendre(const Stations& stations, double position) {
   for (int d = 1; d < kMostAngleDegree; ++d)
     p[d + 1] = kRise[d] * p[1] * p[d] - kFall[d] * p[d - 1];
   return p;
+}
+
+/// Whether a speed that is searched is that of this reading.
+bool is_speed_of(const Setup& setup, double rpm) {
+  return std::abs(rpm - *setup.spindle_rpm) < 2.0 * kRpmReach * *setup.spindle_rpm;
 }
 
 class SpindleRunout : public LinearEffect {
@@ -146,7 +152,8 @@ class SpindleRunout : public LinearEffect {
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
     const auto slope_of = [&](Eigen::Index i, const Legendre& p, int h, double& cosine,
                               double& sine) {
-      const double turns = which == 0 ? stations.time(i) / kMinute : p[which + 1];
+      const double own = is_speed_of(stations.setup(), shape[0]) ? stations.time(i) / kMinute : 0.0;
+      const double turns = which == 0 ? own : p[which + 1];
       const double angle = 2.0 * kPi * h * turns;
       const double slope = -angle * sine;
       sine = angle * cosine;
@@ -204,7 +211,9 @@ class SpindleRunout : public LinearEffect {
   // κ: the angle of the spindle in turns.
   static double turn(const Stations& stations, std::span<const double> shape, Eigen::Index i,
                      const Legendre& p) {
-    double turns = stations.time(i) * shape[0] / kMinute;
+    const Setup& setup = stations.setup();
+    const double rpm = is_speed_of(setup, shape[0]) ? shape[0] : *setup.spindle_rpm;
+    double turns = stations.time(i) * rpm / kMinute;
     for (std::size_t d = 1; d < shape.size(); ++d) turns += shape[d] * p[d + 1];
     return turns;
   }

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace slideway {
+
+// Exponents of the units that a unit is made of; angles, turns and 1 have none.
+using UnitPowers = std::map<std::string, double>;
+
+// "um/min", "mm^-2", "um/(m s)"; Hz is 1/s. Throws UsageError where it cannot be read.
+UnitPowers powers_of(const std::string& unit);
+
+// "um/s".
+std::string spelled(const UnitPowers& powers);
+
+// Whether a number in a formula may carry a unit: every one but those that laws are made of, 0 to 4
+// and 0.5.
+bool has_number_with_unit(const std::string& text);
+
+}  // namespace slideway
