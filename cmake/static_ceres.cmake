@@ -9,14 +9,18 @@ foreach(name IN ITEMS glog gflags cholmod amd camd ccolamd colamd suitesparsecon
   mark_as_advanced(SLIDEWAY_${name}_ARCHIVE)
   list(APPEND parts "${SLIDEWAY_${name}_ARCHIVE}")
 endforeach()
-foreach(name IN ITEMS gfortran quadmath gomp)  # the compiler knows where
+foreach(name IN ITEMS gfortran gomp)  # the compiler knows where
   list(APPEND parts "-l:lib${name}.a")
 endforeach()
 find_library(SLIDEWAY_metis libmetis.so.5)  # not to be had as a static one, no more than unwind
 mark_as_advanced(SLIDEWAY_metis)
 # Both gcc_s and unwind unwind for exceptions, and the first does it for all: unwind needs two free
 # file descriptors, and the program ends by a signal where there are none.
-list(APPEND parts "${SLIDEWAY_metis}" gcc_s unwind Threads::Threads)
+list(APPEND parts "${SLIDEWAY_metis}" gcc_s)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL x86_64)  # Debian's glog and Fortran do without on arm64
+  list(APPEND parts unwind -l:libquadmath.a)
+endif()
+list(APPEND parts Threads::Threads)
 
 if(NOT "${parts}" MATCHES NOTFOUND)
   get_target_property(archive Ceres::ceres LOCATION)
