@@ -5,6 +5,7 @@
 #include "disagreement.hpp"
 #include "process.hpp"
 #include "slideway/identify/agreement.hpp"
+#include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/noise_model.hpp"
 
 namespace slideway {

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 
 #include "slideway/identify/linear_algebra.hpp"
+#include "whitened.hpp"
 
 namespace slideway {
 namespace {
