@@ -276,6 +276,14 @@ TEST(Repeats, ProbabilityBesideThemIsOneUnderAnyNoise) {
     EXPECT_LT(probability_of_last(false, 8.0, seed), Gates{}.held_out_p);
 }
 
+TEST(Repeats, ThatAreTheSameToTheLastDigitAreNotOdd) {
+  std::vector<Profile> profiles(3, run("a", 0.0, 1));
+  for (Profile& each : profiles) std::ranges::fill(each.values, 0.0);
+  profiles[1].name = "b", profiles[2].name = "c";
+  const FittedModel fitted = fit_declared(straight(), profiles);
+  EXPECT_EQ(probability_beside_repeats(fitted.fit.linear, 0, Gates{}), 1.0);
+}
+
 // Of two, either may be the odd one.
 TEST(Repeats, OfTwoNoneIsOdd) { EXPECT_TRUE(odd_of(2, 50.0, 1).empty()); }
 

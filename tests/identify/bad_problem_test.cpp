@@ -69,6 +69,18 @@ TEST_F(ProblemFile, TakesALineByBothEnds) {
   EXPECT_THAT(problem.profiles[0].profile.line->to_mm, ElementsAre(100.0, 5.5));
 }
 
+TEST_F(ProblemFile, RefusesAnEffectTwiceInOneProfile) {
+  const auto two = [&](const std::string& first, const std::string& second) {
+    const std::string drift = "[[effect]]\nname = \"linear_drift\"\n";
+    return refusal(kMachine + profile() + profile("", "b") + drift + first + drift + second);
+  };
+  const std::string in_a = "profiles = [\"feed2\"]\n", in_b = "profiles = [\"b\"]\n";
+  EXPECT_EQ(two(in_a, in_b), "");
+  for (const auto& [first, second] :
+       {std::pair<std::string, std::string>{in_a, in_a}, {in_a, ""}, {"", in_b}, {"", ""}})
+    EXPECT_THAT(two(first, second), HasSubstr("is declared twice")) << first << second;
+}
+
 TEST_F(ProblemFile, NeedsNoEffectForItsProfilesAlone) {
   const std::filesystem::path path = write(kMachine + profile());
   EXPECT_THROW(read_problem(path), UsageError);
@@ -130,6 +142,8 @@ TEST_F(ProblemFile, RefusesNumbersOutOfRange) {
 TEST_F(ProblemFile, RefusesTheSameNameTwice) {
   EXPECT_THAT(refusal(kMachine + profile() + profile() + kEffect), HasSubstr("'feed2' is used"));
   EXPECT_THAT(refusal_behind(kEffect), HasSubstr("'squareness' is declared twice"));
+  EXPECT_THAT(refusal_behind(std::string(kEffect) + "body = \"x_carriage\"\n"),
+              HasSubstr("'squareness' is declared twice"));
 }
 
 TEST_F(ProblemFile, NeedsAProfileAndAnEffect) {

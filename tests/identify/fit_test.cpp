@@ -180,6 +180,15 @@ TEST(Fit, OfAShiftedTraceDiffersInItsOffsetOnly) {
   EXPECT_NEAR(*after.nuisances[0].value - *before.nuisances[0].value, 500.0, 1e-9);
 }
 
+// Of a declared noise there is nothing to estimate: the normal distribution, k = 2 at 95.45 %.
+TEST(Fit, LevelsUnderADeclaredNoiseWithACoverageFactorOfTwo) {
+  const ModelResult result = fitted(joint_problem(), readings());
+  ASSERT_FALSE(result.nuisances.empty());
+  for (const FittedParameter& nuisance : result.nuisances)
+    EXPECT_NEAR(*nuisance.expanded_uncertainty / *nuisance.standard_uncertainty, 2.0, 1e-3)
+        << nuisance.name;
+}
+
 TEST(Fit, OfATiltedTraceDiffersInItsTiltOnly) {
   std::vector<Profile> profiles = readings();
   profiles[1].free_tilt = true;  // the bridge's zero is free: b_1 goes with the tilt

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <set>
 
 #include "identify/cases.hpp"
@@ -17,6 +18,7 @@ namespace {
 constexpr double kTolerance = 1e-9;  // of a unit column, far above rounding
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 
@@ -143,6 +145,17 @@ TEST(Identifiability, OfC1AndTheSquarenessIsOneColumn) {
   EXPECT_LT(found.largest_shift, kNothing);
 }
 
+TEST(Identifiability, AdviceIsTheSameInEveryOrderOfTheEffects) {
+  std::vector<DeclaredEffect> effects = carriage(3, 1);
+  for (int first = 0; first < 3; ++first, std::ranges::rotate(effects, effects.begin() + 1)) {
+    const Found found(effects, {face(0.0)});
+    for (const UndeterminedDirection& direction : found.result.identifiability.unidentifiable)
+      if (direction.combination.size() > 1) {
+        EXPECT_THAT(direction.advice, HasSubstr("no face can tell c_1 from the squareness"));
+      }
+  }
+}
+
 TEST(Identifiability, OfARadiusLevelledHasNoSquareness) {
   std::vector<Profile> profiles{face(0.0)};
   profiles[0].free_tilt = true;
@@ -205,6 +218,17 @@ TEST(Identifiability, OfASlideReadingHasNoSquareness) {
   EXPECT_THAT(known.result.identifiability.determined, IsEmpty());
 }
 
+// Of p = j a the unit is 1 / j of a, whose column is as long as its scale; what moves nothing is 1.
+TEST(ParameterScale, IsTheSizeOfOneUnitInTheData) {
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(3, 3);
+  jacobian.diagonal() << 2.0, 1e-3, 0.0;
+  EXPECT_LT((parameter_scale(jacobian, Eigen::Vector3d(3.0, 4.0, 5.0)) -
+             Eigen::Vector3d(1.5, 4000.0, 1.0))
+                .norm(),
+            1e-9);
+  EXPECT_EQ(parameter_scale(Eigen::MatrixXd(2, 0), Eigen::VectorXd(0)), Eigen::Vector2d::Ones());
+}
+
 TEST(Rank, OfNoColumnsIsNothing) {
   const Rank rank = analyse_rank(Eigen::MatrixXd(3, 0), Eigen::VectorXd(0), kTolerance);
   EXPECT_EQ(rank.basis.rows(), 0);
@@ -216,6 +240,24 @@ TEST(Rank, OfNoColumnsIsNothing) {
                       Eigen::MatrixXd(0, 0), Eigen::VectorXd(0));
   EXPECT_THAT(null.own, IsEmpty());
   EXPECT_EQ(determined_rows(null).rows(), 0);
+}
+
+// Unit columns at an angle of cosine c have the singular values √(1 ± c).
+TEST(Rank, ConditionIsThatOfTheScaledColumnsWithinTheRank) {
+  Eigen::MatrixXd columns(3, 4);
+  columns << 3.0, 5.0 * 0.6, 0.0, 3.0,  //
+      0.0, 5.0 * 0.8, 0.0, 0.0,         //
+      0.0, 0.0, 0.0, 0.0;
+  const auto condition = [&](Eigen::Index count) {
+    const Eigen::Vector4d scale(3.0, 5.0, 7.0, 3.0);
+    return analyse_rank(columns.leftCols(count), scale.head(count), kTolerance).condition;
+  };
+  EXPECT_NEAR(condition(1), 1.0, 1e-12);
+  EXPECT_NEAR(condition(2), 2.0, 1e-12);  // √(1.6 / 0.4)
+  EXPECT_NEAR(condition(3), 2.0, 1e-12);  // one of no size more
+  // The first one twice: 2 a aᵀ + b bᵀ has the trace 3 and the determinant 2 (1 - c²).
+  const double root = std::sqrt(9.0 - 8.0 * 0.64);
+  EXPECT_NEAR(condition(4), std::sqrt((3.0 + root) / (3.0 - root)), 1e-12);
 }
 
 TEST(Rank, OfNoRowsDeterminesNothing) {

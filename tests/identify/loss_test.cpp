@@ -35,8 +35,8 @@ Profile slide(double dirt, Loss loss) {
 struct Fitted {
   double error_in_u = 0.0, u = 0.0;
 
-  explicit Fitted(const Profile& profile) {
-    const std::vector<Profile> profiles{profile};
+  explicit Fitted(const Profile& profile) : Fitted(std::vector{profile}) {}
+  explicit Fitted(const std::vector<Profile>& profiles) {
     const Model model =
         build_model(cases::problem(Lever::paper, 0, {cases::effect("straightness", 2)}), profiles);
     const Solution found = fit(model);
@@ -63,6 +63,15 @@ TEST_P(LossOfAProfile, CostsFivePercentOfTheEfficiencyOnCleanData) {
   const Fitted plain(slide(0.0, Loss::none)), robust(slide(0.0, GetParam()));
   EXPECT_NEAR(robust.u / plain.u, 1.0 / std::sqrt(0.95), 0.02);
   EXPECT_LT(std::abs(robust.error_in_u), 4.0);
+}
+
+TEST_P(LossOfAProfile, IsOfThatProfileAlone) {
+  Profile plain = slide(0.0, Loss::none);
+  plain.name = "plain";
+  for (double& value : plain.values) value *= 1.0 + 1e-9;  // no copy of the other
+  const Fitted both(std::vector{slide(200.0 * kNoise, GetParam()), plain});
+  EXPECT_LT(std::abs(both.error_in_u), 4.0);
+  EXPECT_LT(both.u, Fitted(plain).u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Robust, LossOfAProfile, ::testing::Values(Loss::huber, Loss::cauchy));

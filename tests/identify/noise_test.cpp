@@ -68,6 +68,26 @@ TEST(Noise, WhitensItsCovarianceToTheUnitMatrix) {
   EXPECT_LT((rows - Eigen::MatrixXd::Identity(kRows, kRows)).cwiseAbs().maxCoeff(), 1e-11);
 }
 
+// E[s²] of n values about their mean: the trace of the covariance less its mean, over n - 1.
+TEST(Noise, StandardDeviationIsThatOfValuesAboutTheirMean) {
+  constexpr int kRows = 8;
+  ExponentialMixture covariance;
+  covariance.white = 0.1;
+  covariance.lengths = ExponentialMixture::spread_lengths(2.0, 4.0 * kRows);
+  covariance.variances.setConstant(0.3);
+  const Noise noise(covariance, kRows);
+  double trace = 0.0, sum = 0.0;
+  for (int i = 0; i < kRows; ++i)
+    for (int j = 0; j < kRows; ++j) {
+      const double each = i == j ? covariance.variance() : covariance.covariance(std::abs(i - j));
+      sum += each;
+      trace += i == j ? each : 0.0;
+    }
+  const double expected = std::sqrt((trace - sum / kRows) / (kRows - 1));
+  EXPECT_NEAR(noise.standard_deviation(), expected, 1e-9);
+  EXPECT_NEAR(noise.repeated(4.0).standard_deviation(), expected, 1e-9);
+}
+
 TEST(Noise, OfFirstOrderIsRecovered) {
   constexpr double kPhi = 0.7, kInnovation = 2e-5;
   constexpr Eigen::Index kValues = 4000;

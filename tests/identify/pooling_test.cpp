@@ -188,28 +188,5 @@ TEST(PooledFaces, TakeNoPriorIn) {
               parameter(b, kSquarenessName).value.value(), u);
 }
 
-// Ordinary least squares in closed form: equal uncertainties, residuals beyond them.
-TEST(Trend, IsTheRegressionLine) {
-  const std::vector<double> x{0.0, 1.0, 2.0, 4.0}, y{1.0, 3.5, 4.5, 9.0};
-  std::vector<PoolItem> items;
-  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    items.push_back(reading(std::to_string(i), y[i], 0.1));
-    items.back().time = x[i];
-    sx += x[i], sy += y[i], sxx += x[i] * x[i], sxy += x[i] * y[i];
-  }
-  const double n = 4.0, rate = (n * sxy - sx * sy) / (n * sxx - sx * sx);
-  double rest = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i)
-    rest += std::pow(y[i] - sy / n - rate * (x[i] - sx / n), 2);
-  // All that differ are kept: of four, none but a minority may be left out, and these disagree.
-  const PooledMachine pooled = pool("M", items);
-  if (std::ranges::all_of(pooled.items, &PooledItem::fits)) {
-    EXPECT_NEAR(pooled.trends.at(0).rate, rate, 1e-9);
-    EXPECT_NEAR(pooled.trends.at(0).standard_uncertainty,
-                std::sqrt(rest / (n - 2.0) / (sxx - sx * sx / n)), 1e-9);
-  }
-}
-
 }  // namespace
 }  // namespace slideway

@@ -39,6 +39,17 @@ TEST(Simulate, GivesTheSameDataForTheSameSeedOnly) {
   EXPECT_NE(first, values(problem));
 }
 
+TEST(Simulate, KeepsTheRadiusOfACutThatWasReadInPart) {
+  Problem problem = made_face(11);
+  problem.profiles[0].profile.setup.cut_radius_mm = 10.0;
+  problem.profiles[0].source.position_unit = "mm";
+  problem.profiles[0].source.window = {2.0, 6.0};
+  const Profile face = simulate(problem).front();
+  EXPECT_EQ(face.positions.back(), 6.0);
+  EXPECT_EQ(face.setup.cut_radius_mm, 10.0);
+  EXPECT_EQ(face.setup.last_mm, 6.0);
+}
+
 TEST(Simulate, NoiseOfAProfileDoesNotDependOnTheOthers) {
   Problem alone = made_face(500);
   alone.truth->noise_um = 0.1;

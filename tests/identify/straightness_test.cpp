@@ -101,6 +101,25 @@ TEST(IdentifiedStraightness, IsThatOfTheSlideWithinItsUncertainty) {
   EXPECT_NEAR(found->errors[0].lowest_at_mm, 100.0, 5.0);
 }
 
+// Both runs read the same 400 places: 50 of them, once, from end to end; 4 (s² - s) µm from the
+// line.
+TEST(IdentifiedStraightness, IsGivenAtTheStationsOfTheReadings) {
+  const std::vector<Profile> runs = parabolic_slide();
+  const Model model =
+      build_model(cases::problem(Lever::paper, 0, {cases::effect("straightness", 3)}), runs);
+  const auto found = identified_straightness(model, fit(model));
+  ASSERT_TRUE(found);
+  ASSERT_EQ(found->stations.size(), 50U);
+  EXPECT_EQ(found->stations.front().position_mm, 0.0);
+  EXPECT_EQ(found->stations.back().position_mm, 200.0);
+  for (std::size_t i = 0; i < 50; ++i) {
+    const StraightnessStation& station = found->stations[i];
+    const double s = station.position_mm / 200.0;
+    EXPECT_NEAR(s, static_cast<double>(i) / 49.0, 1.0 / 399.0);
+    EXPECT_NEAR(station.deviation_um, 4.0 * (s * s - s), 2.0 * *station.expanded_uncertainty_um);
+  }
+}
+
 TEST(IdentifiedStraightness, IsNotGivenWhereTheDataDoNotTellIt) {
   // One lever and one face: b_2 x² and the cup are one column.
   const std::vector<Profile> faces{
