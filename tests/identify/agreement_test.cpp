@@ -122,6 +122,31 @@ TEST(ProfileCheck, OfCurvesIsAsTheirNoise) {
   EXPECT_GE(seen, 9);
 }
 
+/// Two faces of one squareness, and what is compared of them under a model with one effect more.
+std::vector<std::string> compared_beside(const std::string& effect,
+                                         const std::vector<std::string>& in) {
+  std::vector<Profile> faces;
+  for (const std::string name : {"a", "b"}) {
+    RandomStream random(9, name);
+    const std::vector<double> r = cases::spaced(0.0, 20.0, kReadings);
+    std::vector<double> z;
+    for (const double at : r) z.push_back(-1e-5 * at + kNoise * random.normal());
+    faces.push_back(cases::face(name, 2.0, r, z));
+  }
+  Problem problem = cases::problem(Lever::paper, 0, {cases::effect("squareness")});
+  problem.effects.push_back(cases::effect(effect));
+  problem.effects.back().options.profiles = in;
+  std::vector<std::string> out;
+  for (const ProfileCheck& check : checks_of(faces, problem)) out.push_back(check.what);
+  return out;
+}
+
+TEST(ProfileCheck, ComparesNothingThatEachCutHasOrOneProfileAlone) {
+  EXPECT_THAT(compared_beside("cup", {}), ::testing::ElementsAre("squareness", "cup"));
+  EXPECT_THAT(compared_beside("cup", {"b"}), ::testing::ElementsAre("squareness"));
+  EXPECT_THAT(compared_beside("feed_marks", {}), ::testing::ElementsAre("squareness"));
+}
+
 // Of three profiles of equal weight one is off by d: the estimates without one each are d/3 above
 // their mean once, d/6 below it twice, so u = sqrt(2/3 (1/9 + 2/36)) d = d/3, as much as the joint
 // estimate is off.
@@ -158,9 +183,10 @@ TEST(ProfileCheck, DisagreementIsNegative) {
   EXPECT_TRUE(is_negative(result));
 }
 
-std::vector<HeldOutCheck> held_out(Profile last) {
+std::vector<HeldOutCheck> held_out(Profile last, std::optional<double> declared = std::nullopt) {
   last.role = Role::holdout;
-  const std::vector<Profile> profiles{run("a", 5e-3, 1), run("b", 5e-3, 2), std::move(last)};
+  std::vector<Profile> profiles{run("a", 5e-3, 1), run("b", 5e-3, 2), std::move(last)};
+  for (Profile& profile : profiles) profile.standard_uncertainty = declared;
   const FittedModel fitted = fit_declared(straight(), profiles);
   return check_held_out(fitted.model, fitted.fit,
                         noise_of_each(fitted.fit.linear, fitted.fit.noise, fitted.model.gates));
@@ -179,6 +205,43 @@ TEST(HeldOutCheck, DoesNotFitWhereItHasAStep) {
   EXPECT_EQ(checks[0].verdict, HeldOutVerdict::does_not_fit);
   EXPECT_NEAR(checks[0].at_mm, 0.7 * kLength, 0.05 * kLength);  // the levelled step peaks there
   EXPECT_GT(std::abs(*checks[0].largest_um), 3.0 * kNoise / kMicrometre);
+}
+
+// At held_out_p = 0.01 five or more of 60 have a chance of 4e-4. 198 squares of 1.5 times the noise
+// are 12 standard deviations above their mean.
+TEST(HeldOutCheck, UnderADeclaredNoiseHasItsShareOfFalseAlarms) {
+  int alarms = 0;
+  for (unsigned seed = 3; seed < 63; ++seed)
+    alarms += held_out(run("c", 5e-3, seed), kNoise)[0].verdict == HeldOutVerdict::does_not_fit;
+  EXPECT_LE(alarms, 4);
+  Profile loud = run("c", 5e-3, 3);
+  std::mt19937_64 engine(77);
+  std::normal_distribution<double> more(0.0, std::sqrt(1.25) * kNoise);
+  for (double& value : loud.values) value += more(engine);
+  EXPECT_EQ(held_out(loud, kNoise)[0].verdict, HeldOutVerdict::does_not_fit);
+}
+
+// Its own low band has half as many values, whose noise is no fitted profile's.
+TEST(HeldOutCheck, OfAnotherLowBandHasANoiseOfItsOwn) {
+  std::vector<Profile> profiles;
+  for (const std::string name : {"a", "b", "c"}) {
+    RandomStream random(4, name);
+    Profile& one = profiles.emplace_back(run(name, 5e-3, 1));
+    double error = 0.0;
+    for (std::size_t i = 0; i < one.values.size(); ++i) {
+      error = 0.9 * error + random.normal();
+      one.values[i] = 5e-3 * std::pow(one.positions[i] / kLength, 2) + kNoise * error;
+    }
+  }
+  profiles[2].role = Role::holdout;
+  profiles[2].low_band = LowBandOptions{};
+  profiles[2].low_band->level = 1;
+  const FittedModel fitted = fit_declared(straight(), profiles);
+  const auto checks =
+      check_held_out(fitted.model, fitted.fit,
+                     noise_of_each(fitted.fit.linear, fitted.fit.noise, fitted.model.gates));
+  ASSERT_EQ(checks.size(), 1U);
+  EXPECT_EQ(checks[0].verdict, HeldOutVerdict::fits);
 }
 
 TEST(Repeats, AreToldByStationsNotByEqualDoubles) {

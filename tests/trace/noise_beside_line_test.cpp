@@ -120,10 +120,11 @@ TEST(NoiseBesideLine, IsNotKnownFromFewAtomsNorOfTwoShapes) {
   const Eigen::VectorXd strong = 3.0 * with_peak(1.0, 1, 0, random);
   // Six cycles of three atoms each, and the six atoms nearest to the first.
   for (const auto& [atoms, known] : {std::pair{23, false}, std::pair{24, true}}) {
-    lay_out(waves.model, 0, ShapeLattice({{periods.begin(), periods.begin() + atoms}}), waves.wave);
+    const std::vector<double> axis(periods.begin(), periods.begin() + atoms);
+    lay_out(waves.model, 0, ShapeLattice(std::vector<std::vector<double>>{axis}), waves.wave);
     EXPECT_EQ(waves.beside(0, strong) > 1.0, known) << atoms;
   }
-  waves.wave.grid = ShapeLattice({periods, {1.0, 2.0}});
+  waves.wave.grid = ShapeLattice({periods, std::vector{1.0, 2.0}});
   EXPECT_EQ(waves.beside(0, strong), 1.0);
 }
 
