@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "identify/cases.hpp"
+#include "modulation.hpp"
 #include "search_round.hpp"
 #include "slideway/base/random.hpp"
 #include "slideway/base/units.hpp"
@@ -126,6 +127,20 @@ TEST(NoiseBesideLine, IsNotKnownFromFewAtomsNorOfTwoShapes) {
   }
   waves.wave.grid = ShapeLattice({periods, std::vector{1.0, 2.0}});
   EXPECT_EQ(waves.beside(0, strong), 1.0);
+}
+
+// 249 steps hold 62.25 cycles of four values, and a line is one cycle wide.
+TEST(WavesOfOneProfile, AreTooFineBelowFourValuesACycle) {
+  Waves waves;
+  Refined refined;
+  refined.candidate = &waves.wave;
+  const auto too_fine = [&](double cycles) {
+    refined.shape = {kLength / cycles};
+    return is_too_fine(waves.model, refined, waves.model.observations[0]);
+  };
+  EXPECT_FALSE(too_fine(10.0));
+  EXPECT_FALSE(too_fine(63.2));
+  EXPECT_TRUE(too_fine(63.3));
 }
 
 // BIC counts what the line gains over the noise beside it: -60 + 80 (1 - 1 / n) is -10 at n = 8/3.
