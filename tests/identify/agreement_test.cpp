@@ -242,6 +242,7 @@ TEST(HeldOutCheck, OfAnotherLowBandHasANoiseOfItsOwn) {
                      noise_of_each(fitted.fit.linear, fitted.fit.noise, fitted.model.gates));
   ASSERT_EQ(checks.size(), 1U);
   EXPECT_EQ(checks[0].verdict, HeldOutVerdict::fits);
+  EXPECT_NEAR(checks[0].chi2, 1.0, 0.5);  // of some 97, under a noise estimated from as many
 }
 
 TEST(Repeats, AreToldByStationsNotByEqualDoubles) {

@@ -3,10 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "base/temporary_folder.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/base/units.hpp"
 
 namespace slideway {
 namespace {
@@ -72,6 +74,14 @@ TEST_F(Drafted, GuessesADiameterFromNineTenthsOfAFormThatIsEven) {
     ASSERT_TRUE(asked) << c;
     EXPECT_EQ(asked->guess, guess) << c;
   }
+}
+
+// Eight of the sixty cells a ripple: compared one cell off, a seventh of it would be odd.
+TEST_F(Drafted, GuessesADiameterFromARippleThatIsEven) {
+  Draft one = draft(table([](double u) { return std::cos(2.0 * kPi * 3.75 * u); }));
+  const auto asked = up_to(one, "trace");
+  ASSERT_TRUE(asked);
+  EXPECT_EQ(asked->guess, "diameter");
 }
 
 TEST_F(Drafted, AsksOfEachFileAndOfTheMachineOnce) {

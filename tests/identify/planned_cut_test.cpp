@@ -35,6 +35,22 @@ TEST_F(PlannedCutFile, TakesWhatItLeavesOutFromTheProfileItIsLike) {
   EXPECT_TRUE(read_planned_cuts(write(kMachine + profile() + kEffect)).empty());
 }
 
+// An SDF file states its units, so its profile need not; a cut like it is planned in mm and µm.
+TEST_F(PlannedCutFile, LikeAFileThatStatesItsUnitsIsInMillimetres) {
+  write(
+      "aNPL-V1.0\r\nNumPoints = 4\r\nNumProfiles = 1\r\nXscale = 2.5E-07\r\nYscale = 0\r\n"
+      "Zscale = 1E-06\r\nZresolution = -1\r\nCompression = 0\r\nDataType = 7\r\n"
+      "CheckType = 0\r\n*\r\n-0.3\r\n-0.2\r\n-0.1\r\n-0.2\r\n*\r\n*",
+      "own.sdf");
+  const std::string text = std::string(kMachine) +
+                           "[[profile]]\nname = \"own\"\nfile = \"own.sdf\"\n" + kEffect +
+                           "[[plan.cut]]\nname = \"a\"\nwindow = [0.0, 10.0]\nsamples = 50\n";
+  const std::vector<PlannedCut> cuts = read_planned_cuts(write(text));
+  ASSERT_EQ(cuts.size(), 1U);
+  EXPECT_EQ(cuts[0].entry.source.position_unit, "mm");
+  EXPECT_EQ(cuts[0].entry.source.value_unit, "um");
+}
+
 TEST_F(PlannedCutFile, NamesLineAndKeyOfAMistypedOne) {
   EXPECT_THAT(cut_refusal("name = \"a\"\nfede_mm_per_min = 2.0"),
               HasSubstr(":13: plan.cut.fede_mm_per_min: unknown key (did you mean "
