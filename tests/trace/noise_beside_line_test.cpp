@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "detection.hpp"
 #include "identify/cases.hpp"
 #include "modulation.hpp"
 #include "search_round.hpp"
@@ -20,7 +21,7 @@ struct Waves {
   Waves()
       : problem(cases::problem(Lever::paper, 0, {cases::effect("squareness")})),
         profiles{cases::face("face", 2.0, cases::spaced(0.0, kLength, kValues),
-                             std::vector<double>(kValues, 0.0))},
+                             cases::spaced(0.0, 1e-3, kValues))},
         model((profiles[0].standard_uncertainty = kNoise, build_model(problem, profiles))),
         fitted(fit(model)),
         data(fitted.linear, {Noise::white(kNoise, kValues)}),
@@ -141,6 +142,20 @@ TEST(WavesOfOneProfile, AreTooFineBelowFourValuesACycle) {
   EXPECT_FALSE(too_fine(10.0));
   EXPECT_FALSE(too_fine(63.2));
   EXPECT_TRUE(too_fine(63.3));
+}
+
+TEST(WavesOfOneProfile, HaveLimitsAtPeriodsThatAreSearched) {
+  const Waves waves;
+  const auto limits = detection_limits({waves.model, waves.fitted}, waves.data, waves.data.noise(),
+                                       {&waves.wave}, {20.0, 2.0});
+  ASSERT_EQ(limits.size(), 1U);
+  ASSERT_GT(limits[0].by_shape.size(), 2U);
+  double before = 0.0;
+  for (const LimitAtShape& limit : limits[0].by_shape) {
+    EXPECT_GT(limit.shape, before);
+    before = limit.shape;
+  }
+  EXPECT_LE(before, kLength * (1.0 + 1e-9));
 }
 
 // BIC counts what the line gains over the noise beside it: -60 + 80 (1 - 1 / n) is -10 at n = 8/3.

@@ -37,12 +37,18 @@ TEST(Rims, AreLeftOutAtBothEndsWhereOneHasLeftTheFace) {
   EXPECT_THAT(past_a_rim([](double x) { return x < -9.9 ? -kOff : 0.0; }), ElementsAre(0, 199));
 }
 
+/// A tilt, and a bow of one half alone: their difference is a parabola.
+double bent(double x) { return 1e-3 * x + (x > 0.0 ? 1e-4 * x * x : 0.0); }
+
+TEST(Rims, AreLeftOutBesideADifferenceThatIsAParabola) {
+  EXPECT_THAT(past_a_rim([](double x) { return bent(x) - (x > 9.7 ? kOff : 0.0); }),
+              ElementsAre(0, 1, 2, 197, 198, 199));
+}
+
 TEST(Rims, KeepWhatBothEndsShowAndWhatAParabolaMakesOfThem) {
   EXPECT_THAT(past_a_rim([](double) { return 0.0; }), IsEmpty());
   EXPECT_THAT(past_a_rim([](double x) { return std::abs(x) > 9.7 ? -kOff : 0.0; }), IsEmpty());
-  // A tilt, and a bow of one half alone.
-  EXPECT_THAT(past_a_rim([](double x) { return 1e-3 * x + (x > 0.0 ? 1e-4 * x * x : 0.0); }),
-              IsEmpty());
+  EXPECT_THAT(past_a_rim(bent), IsEmpty());
   EXPECT_THAT(past_a_rim([](double x) { return x > 9.7 ? -kOff : 0.0; }, Kind::slide), IsEmpty());
 }
 
