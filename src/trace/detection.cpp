@@ -210,8 +210,9 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
     if (design.squareness)
       out.squareness_rad =
           std::max(out.squareness_rad.value_or(0.0), squareness_moved(design, one));
+    const Parameter& size = candidate.term.effect->parameters().front();
     const std::optional<double> limit = found_from(design, one);
-    if (!limit || !(*limit > 0.0) || !std::isfinite(*limit) ||
+    if (!limit || !(*limit > 0.0) || !(*limit <= size.upper) || !std::isfinite(*limit) ||
         !is_flatness(design.fitted.fit.linear, one.columns * one.amplitudes(*limit),
                      design.gates().most_of_range))
       continue;

@@ -119,6 +119,32 @@ TEST(TextReport, CountsInTheBoxWhatItHasNoRoomToName) {
               HasSubstr("thermal drift (2 rivals) and spindle run-out (2 rivals) and 2 more"));
 }
 
+TEST(TextReport, CanBeReadOneWay) {
+  TraceResult trace;
+  trace.verdict = TraceVerdict::ambiguous;
+  trace.rounds.resize(2);
+  trace.rounds[0].accepted = "tool_wear";
+  trace.rounds[0].ambiguous_with = {"step"};
+  trace.rounds[1].accepted = "straightness";  // which the sample declares
+  const std::string text = full(sample_result(), trace);
+  EXPECT_THAT(text, HasSubstr("(tool wear or step) and"));
+  EXPECT_THAT(text, HasSubstr("a higher degree of"));
+  EXPECT_THAT(line_with(short_text(sample_result(), trace), "│ Missing"),
+              ::testing::AnyOf(HasSubstr("(tool wear or step)"), HasSubstr("(1 rival)")));
+}
+
+TEST(TextReport, CountsProfilesThatAgreeAsACheck) {
+  Result result = sample_result();
+  result.crosscheck.squareness->En.reset();
+  for (const double En : {0.2, 0.7})
+    result.crosscheck.profiles.push_back({.profiles = {"a", "b"},
+                                          .what = "squareness",
+                                          .En = En,
+                                          .verdict = Consistency::consistent});
+  EXPECT_THAT(line_with(short_text(result), "│ Check"),
+              HasSubstr("the profiles agree, E_n up to 0.7"));
+}
+
 TEST(TextReport, IsAtMost40LinesHoweverMuchThereIsToSay) {
   Result result = sample_result();
   for (int i = 0; i < 60; ++i) {

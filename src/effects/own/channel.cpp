@@ -1,13 +1,11 @@
 #include "slideway/effects/channel.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 
 #include "../linear_effect.hpp"
 #include "../variable_range.hpp"
-#include "numeric_derivative.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/statistics.hpp"
 #include "slideway/base/text.hpp"
@@ -18,7 +16,6 @@ namespace {
 constexpr double kLongestLag = 0.25;       // of the log
 constexpr double kFastest = 0.1;           // of the spacing of the log: at once
 constexpr double kSlowest = 2.0;           // times the log: a first-order lag that integrates
-constexpr double kFirstStep = 0.02;        // of a derivative, of the lag or of its range
 constexpr double kWidestGap = 0.2;         // of a profile's stretch on the clock
 constexpr double kOfTheEnds = 1e-9;        // rounding of where a log and a profile begin
 constexpr double kNormalMad = 1.4826;      // standard deviation over median absolute deviation
@@ -33,8 +30,10 @@ class Response {
     const std::vector<double>&t = channel.at, &q = channel.values;
     area_.push_back(0.0);
     lagged_.push_back(q[0]);
+    tau_slopes_.push_back(0.0);
     for (std::size_t i = 1; i < t.size(); ++i) {
       area_.push_back(area_.back() + 0.5 * (q[i] + q[i - 1]) * (t[i] - t[i - 1]));
+      tau_slopes_.push_back(tau_slope_at(i - 1, t[i]));
       lagged_.push_back(lagged_at(i - 1, t[i]));
     }
   }
@@ -48,6 +47,27 @@ class Response {
   [[nodiscard]] double mean(double t, double width) const {
     if (!(width > 0.0)) return value(t);
     return (integral(t + width / 2.0) - integral(t - width / 2.0)) / width;
+  }
+
+  /// Of the value in time; right of a place where there is no lag.
+  [[nodiscard]] double rate(double t) const {
+    if (t < channel_.at.front()) return 0.0;
+    const std::size_t i = before(t);
+    if (tau_ <= 0.0) return slope(i);
+    return (channel_.values[i] + slope(i) * (t - channel_.at[i]) - lagged_at(i, t)) / tau_;
+  }
+  [[nodiscard]] double mean_rate(double t, double width) const {
+    if (!(width > 0.0)) return rate(t);
+    return (value(t + width / 2.0) - value(t - width / 2.0)) / width;
+  }
+
+  /// Of the value by τ.
+  [[nodiscard]] double tau_slope(double t) const {
+    return t <= channel_.at.front() ? 0.0 : tau_slope_at(before(t), t);
+  }
+  [[nodiscard]] double mean_tau_slope(double t, double width) const {
+    if (!(width > 0.0)) return tau_slope(t);
+    return (integral_tau_slope(t + width / 2.0) - integral_tau_slope(t - width / 2.0)) / width;
   }
 
  private:
@@ -70,6 +90,20 @@ class Response {
     return lagged_[i] + c * (u + tau_ * decay) + (lagged_[i] - q) * decay;
   }
 
+  /// Derivative of lagged_at() by τ; that of d is d' = u/τ² exp(-u/τ).
+  [[nodiscard]] double tau_slope_at(std::size_t i, double t) const {
+    if (tau_ <= 0.0) return 0.0;
+    const double u = t - channel_.at[i], decay = std::expm1(-u / tau_);
+    const double growth = u / (tau_ * tau_) * (1.0 + decay);
+    return tau_slopes_[i] * (1.0 + decay) + slope(i) * (decay + tau_ * growth) +
+           (lagged_[i] - channel_.values[i]) * growth;
+  }
+
+  [[nodiscard]] double integral_tau_slope(double t) const {
+    if (t <= channel_.at.front()) return 0.0;
+    return channel_.values.front() - value(t) - tau_ * tau_slope(t);
+  }
+
   /// ∫ y = ∫ q - τ (y - y_0), as τ y' = q - y.
   [[nodiscard]] double integral(double t) const {
     const double first = channel_.at.front(), start = channel_.values.front();
@@ -82,7 +116,7 @@ class Response {
 
   const Channel& channel_;
   double tau_;
-  std::vector<double> area_, lagged_;  // up to each place: ∫ q, and y there
+  std::vector<double> area_, lagged_, tau_slopes_;  // up to each place: ∫ q, y there, dy/dτ
 };
 
 std::string unit_of_clock(const Channel& channel) {
@@ -170,6 +204,15 @@ class ChannelEffect : public LinearEffect {
         return time_of;
     }
   }
+  /// Where a response is counted from.
+  [[nodiscard]] double start_of(const Stations& stations) const {
+    const Setup& setup = stations.setup();
+    return acts_on_the_reading(*channel_) ? std::ranges::min(setup.reading_times->times_s)
+                                          : setup.start_s;
+  }
+  static double unit_of(const Stations& stations) {
+    return is_height(stations.setup()) ? 1.0 : kMicroradian / kMicrometre;
+  }
   [[nodiscard]] double lag(std::span<const double> shape) const {
     return response_.free_lag ? shape[0] : response_.lag_s;
   }
@@ -213,12 +256,8 @@ void ChannelEffect::columns(const Stations& stations, std::span<const double> sh
   const Response response(*channel_, tau(shape));
   const VariableReading clock = reading();
   const double width = range_of(stations, clock).step, later = lag(shape);
-  const Setup& setup = stations.setup();
-  const double first = acts_on_the_reading(*channel_)
-                           ? std::ranges::min(setup.reading_times->times_s)
-                           : setup.start_s;
-  const double start = response_.since_start ? response.value(first - later) : 0.0;
-  const double unit = is_height(setup) ? 1.0 : kMicroradian / kMicrometre;
+  const double start = response_.since_start ? response.value(start_of(stations) - later) : 0.0;
+  const double unit = unit_of(stations);
   for (Eigen::Index i = 0; i < stations.size(); ++i)
     out(i, 0) = unit * (response.mean(clock(stations, i) - later, width) - start);
 }
@@ -226,19 +265,20 @@ void ChannelEffect::columns(const Stations& stations, std::span<const double> sh
 void ChannelEffect::derivatives(const Stations& stations, std::span<const double> shape, int which,
                                 Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
-  const auto w = static_cast<std::size_t>(which);
-  const auto at = [&](double value) {
-    std::vector<double> moved(shape.begin(), shape.end());
-    moved[w] = value;
-    Eigen::MatrixXd result(out.rows(), out.cols());
-    columns(stations, moved, result);
-    return result;
-  };
-  const Shape& kind = shapes()[w];
-  const Parameter& parameter = parameters()[static_cast<std::size_t>(kind.parameter)];
-  const double step =
-      kFirstStep * (kind.logarithmic ? shape[w] : parameter.upper - parameter.lower);
-  out = numeric_derivative(at, shape[w], step, parameter.lower, parameter.upper).value;
+  const bool by_lag = response_.free_lag && which == 0;
+  const Response response(*channel_, tau(shape));
+  const VariableReading clock = reading();
+  const double width = range_of(stations, clock).step, later = lag(shape);
+  const double start = !response_.since_start ? 0.0
+                       : by_lag               ? -response.rate(start_of(stations) - later)
+                                              : response.tau_slope(start_of(stations) - later);
+  const double unit = unit_of(stations);
+  for (Eigen::Index i = 0; i < stations.size(); ++i) {
+    const double at = clock(stations, i) - later;
+    out(i, 0) =
+        unit *
+        ((by_lag ? -response.mean_rate(at, width) : response.mean_tau_slope(at, width)) - start);
+  }
 }
 
 // White noise of the log, averaged over the spacing of the stations and over τ.
@@ -249,8 +289,7 @@ double ChannelEffect::noise_variance(const Stations& stations,
       (channel_->at.back() - channel_->at.front()) / static_cast<double>(channel_->at.size() - 1);
   const double averaged =
       std::max(1.0, (range_of(stations, reading()).step + 2.0 * tau(shape)) / spacing);
-  const double unit = is_height(stations.setup()) ? 1.0 : kMicroradian / kMicrometre;
-  return std::pow(unit * noise_of(*channel_), 2) / averaged;
+  return std::pow(unit_of(stations) * noise_of(*channel_), 2) / averaged;
 }
 
 }  // namespace

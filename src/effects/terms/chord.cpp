@@ -8,6 +8,8 @@
 namespace slideway {
 namespace {
 
+constexpr double kSteepest = 1e5;  // µm/m: a tenth is a cone, no face
+
 // sqrt(r² + d²) - r without the cancellation at large r.
 double chord_value(double r, double d) { return d * d / (std::hypot(r, d) + r); }
 
@@ -33,7 +35,7 @@ std::unique_ptr<Effect> make_chord(const Request& request) {
            .separated_by = "Θ is the slope of the face, whose squareness tells it; a parallel "
                            "trace: the chord moves, a nub stays",
            .steep_at_centre = true},
-      .amplitude = {"slope_um_per_m", "Θ", "µm/m", 10.0},
+      .amplitude = {"slope_um_per_m", "Θ", "µm/m", 10.0, -kSteepest, kSteepest},
       .unit = kMicrometre / kMetre,
       .reading = radius_of,
       .value = chord_value,
