@@ -112,7 +112,7 @@ std::string spelled(const UnitPowers& powers) {
     if (power > 0.0) above.push_back(raised(symbol, power));
     if (power < 0.0) below.push_back(raised(symbol, -power));
   }
-  const std::string over = above.empty() ? "1" : joined(above, " ");
+  std::string over = above.empty() ? "1" : joined(above, " ");
   if (below.empty()) return over;
   return over + "/" + (below.size() == 1 ? below.front() : "(" + joined(below, " ") + ")");
 }
