@@ -147,7 +147,8 @@ TEST(Identifiability, OfC1AndTheSquarenessIsOneColumn) {
 
 TEST(Identifiability, AdviceIsTheSameInEveryOrderOfTheEffects) {
   std::vector<DeclaredEffect> effects = carriage(3, 1);
-  for (int first = 0; first < 3; ++first, std::ranges::rotate(effects, effects.begin() + 1)) {
+  for (int first = 0; first < 3;
+       ++first, std::rotate(effects.begin(), effects.begin() + 1, effects.end())) {
     const Found found(effects, {face(0.0)});
     for (const UndeterminedDirection& direction : found.result.identifiability.unidentifiable)
       if (direction.combination.size() > 1) {
