@@ -162,6 +162,7 @@ void explain_noise(const Solution& fit, ModelResult& out) {
 void explain_noise_of_causes(const Model& model, const Solution& fit, ModelResult& out) {
   constexpr double kMatters = 0.1;  // of U
   for (const ModelTerm& term : model.terms) {
+    if (!term.effect->description().measured) continue;
     double information = 0.0;
     for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
       const Observation& observation = *fit.linear.observations[i];

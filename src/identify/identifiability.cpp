@@ -60,13 +60,13 @@ std::string advice(const Model& model, const std::vector<bool>& in_direction) {
         parts[t].own.push_back(parameters[p].name);
   }
   for (std::size_t t = 0; t < parts.size(); ++t) {
+    if (parts[t].own.empty()) continue;
     std::vector<const Setup*> setups;
     for (const Observation* observation : fitted_observations(model))
       if (model.terms[t].acts_on(*observation->profile))
         setups.push_back(&observation->profile->setup);
     const std::vector<std::string> lacking = model.terms[t].effect->lacking_together(setups);
-    if (!parts[t].own.empty() && !lacking.empty())
-      return model.terms[t].name + " takes " + joined(lacking);
+    if (!lacking.empty()) return model.terms[t].name + " takes " + joined(lacking);
   }
   for (std::size_t t = 0; t < parts.size(); ++t) {
     if (parts[t].own.empty()) continue;
