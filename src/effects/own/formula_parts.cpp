@@ -6,7 +6,6 @@
 
 #include "../variable_range.hpp"
 #include "formula_probes.hpp"
-#include "formula_units.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 
@@ -54,8 +53,12 @@ std::size_t place_of(const std::string& name, const std::string& text) {
   return text.size();
 }
 
-/// "um/min" without what follows the first unit.
-std::string numerator(const std::string& unit) { return unit.substr(0, unit.find_first_of("/* ")); }
+/// Of a size in "um/min" or "mm um/s^2": height; of one in "urad/s": slope; of any other: none.
+std::optional<Quantity> quantity_of(UnitPowers powers) {
+  const bool is_height = powers["um"] == 1.0, is_slope = powers["urad"] == 1.0;
+  if (is_height == is_slope) return std::nullopt;
+  return is_slope ? Quantity::slope : Quantity::height;
+}
 
 bool is_one_of(const std::string& word, std::initializer_list<const char*> list) {
   return std::ranges::count(list, word) > 0;
@@ -163,22 +166,30 @@ void FormulaParts::sort_parameters() {
   }
 }
 
+UnitPowers FormulaParts::powers_in(const FormulaParameter& parameter) const {
+  try {
+    return powers_of(parameter.unit);
+  } catch (const UsageError& error) {
+    refuse(parameter.name, std::string("has a unit that cannot be read: ") + error.what());
+  }
+}
+
 void FormulaParts::check_sizes() {
   const std::size_t first = formula_variables().size();
-  std::vector<bool> is_slope;
+  std::optional<Quantity> of_all;
   for (const std::size_t place : amplitudes_) {
     const FormulaParameter& parameter = formula_.parameters[place - first];
-    const std::string size = numerator(parameter.unit);
-    if (!is_one_of(size, {"um", "urad"}))
+    const std::optional<Quantity> quantity = quantity_of(powers_in(parameter));
+    if (!quantity)
       refuse(parameter.name, "enters linearly, in \"" + printable(parameter.unit) +
                                  "\"; accepted: um, or urad where the formula is of slopes, "
                                  "alone or by another unit, as um/min");
-    is_slope.push_back(size == "urad");
-    if (is_slope.back() != is_slope.front())
+    if (of_all && *quantity != *of_all)
       refuse(parameter.name, "is in \"" + parameter.unit + "\", another size is not; accepted: " +
                                  "all in um or all in urad");
+    of_all = quantity;
   }
-  quantity_ = is_slope.front() ? Quantity::slope : Quantity::height;
+  quantity_ = *of_all;
 }
 
 // Each unit is scaled alone: the formula has to follow as its sizes do. A number in it may carry a
@@ -199,11 +210,7 @@ void FormulaParts::check_units() {
   known.insert(of_size);
   std::set<std::string> all = known;
   for (const FormulaParameter& parameter : formula_.parameters) {
-    try {
-      powers.push_back(powers_of(parameter.unit));
-    } catch (const UsageError& error) {
-      refuse(parameter.name, std::string("has a unit that cannot be read: ") + error.what());
-    }
+    powers.push_back(powers_in(parameter));
     for (const auto& [symbol, power] : powers.back()) all.insert(symbol);
   }
   const auto refuse_unit = [&](std::size_t name, const std::string& why,

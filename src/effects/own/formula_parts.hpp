@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "expression.hpp"
+#include "formula_units.hpp"
 #include "slideway/effects/formula.hpp"
 
 namespace slideway {
@@ -48,6 +49,7 @@ class FormulaParts {
 
  private:
   void sort_parameters();
+  [[nodiscard]] UnitPowers powers_in(const FormulaParameter& parameter) const;
   void check_sizes();
   void check_units();
   void describe_parameters();

@@ -18,7 +18,7 @@ bool is_letter(char c) {
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 bool has_no_dimension(const std::string& symbol) {
-  for (const char* each : {"rad", "deg", "turn", "turns", "rev", "cycle", "cycles", "1"})
+  for (const char* each : {"rad", "deg", "turn", "turns", "rev", "cycle", "cycles", "%", "1"})
     if (symbol == each) return true;
   return false;
 }
@@ -72,7 +72,7 @@ class UnitReader {
       return;
     }
     const std::size_t first = at_;
-    if (!takes('1'))
+    if (!takes('1') && !takes('%'))
       while (!at_end() && is_letter(unit_[at_])) ++at_;
     const std::string symbol = unit_.substr(first, at_ - first);
     if (symbol.empty()) fail();
