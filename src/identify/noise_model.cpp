@@ -316,7 +316,7 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
   const std::vector<OddRepeat> odd = odd_repeats(linear, gates);
   parallel_for(count, [&](std::size_t i) {
     fine[i] = fine_band(linear, i, gates, suspect);
-    repeats[i] = deviation_from_repeats(linear, i, odd, gates);
+    repeats[i] = deviation_from_repeats(linear, i, odd, gates, suspect);
   });
   // Noises from different parts of the residuals have no memory in common.
   const std::vector<std::size_t> pools = pools_of(linear);

@@ -81,6 +81,22 @@ struct StationSums {
   [[nodiscard]] Eigen::VectorXd mean() const { return sum.cwiseQuotient(count); }
 };
 
+/// Appends what columns of profile `j` make of the deviation of profile `i` from the mean of its
+/// repeats, of which `count` have each station, times `scale`.
+void append_deviation(const Linearisation& all, std::size_t i, std::size_t j,
+                      const Eigen::MatrixXd& columns, const Eigen::VectorXd& scale,
+                      const Eigen::VectorXd& count, const Gates& gates, Eigen::MatrixXd& out) {
+  const auto match = matched_values(*all.observations[i], *all.observations[j], gates);
+  const Eigen::Index known = out.cols();
+  out.conservativeResize(Eigen::NoChange, known + columns.cols());
+  for (Eigen::Index row = 0; row < count.size(); ++row)
+    if (match[row] >= 0)
+      out.row(row).tail(columns.cols()) =
+          columns.row(match[row]) * scale[row] * ((i == j ? 1.0 : 0.0) - 1.0 / count[row]);
+    else
+      out.row(row).tail(columns.cols()).setZero();
+}
+
 /// Mean of a group's residuals at the stations of its first profile, a trace of its own.
 Linearisation common_trace(const Linearisation& all, const std::vector<std::size_t>& group,
                            const Gates& gates) {
@@ -177,7 +193,8 @@ std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
 
 std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear, std::size_t i,
                                                     const std::vector<OddRepeat>& odd,
-                                                    const Gates& gates) {
+                                                    const Gates& gates,
+                                                    const std::vector<Eigen::MatrixXd>& suspect) {
   const auto is_odd = [&](std::size_t j) {
     return std::ranges::count(odd, j, &OddRepeat::profile) > 0;
   };
@@ -189,17 +206,16 @@ std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear,
   const StationSums repeats(linear, group, observation, gates);
   const Eigen::VectorXd& count = repeats.count;
   std::vector<Eigen::Index> alone;
-  Eigen::VectorXd deviation = linear.residuals[i] - repeats.mean();
-  for (Eigen::Index row = 0; row < count.size(); ++row) {
-    if (count[row] < 2.0)
-      alone.push_back(row);
-    else
-      deviation[row] *= std::sqrt(count[row] / (count[row] - 1.0));
-  }
+  for (Eigen::Index row = 0; row < count.size(); ++row)
+    if (count[row] < 2.0) alone.push_back(row);
   if (2 * std::ssize(alone) > count.size()) return std::nullopt;
   constexpr double kCopy = 1e-9;  // of the values: one file given twice is no repeat
+  const Eigen::VectorXd scale = (count.array() / (count.array() - 1.0).max(1.0)).sqrt();
+  Eigen::VectorXd deviation = scale.cwiseProduct(linear.residuals[i] - repeats.mean());
   if (deviation.norm() <= kCopy * observation.values.norm()) return std::nullopt;
   Eigen::MatrixXd free = observation.nuisances;
+  for (const std::size_t j : group)
+    if (!suspect.empty()) append_deviation(linear, i, j, suspect[j], scale, count, gates, free);
   append_unit_columns(free, alone);
   Eigen::MatrixXd basis = orthonormal(std::move(free));
   deviation -= basis * (basis.transpose() * deviation).eval();

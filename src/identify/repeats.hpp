@@ -26,9 +26,9 @@ std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
 
 /// Residual of a profile less the mean of its repeats at the same stations, of the size its noise
 /// has; nothing where no other profile repeats it, or where it is odd. Stations that a repeat lacks
-/// are left free.
-std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear, std::size_t i,
-                                                    const std::vector<OddRepeat>& odd,
-                                                    const Gates& gates);
+/// are left free, and what the columns of `suspect` make, profile by profile.
+std::optional<LinearProfile> deviation_from_repeats(
+    const Linearisation& linear, std::size_t i, const std::vector<OddRepeat>& odd,
+    const Gates& gates, const std::vector<Eigen::MatrixXd>& suspect = {});
 
 }  // namespace slideway

@@ -193,11 +193,12 @@ std::string finer_band_advice(const Linearisation& linear, const TestedCandidate
     return wave.refined.candidate->term.acts_on(*each->profile);
   });
   const int level = (*observation)->low_band.options().level;
-  const std::string found = "a wave of " + (cuts.empty() ? "the profiles" : joined(cuts, " and ")) +
-                            " may be the image of a faster one: ";
-  if (is_coarser) return found + "search more values (the gate search_values)";
-  if (level == 0) return found + "read it with a smaller spacing";
-  return found + "take the low band at level " + std::to_string(level - 1) + " or lower";
+  const std::string what =
+      is_coarser   ? "search more values (the gate search_values)"
+      : level == 0 ? "read it with a smaller spacing"
+                   : "take the low band at level " + std::to_string(level - 1) + " or lower";
+  return what + ": a wave of " + (cuts.empty() ? "the profiles" : joined(cuts, " and ")) +
+         " may be the image of a faster one";
 }
 
 }  // namespace slideway

@@ -173,12 +173,14 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
   if (candidates.empty()) return {std::move(data), std::vector<Finding>{}};
   std::vector<Finding> findings = search(data, candidates);
   std::vector<Finding> suspects = suspects_among(findings, model.gates);
-  for (int round = 0; round < kNoiseRounds && suspects.front().delta_bic < 0.0; ++round) {
+  for (int round = 0; round < kNoiseRounds; ++round) {
     data = Whitened(fit.linear, noise_of(suspects), undescribed);
     findings = search(data, candidates);
     const std::vector<Finding> before =
         std::exchange(suspects, suspects_among(findings, model.gates));
-    if (std::ranges::equal(before, suspects, {}, &Finding::candidate, &Finding::candidate)) break;
+    if (suspects.front().delta_bic >= 0.0 ||
+        std::ranges::equal(before, suspects, {}, &Finding::candidate, &Finding::candidate))
+      break;
   }
   return {std::move(data), std::move(findings)};
 }

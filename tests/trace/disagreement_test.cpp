@@ -63,6 +63,48 @@ TEST(Disagreement, RunsOfOneBedAgree) {
   }
 }
 
+/// Three readings of one way of 1 m, noise of 0.3 µm; the second has a bump of its own.
+std::vector<Profile> three_readings(double bump_mm, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal(0.0, 0.3e-3);
+  std::uniform_real_distribution<double> place(250.0, 750.0), width(60.0, 140.0);
+  const double at = place(engine), sigma = width(engine);
+  const std::vector<double> x = cases::spaced(0.0, 1000.0, 51);
+  std::vector<Profile> out;
+  for (const char* name : {"run1", "run2", "run3"}) {
+    std::vector<double> height;
+    for (const double each : x) {
+      const double u = each / 1000.0, v = (each - at) / sigma;
+      height.push_back(6e-3 * std::pow(std::sin(kPi * u), 2) + normal(engine) +
+                       (out.size() == 1 ? bump_mm * std::exp(-0.5 * v * v) : 0.0));
+    }
+    out.push_back(cases::profile(name, Kind::slide, x, height));
+    out.back().surface = "way";
+    out.back().free_offset = out.back().free_tilt = true;
+  }
+  return out;
+}
+
+// The scatter of repeats is the noise, less what a hypothesis says one of them has of its own: with
+// it in the noise the bump is found in one of these eight.
+TEST(Disagreement, ABumpOfOneRepeatIsNoNoiseOfTheOthers) {
+  int right = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    Problem problem = cases::problem(Lever::paper, 0, {cases::effect("straightness", 6)});
+    problem.trace.candidates = effect_names();
+    const Closed result = closed(problem, three_readings(2e-3, seed));
+    SCOPED_TRACE(story(result));
+    EXPECT_NE(result.verdict, TraceVerdict::nothing_missing);
+    for (const TraceRound& round : result.rounds) {
+      EXPECT_EQ(round.accepted, "local_form");
+      EXPECT_EQ(round.profiles, std::vector<std::string>{"run2"});
+      ++right;
+    }
+    EXPECT_THAT(named(closed(problem, three_readings(0.0, seed))), ::testing::IsEmpty());
+  }
+  EXPECT_GE(right, 5);
+}
+
 /// A face cut in one direction only, its noise of 10 nm, with what a saw-toothed temperature does.
 std::vector<Profile> saw_toothed(double size, unsigned seed) {
   std::mt19937_64 engine(seed);
