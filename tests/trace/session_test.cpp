@@ -86,6 +86,18 @@ TEST(ZeroDrift, ThatGoesOnThereAndBackIsNamedWithItsRate) {
   expect_within_4u(round->parameters, "zero_drift.rate_per_min", kZeroRate);
 }
 
+// Each reading differs from the mean of all by its part of the drift, which is no noise of theirs.
+TEST(ZeroDrift, ThatGoesOnThereAndBackIsFoundBesideACurve) {
+  Problem problem = bed();
+  problem.effects[0].options = {.form = Form::curve};
+  const Closed result = closed(problem, there_and_back({}, 4));
+  SCOPED_TRACE(story(result));
+  const TraceRound* round = round_of(result, "zero_drift");
+  ASSERT_NE(round, nullptr);
+  expect_within_4u(round->parameters, "zero_drift.rate_per_min", kZeroRate);
+  EXPECT_THAT(named(closed(problem, there_and_back({.rate_rad_per_s = 0.0}, 4))), IsEmpty());
+}
+
 TEST(ZeroDrift, IsNotNamedInASessionWithoutOne) {
   const Closed result = closed(bed(), there_and_back({.rate_rad_per_s = 0.0}, 4));
   SCOPED_TRACE(story(result));
