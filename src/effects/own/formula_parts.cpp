@@ -60,10 +60,6 @@ std::optional<Quantity> quantity_of(UnitPowers powers) {
   return is_slope ? Quantity::slope : Quantity::height;
 }
 
-bool is_one_of(const std::string& word, std::initializer_list<const char*> list) {
-  return std::ranges::count(list, word) > 0;
-}
-
 std::string symbol_of_unit(std::string unit) {
   if (unit.starts_with("um")) return "µm" + unit.substr(2);
   if (unit.starts_with("urad")) return "µrad" + unit.substr(4);
