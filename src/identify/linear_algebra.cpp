@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <utility>
 
 namespace slideway {
 namespace {
@@ -29,6 +30,12 @@ Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns) {
   qr.setThreshold(kRankTolerance);
   qr.compute(columns);
   return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
+}
+
+void append_columns(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
+  Eigen::MatrixXd out(std::max(columns.rows(), more.rows()), columns.cols() + more.cols());
+  out << columns, more;
+  columns = std::move(out);
 }
 
 LeastSquares least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& targets) {

@@ -33,12 +33,6 @@ Eigen::Index near_half(const Observation& observation) {
   return std::ranges::lower_bound(positions, setup.center_mm) - positions.begin();
 }
 
-void append(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
-  Eigen::MatrixXd out(std::max(columns.rows(), more.rows()), columns.cols() + more.cols());
-  out << columns, more;
-  columns = std::move(out);
-}
-
 /// An orthonormal basis of what the columns add to two others.
 Eigen::MatrixXd beyond(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& more,
                        Eigen::MatrixXd columns) {
@@ -66,7 +60,7 @@ Eigen::VectorXd without_lines(const Eigen::VectorXd& residual, const Eigen::Matr
   const auto take_out = [&](const Eigen::MatrixXd& more) {
     const Eigen::MatrixXd own = beyond(basis, known, more);
     rest -= own * (own.transpose() * rest);
-    append(known, own);
+    append_columns(known, own);
   };
   take_out(columns);
   for (int found = 0; found < static_cast<int>(gates.most_lines); ++found) {
@@ -97,10 +91,10 @@ std::optional<LinearProfile> fine_band(const Linearisation& linear, std::size_t 
   const Observation& observation = *linear.observations[i];
   const Eigen::Index n = observation.values.size();
   Eigen::MatrixXd free = observation.nuisances, columns = linear.columns[i];
-  append(free, slow_cosines(n, slow_cosine_count(n, gates)));
-  if (!suspect.empty()) append(columns, suspect[i]);
+  append_columns(free, slow_cosines(n, slow_cosine_count(n, gates)));
+  if (!suspect.empty()) append_columns(columns, suspect[i]);
   const auto [slow, lines] = parted(orthonormal(free), columns);
-  append(free, slow);
+  append_columns(free, slow);
   Eigen::MatrixXd basis = orthonormal(std::move(free));
   if (n - basis.cols() < kLeastSpare) return std::nullopt;
   Eigen::VectorXd rest =

@@ -10,6 +10,7 @@
 #include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
+#include "slideway/identify/profile_bases.hpp"
 
 namespace slideway {
 namespace {
@@ -57,12 +58,12 @@ std::vector<double> stations(const Observation& observation) {
   return out;
 }
 
-void append_unit_columns(Eigen::MatrixXd& columns, const std::vector<Eigen::Index>& rows) {
-  const Eigen::Index known = columns.cols();
-  columns.conservativeResize(Eigen::NoChange, known + std::ssize(rows));
-  columns.rightCols(std::ssize(rows)).setZero();
-  for (std::size_t j = 0; j < rows.size(); ++j)
-    columns(rows[j], known + static_cast<Eigen::Index>(j)) = 1.0;
+/// What another profile has at the stations matched to it, in rows; 0 at those it lacks.
+Eigen::MatrixXd at_stations(const std::vector<Eigen::Index>& match, const Eigen::MatrixXd& values) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(std::ssize(match), values.cols());
+  for (Eigen::Index row = 0; row < out.rows(); ++row)
+    if (match[row] >= 0) out.row(row) = values.row(match[row]);
+  return out;
 }
 
 /// Sum of the residuals of a group at the stations of one observation, and how many have each.
@@ -74,28 +75,12 @@ struct StationSums {
       : sum(Eigen::VectorXd::Zero(observation.values.size())), count(sum) {
     for (const std::size_t i : group) {
       const auto match = matched_values(observation, *all.observations[i], gates);
-      for (Eigen::Index row = 0; row < sum.size(); ++row)
-        if (match[row] >= 0) sum[row] += all.residuals[i][match[row]], ++count[row];
+      sum += at_stations(match, all.residuals[i]);
+      count += at_stations(match, Eigen::VectorXd::Ones(all.residuals[i].size()));
     }
   }
   [[nodiscard]] Eigen::VectorXd mean() const { return sum.cwiseQuotient(count); }
 };
-
-/// Appends what columns of profile `j` make of the deviation of profile `i` from the mean of its
-/// repeats, of which `count` have each station, times `scale`.
-void append_deviation(const Linearisation& all, std::size_t i, std::size_t j,
-                      const Eigen::MatrixXd& columns, const Eigen::VectorXd& scale,
-                      const Eigen::VectorXd& count, const Gates& gates, Eigen::MatrixXd& out) {
-  const auto match = matched_values(*all.observations[i], *all.observations[j], gates);
-  const Eigen::Index known = out.cols();
-  out.conservativeResize(Eigen::NoChange, known + columns.cols());
-  for (Eigen::Index row = 0; row < count.size(); ++row)
-    if (match[row] >= 0)
-      out.row(row).tail(columns.cols()) =
-          columns.row(match[row]) * scale[row] * ((i == j ? 1.0 : 0.0) - 1.0 / count[row]);
-    else
-      out.row(row).tail(columns.cols()).setZero();
-}
 
 /// Mean of a group's residuals at the stations of its first profile, a trace of its own.
 Linearisation common_trace(const Linearisation& all, const std::vector<std::size_t>& group,
@@ -214,9 +199,14 @@ std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear,
   Eigen::VectorXd deviation = scale.cwiseProduct(linear.residuals[i] - repeats.mean());
   if (deviation.norm() <= kCopy * observation.values.norm()) return std::nullopt;
   Eigen::MatrixXd free = observation.nuisances;
-  for (const std::size_t j : group)
-    if (!suspect.empty()) append_deviation(linear, i, j, suspect[j], scale, count, gates, free);
-  append_unit_columns(free, alone);
+  for (const std::size_t j : group) {
+    if (suspect.empty() || suspect[j].cols() == 0) continue;
+    const Eigen::ArrayXd part = (i == j ? 1.0 : 0.0) - count.array().inverse();
+    const auto match = matched_values(observation, *linear.observations[j], gates);
+    append_columns(free,
+                   (scale.array() * part).matrix().asDiagonal() * at_stations(match, suspect[j]));
+  }
+  append_columns(free, unit_columns(alone, count.size()));
   Eigen::MatrixXd basis = orthonormal(std::move(free));
   deviation -= basis * (basis.transpose() * deviation).eval();
   return LinearProfile{std::move(basis), Eigen::MatrixXd(deviation.size(), 0), std::move(deviation),

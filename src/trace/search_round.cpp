@@ -50,19 +50,15 @@ std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
                                                 const std::vector<Finding>& findings) {
   std::vector<Eigen::MatrixXd> out;
   for (const Observation* each : linear.observations) out.emplace_back(each->values.size(), 0);
-  const auto append = [&](std::size_t i, const Eigen::MatrixXd& columns) {
-    out[i].conservativeResize(Eigen::NoChange, out[i].cols() + columns.cols());
-    out[i].rightCols(columns.cols()) = columns;
-  };
   for (const Finding& each : findings) {
     const std::optional<std::size_t> only = each.candidate->only;
     const std::vector<Eigen::MatrixXd> around =
         by_profile(linear, each.candidate->columns_around(each.atom));
     for (std::size_t i = 0; i < out.size(); ++i)
-      if (!only || *only == i) append(i, around[i]);
+      if (!only || *only == i) append_columns(out[i], around[i]);
   }
   for (std::size_t i = 0; i < out.size(); ++i)
-    append(i, unit_columns(undescribed[i], out[i].rows()));
+    append_columns(out[i], unit_columns(undescribed[i], out[i].rows()));
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "response.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
 namespace {
@@ -42,10 +43,7 @@ Eigen::MatrixXd differences(const FittedModel& fitted, const FittedModel& withou
 
 }  // namespace
 
-void Widening::add(const Eigen::MatrixXd& more) {
-  changes.conservativeResize(Eigen::NoChange, changes.cols() + more.cols());
-  changes.rightCols(more.cols()) = more;
-}
+void Widening::add(const Eigen::MatrixXd& more) { append_columns(changes, more); }
 
 void Widening::add_absence(const FittedModel& fitted, const FittedModel& without) {
   add(differences(fitted, without, Eigen::VectorXd::Zero(without.fit.linear.prior_rows.cols())));

@@ -86,7 +86,7 @@ std::vector<Profile> three_readings(double bump_mm, unsigned seed) {
 }
 
 // The scatter of repeats is the noise, less what a hypothesis says one of them has of its own: with
-// it in the noise the bump is found in one of these eight.
+// it in the noise the bump is found in none of these eight.
 TEST(Disagreement, ABumpOfOneRepeatIsNoNoiseOfTheOthers) {
   int right = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {

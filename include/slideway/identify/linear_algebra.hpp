@@ -7,6 +7,9 @@ namespace slideway {
 /// Orthonormal basis of what the columns span; columns are judged by their direction, not size.
 Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns);
 
+/// Puts more columns, of as many rows, behind the others.
+void append_columns(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more);
+
 struct LeastSquares {
   Eigen::MatrixXd values;   // one column per target, of least size where the columns leave a choice
   Eigen::VectorXd squares;  // of what is left of each target
