@@ -30,14 +30,13 @@ class PlanCommand : public ReportCommand {
     keep(input_);
     const Problem problem = read_problem(input_, data_directory(data_));
     require_measured(problem);
-    const std::vector<PlannedCut> planned = read_planned_cuts(input_, data_directory(data_));
     std::vector<CutToCome> cuts;
     const Plan plan = [&] {
       StageLine line(!is_quiet());
       const std::vector<Profile> profiles = profiles_of(problem, false, line);
-      cuts = cuts_to_come(problem, profiles, planned);
-      line.show("trying cuts on paper");
-      return plan_cuts(problem, profiles, cuts);
+      cuts = cuts_to_come(problem, profiles);
+      return plan_cuts(problem, profiles, cuts,
+                       [&](const std::string& stage, double done) { line.show(stage, done); });
     }();
     if (!out_.empty()) write_problems(problem, cuts, plan);
     report([&] { return plan_text(plan); }, [&] { return plan_json(plan); },

@@ -194,12 +194,16 @@ bool is_inconsistent(const Crosscheck& checks) {
 bool is_negative(const Result& result) {
   if (is_inconsistent(result.crosscheck)) return true;
   if (!result.final) return false;
-  const auto matters = [](const UndeterminedDirection& direction) {
-    return std::any_of(direction.combination.begin(), direction.combination.end(),
-                       [](const auto& part) { return !fixed_by_convention(part.first); });
-  };
-  const auto& undetermined = result.final->identifiability.unidentifiable;
-  return !result.final->converged || std::any_of(undetermined.begin(), undetermined.end(), matters);
+  return !result.final->converged || !open_directions(*result.final).empty();
+}
+
+std::vector<const UndeterminedDirection*> open_directions(const ModelResult& model) {
+  std::vector<const UndeterminedDirection*> out;
+  for (const UndeterminedDirection& direction : model.identifiability.unidentifiable)
+    if (!std::ranges::all_of(direction.combination,
+                             [](const auto& part) { return fixed_by_convention(part.first); }))
+      out.push_back(&direction);
+  return out;
 }
 
 }  // namespace slideway

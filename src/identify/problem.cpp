@@ -73,13 +73,12 @@ ProfileDefaults read_machine(const Section& root, Problem& problem) {
   return defaults;
 }
 
-void check_lever_is_given(const Section& root, const Problem& problem,
-                          const std::vector<PlannedCut>& planned) {
+void check_lever_is_given(const Section& root, const Problem& problem) {
   const auto is_face = [](const ProfileEntry& entry) {
     return entry.profile.setup.kind == Kind::face;
   };
   const bool face = std::ranges::any_of(problem.profiles, is_face) ||
-                    std::ranges::any_of(planned, is_face, &PlannedCut::entry);
+                    std::ranges::any_of(problem.planned, is_face, &PlannedCut::entry);
   const std::optional<Section> machine = root.table("machine");
   if (!face || (machine && machine->has("lever"))) return;
   const std::string what = "missing; a face needs it; accepted: " + std::string(kLevers);
@@ -194,8 +193,7 @@ void read_model(const Section& root, const ProblemRules& rules, Problem& problem
 }
 
 Problem problem_of(const TomlValue& tree, const std::filesystem::path& path,
-                   const ProblemRules& rules, Faults* faults = nullptr,
-                   std::vector<PlannedCut>* planned = nullptr) {
+                   const ProblemRules& rules, Faults* faults = nullptr) {
   const std::string file = path.string();
   const Section root(file, "", tree, faults);
   root.accept(
@@ -211,10 +209,9 @@ Problem problem_of(const TomlValue& tree, const std::filesystem::path& path,
   root.attempt([&] { defaults.low_band = problem.low_band = read_low_band(root); });
   std::vector<ProfileEntry> sound;
   root.attempt([&] { sound = read_profile_entries(root, defaults, rules, problem); });
-  std::vector<PlannedCut> cuts;
-  root.attempt([&] { cuts = planned_cuts_of(file, tree, defaults, rules, problem.profiles); });
-  root.attempt([&] { check_lever_is_given(root, problem, cuts); });
-  if (planned) *planned = cuts;
+  root.attempt(
+      [&] { problem.planned = planned_cuts_of(file, tree, defaults, rules, problem.profiles); });
+  root.attempt([&] { check_lever_is_given(root, problem); });
   read_model(root, rules, problem);
   root.attempt([&] { problem.runout = read_runout(root); });
   if (faults == nullptr || faults->empty())
@@ -259,14 +256,6 @@ Problem read_profiles_of_problem(const std::filesystem::path& path,
 
 Problem read_problem(const TomlValue& tree, const std::optional<std::filesystem::path>& data_dir) {
   return problem_of(tree, "problem", {{}, data_dir, false});
-}
-
-std::vector<PlannedCut> read_planned_cuts(const std::filesystem::path& path,
-                                          const std::optional<std::filesystem::path>& data_dir) {
-  std::vector<PlannedCut> out;
-  static_cast<void>(
-      problem_of(read_toml(path), path, {path.parent_path(), data_dir, true}, nullptr, &out));
-  return out;
 }
 
 }  // namespace slideway

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "problem_profile.hpp"
-#include "slideway/identify/planned_cut.hpp"
 
 namespace slideway {
 

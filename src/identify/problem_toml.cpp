@@ -11,7 +11,6 @@
 #include "slideway/base/file.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
-#include "slideway/identify/planned_cut.hpp"
 #include "slideway/identify/problem.hpp"
 
 namespace slideway {

@@ -47,7 +47,8 @@ constexpr std::pair<std::string_view, std::string_view> kKept[] = {
      "verdict"},
     {"Trace",
      "verdict unfinished not_looked_at fragile rounds unnamed gain instrument blunders "
-     "left detection_limits lack_of_fit_p:4 notes"},
+     "next_cut left detection_limits lack_of_fit_p:4 notes"},
+    {"NextCut", "what reason"},
     {"Fragile", "gate value:4 verdict"},
     {"Round",
      "accepted profiles ambiguous_with before_rms_um:4 after_rms_um:4 before_rms_urad:4 "

@@ -179,8 +179,9 @@ std::vector<Html> next_steps(const Analysis& analysis) {
   if (analysis.result.final)
     for (const UndeterminedDirection* direction : open_directions(*analysis.result.final))
       if (!direction->advice.empty()) out.emplace_back(with_titles(direction->advice));
-  if (analysis.trace)
-    for (const std::string& advice : analysis.trace->advice) out.emplace_back(with_titles(advice));
+  if (!analysis.trace) return out;
+  for (const std::string& advice : analysis.trace->advice) out.emplace_back(with_titles(advice));
+  if (analysis.trace->next_cut) out.emplace_back(cut_to_make(*analysis.trace->next_cut));
   return out;
 }
 

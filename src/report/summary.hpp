@@ -38,6 +38,9 @@ inline constexpr const char* kNothingToDo = "none is needed for these numbers";
 /// What to do now, or kNothingToDo.
 std::string next_step(const Analysis& analysis);
 
+/// "a cut at 8 mm/min, by slideway plan; tells cup from thermal drift".
+std::string cut_to_make(const NextCut& cut);
+
 /// The most that an effect which is just not seen moves the squareness; "": none is known.
 std::string moved_unseen(const Analysis& analysis);
 
@@ -99,8 +102,5 @@ std::string residual_change(const std::optional<double>& before_um,
                             const std::optional<double>& after_um,
                             const std::optional<double>& before_urad,
                             const std::optional<double>& after_urad);
-
-/// Directions that the data leave open and no convention closes.
-std::vector<const UndeterminedDirection*> open_directions(const ModelResult& model);
 
 }  // namespace slideway

@@ -120,13 +120,4 @@ std::string residual_change(const std::optional<double>& before_um,
   return joined(out);
 }
 
-std::vector<const UndeterminedDirection*> open_directions(const ModelResult& model) {
-  std::vector<const UndeterminedDirection*> out;
-  for (const UndeterminedDirection& direction : model.identifiability.unidentifiable)
-    if (!std::ranges::all_of(direction.combination,
-                             [](const auto& term) { return fixed_by_convention(term.first); }))
-      out.push_back(&direction);
-  return out;
-}
-
 }  // namespace slideway

@@ -7,6 +7,7 @@
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/agreement.hpp"
 #include "slideway/report/number.hpp"
+#include "slideway/trace/unseen.hpp"
 #include "summary.hpp"
 #include "text_parts.hpp"
 
@@ -21,30 +22,9 @@ double harmless_shift(const TraceResult& trace) {
   return Gates{}.harmless_shift;
 }
 
-/// Whether a parameter of an error of the carriages is among names joined by commas.
-bool has_parameter_of(MotionError error, const std::string& names) {
-  for (std::size_t at = 0; at < names.size(); at = names.find_first_of(' ', at))
-    if (at = names.find_first_not_of(' ', at); motion_error_of(names.substr(at)) == error)
-      return true;
-  return false;
-}
-
-/// Effects whose columns an error of the carriages makes, but for the one that is so by Eq. (16).
+/// The titles of same_columns_as().
 std::string one_with(MotionError error, const TraceResult& trace) {
-  std::vector<std::string> names;
-  for (const NotSeparable& each : trace.not_separable)
-    if (has_parameter_of(error, each.same_as) && !is_vertical(each.effect))
-      names.push_back(each.effect);
-  return effect_titles(names, ", ");
-}
-
-/// The size at which an effect that is just not seen moves the squareness most.
-const DetectionLimit* worst_unseen(const TraceResult& trace) {
-  const DetectionLimit* worst = nullptr;
-  for (const DetectionLimit& each : trace.detection_limits)
-    if (each.squareness_rad && (!worst || *each.squareness_rad > *worst->squareness_rad))
-      worst = &each;
-  return worst;
+  return effect_titles(same_columns_as(error, trace), ", ");
 }
 
 /// By how much that is: "2.6 µm/m". REQUIRES one.
@@ -54,13 +34,10 @@ std::string most_unseen(const TraceResult& trace) {
              : "any amount";
 }
 
-/// Whether what the data do not show may move the squareness by more than its U.
-bool may_be_moved_unseen(const Analysis& analysis) {
-  const FittedParameter* const p = squareness_parameter(analysis.result);
-  const DetectionLimit* const worst = worst_unseen(*analysis.trace);
-  return p != nullptr && is_known(*p) && worst != nullptr &&
-         (*worst->squareness_rad > *p->expanded_uncertainty ||
-          !one_with(MotionError::squareness, *analysis.trace).empty());
+/// The cut to make next; "slideway plan" where none has been tried on paper.
+std::string planned(const Analysis& analysis) {
+  return analysis.trace && analysis.trace->next_cut ? cut_to_make(*analysis.trace->next_cut)
+                                                    : "slideway plan tries further cuts on paper";
 }
 
 /// What to do about checks that failed; "": none has. A wrong profile among the fitted ones comes
@@ -123,6 +100,10 @@ std::string each_alone(const ProfileCheck& check) {
   return out.empty() ? "" : joined(out, " and ") + " µm";
 }
 
+std::string cut_to_make(const NextCut& cut) {
+  return cut.what + ", by slideway plan; " + with_titles(cut.reason);
+}
+
 const FittedParameter* squareness_parameter(const Result& result) {
   if (!result.final) return nullptr;
   const auto found = std::ranges::find_if(result.final->parameters, is_squareness);
@@ -158,15 +139,14 @@ std::string next_step(const Analysis& analysis) {
   if (std::string next = reconciled(result.crosscheck); !next.empty()) return next;
   for (const UndeterminedDirection* direction : open_directions(*result.final))
     if (!direction->advice.empty())
-      return with_titles(direction->advice) + "; slideway plan tries further cuts on paper";
+      return with_titles(direction->advice) + "; " + planned(analysis);
   if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
   if (std::string next = next_of_loop(analysis); !next.empty()) return next;
   if (is_lone_curve(result))
     return "read it once more, back: in one trace a drift looks like the slide's form";
-  return may_be_moved_unseen(analysis)
-             ? "slideway plan: unseen effects may move the squareness by " +
-                   most_unseen(*analysis.trace)
-             : kNothingToDo;
+  if (!may_be_moved_unseen(*result.final, *analysis.trace)) return kNothingToDo;
+  return planned(analysis) + "; unseen effects may move the squareness by " +
+         most_unseen(*analysis.trace);
 }
 
 }  // namespace slideway

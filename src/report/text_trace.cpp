@@ -172,6 +172,7 @@ std::string trace_text(const TraceResult& trace) {
   text += cross_validation(trace);
   if (trace.unnamed) text += left_over(*trace.unnamed) + forms(*trace.unnamed);
   for (const std::string& line : trace.advice) text += note(with_titles(line));
+  if (trace.next_cut) text += note("To measure next: " + cut_to_make(*trace.next_cut));
   for (const NotSeparable& each : trace.not_separable)
     text += note(effect_title(each.effect) + " and " + with_titles(each.same_as) +
                  " are one column here: not separable");

@@ -6,6 +6,8 @@
 #include "loop.hpp"
 #include "outcome.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/trace/plan.hpp"
+#include "slideway/trace/unseen.hpp"
 
 namespace slideway {
 namespace {
@@ -16,6 +18,22 @@ template <typename Error>
   throw Error(problem.path.string() + ": " + error.what());
 }
 
+/// Where the model is worth a plan: no profile is wrong, and nothing is left unexplained.
+void add_next_cut(const Problem& problem, const std::vector<Profile>& profiles,
+                  const FittedModel& fitted, TimeLimit& limit, Analysis& out) {
+  TraceResult& trace = *out.trace;
+  const ModelResult& model = *out.result.final;
+  if (trace.unfinished || !trace.blunders.empty() || trace.verdict == TraceVerdict::unnamed ||
+      !model.converged || !wants_another_cut(model, trace))
+    return;
+  try {
+    if (!limit.allows([&] { trace.next_cut = next_cut(problem, profiles, fitted); }))
+      trace.not_looked_at.emplace_back("the cut to make next");
+  } catch (const UsageError& error) {  // of a planned cut
+    trace.notes.push_back("no further cut was tried on paper: " + std::string(error.what()));
+  }
+}
+
 Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
                   const AnalysisOptions& options, const Progress& progress) {
   const FittedModel declared = fit_declared(problem, profiles);
@@ -24,12 +42,10 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
   if (options.with_evidence) out.evidence = evidence(declared.model, declared.fit);
   const FittedModel* last = &declared;
   ClosedLoop loop;
+  TimeLimit limit(problem.trace.time_limit_s);
   if (options.closes_loop) {
-    loop = close_loop(problem, profiles, declared, progress);
-    if (loop.extended) {
-      allow_for_other_form(problem, *loop.extended);
-      last = &*loop.extended;
-    }
+    loop = close_loop(problem, profiles, declared, limit, progress);
+    last = &loop.last(declared);
   }
   MoreVariance unnamed;
   if (loop.widening)
@@ -43,6 +59,7 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
       round.parameters =
           parameters_of(*out.result.final, term_name(round.accepted, round.profiles));
     doubt_what_is_uncertain(last->model, *out.result.final, *out.trace);
+    add_next_cut(problem, profiles, *last, limit, out);
   }
   if (options.with_details)
     out.details =

@@ -206,11 +206,10 @@ void add_levels(const Profile& like, double highest_mm, Lever lever, Range& out)
 
 }  // namespace
 
-std::vector<CutToCome> cuts_to_come(const Problem& problem, const std::vector<Profile>& profiles,
-                                    const std::vector<PlannedCut>& planned) {
-  if (!planned.empty()) {
+std::vector<CutToCome> cuts_to_come(const Problem& problem, const std::vector<Profile>& profiles) {
+  if (!problem.planned.empty()) {
     std::vector<CutToCome> out;
-    for (const PlannedCut& cut : planned) out.push_back(to_come(cut, profiles));
+    for (const PlannedCut& cut : problem.planned) out.push_back(to_come(cut, profiles));
     return out;
   }
   const auto is_fitted = [](const Profile& each) { return each.role == Role::fit; };

@@ -34,20 +34,18 @@ std::optional<std::size_t> like_which(const FittedModel& base, const CutToCome& 
   return out;
 }
 
-void require_metadata_of_cut(const Model& model, const CutToCome& cut) {
-  for (const ModelTerm& term : model.terms) {
-    if (!term.acts_on(cut.profile)) continue;
-    const std::vector<std::string> lacking = term.effect->lacking(cut.profile.setup);
-    if (!lacking.empty())
-      throw UsageError("planned cut '" + cut.profile.name + "': effect '" + term.name + "' needs " +
-                       joined(lacking));
-  }
-}
-
 }  // namespace
 
+std::string lacks(const ModelTerm& term, const CutToCome& cut) {
+  if (!term.acts_on(cut.profile)) return "";
+  const std::vector<std::string> lacking = term.effect->lacking(cut.profile.setup);
+  return lacking.empty() ? "" : "effect '" + term.name + "' needs " + joined(lacking);
+}
+
 Imagined imagine(const Problem& problem, const FittedModel& base, const CutToCome& cut) {
-  require_metadata_of_cut(base.model, cut);
+  for (const ModelTerm& term : base.model.terms)
+    if (const std::string why = lacks(term, cut); !why.empty())
+      throw UsageError("planned cut '" + cut.profile.name + "': " + why);
   const std::optional<std::size_t> which = like_which(base, cut);
   const Observation* const like = which ? base.fit.linear.observations[*which] : nullptr;
   Problem bare = problem;

@@ -11,6 +11,9 @@ struct Imagined {
   Noise noise;
 };
 
+/// What an effect lacks on a cut to come: "effect 'linear_drift' needs feed_mm_per_min", or "".
+std::string lacks(const ModelTerm& term, const CutToCome& cut);
+
 /// @throws UsageError  the cut lacks metadata of a declared effect, or nothing tells its noise
 /// @throws DataError   fewer samples than its low band takes
 Imagined imagine(const Problem& problem, const FittedModel& base, const CutToCome& cut);

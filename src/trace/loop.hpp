@@ -2,6 +2,7 @@
 
 #include "slideway/identify/fit.hpp"
 #include "slideway/trace/trace.hpp"
+#include "time_limit.hpp"
 #include "widening.hpp"
 
 namespace slideway {
@@ -10,10 +11,14 @@ struct ClosedLoop {
   TraceResult trace;
   std::optional<Widening> widening;     // of the final fit; none: by nothing
   std::optional<FittedModel> extended;  // with the effects that were added; none: none was
+
+  [[nodiscard]] const FittedModel& last(const FittedModel& declared) const {
+    return extended ? *extended : declared;
+  }
 };
 
 /// @param declared  fit_declared() of the problem
 ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profiles,
-                      const FittedModel& declared, const Progress& progress);
+                      const FittedModel& declared, TimeLimit& limit, const Progress& progress);
 
 }  // namespace slideway

@@ -8,7 +8,9 @@
 #include "detection.hpp"
 #include "exchange.hpp"
 #include "imagined.hpp"
+#include "loop.hpp"
 #include "plan_words.hpp"
+#include "slideway/base/error.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/planned_fit.hpp"
@@ -73,22 +75,22 @@ struct Criteria {
 
 class Planner {
  public:
-  Planner(const Problem& problem, const std::vector<Profile>& profiles,
+  Planner(const Problem& problem, const std::vector<Profile>& profiles, const FittedModel& fitted,
           const std::vector<CutToCome>& cuts)
       : problem_(problem),
         cuts_(cuts),
-        declared_(fit_declared(problem, profiles)),
-        coarser_(coarser_model(problem, profiles, declared_)),
+        fitted_(fitted),
+        coarser_(coarser_model(problem, profiles, fitted_)),
         suspects_(problem, base()),
-        wanted_(wanted_parameters(declared_.model)),
-        quick_(with_known_noise(declared_.fit)),
-        now_(wanted_, with_profiles(declared_.model, quick_, {})),
-        summary_(summarise(declared_.model, declared_.fit)) {
+        wanted_(wanted_parameters(fitted_.model)),
+        quick_(with_known_noise(fitted_.fit)),
+        now_(wanted_, with_profiles(fitted_.model, quick_, {})),
+        summary_(summarise(fitted_.model, fitted_.fit)) {
     const std::size_t count = cuts_.size();
     imagined_.resize(count);
     papers_.resize(count);
     parallel_for(count, [&](std::size_t c) {
-      imagined_[c] = imagine(problem, declared_, cuts_[c]);
+      imagined_[c] = imagine(problem, fitted_, cuts_[c]);
       const Imagined seen = coarser_ ? imagine(problem, *coarser_, cuts_[c]) : *imagined_[c];
       papers_[c] = std::make_unique<PaperProfile>(suspects_.on_paper(seen.observation, seen.noise));
     });
@@ -101,28 +103,38 @@ class Planner {
     out.title = problem_.title;
     for (const CutToCome& cut : cuts_)
       out.cuts.push_back({cut.profile.name, cut.what, cut.like, cut.cost, cut.time_min});
-    std::vector<CutSet> alone;
-    for (std::size_t c = 0; c < cuts_.size(); ++c) alone.push_back({c});
-    out.alone = designs(alone);
+    for (std::size_t c = 0; c < cuts_.size(); ++c) out.alone.push_back(design({c}));
     std::ranges::stable_sort(out.alone, std::ranges::greater(), &PlannedDesign::score);
     add_sets(out);
     add_notes(out);
     return out;
   }
 
+  /// The first of run().alone.
+  NextCut best_alone() {
+    std::size_t best = 0;
+    double highest = -INFINITY;
+    for (std::size_t c = 0; c < cuts_.size(); ++c)
+      if (const double score = criteria({c}).score; score > highest) highest = score, best = c;
+    const CutToCome& cut = cuts_[best];
+    return {cut.profile.name, cut.what, design({best}).reason};
+  }
+
  private:
-  [[nodiscard]] const FittedModel& base() const { return coarser_ ? *coarser_ : declared_; }
+  [[nodiscard]] const FittedModel& base() const { return coarser_ ? *coarser_ : fitted_; }
 
   /// In the low band a search looks at; none where that is the fit's own.
   static std::optional<FittedModel> coarser_model(const Problem& problem,
                                                   const std::vector<Profile>& profiles,
-                                                  const FittedModel& declared) {
-    const auto most = static_cast<std::size_t>(declared.model.gates.search_values);
+                                                  const FittedModel& fitted) {
+    const auto most = static_cast<std::size_t>(fitted.model.gates.search_values);
     const auto is_long = [&](const Observation& each) {
       return static_cast<std::size_t>(each.values.size()) > most;
     };
-    if (std::ranges::none_of(declared.model.observations, is_long)) return std::nullopt;
-    return fit_model(build_model(problem, profiles, most));
+    if (std::ranges::none_of(fitted.model.observations, is_long)) return std::nullopt;
+    Model coarser = build_model(problem, profiles, most);
+    coarser.terms = fitted.model.terms;
+    return fit_model(std::move(coarser), fitted.fit.estimate.shapes);
   }
 
   [[nodiscard]] std::vector<ProfileToCome> more(const CutSet& set) const {
@@ -142,7 +154,7 @@ class Planner {
   [[nodiscard]] Criteria criteria(const CutSet& set) const {
     std::vector<ProfileToCome> profiles = more(set);
     for (ProfileToCome& each : profiles) each.noise.alternatives.clear();
-    const Wanted planned(wanted_, with_profiles(declared_.model, quick_, profiles));
+    const Wanted planned(wanted_, with_profiles(fitted_.model, quick_, profiles));
     Criteria out;
     std::vector<Eigen::Index> both;
     std::size_t fresh = 0;
@@ -197,13 +209,13 @@ class Planner {
   /// Effects that lack nothing any more but what profiles have together.
   [[nodiscard]] std::vector<std::string> testable(const CutSet& set) const {
     std::vector<const Profile*> profiles;
-    for (const Observation* each : declared_.fit.linear.observations)
+    for (const Observation* each : fitted_.fit.linear.observations)
       profiles.push_back(each->profile);
     for (const std::size_t c : set) profiles.push_back(&cuts_[c].profile);
     std::vector<std::string> out;
     for (const Untestable& each : suspects_.untestable())
       if (std::ranges::count(effect_names(), each.effect) > 0 &&
-          specimen(each.effect).lacking_of_machine(declared_.model.range).empty() &&
+          specimen(each.effect).lacking_of_machine(fitted_.model.range).empty() &&
           can_be_looked_for(specimen(each.effect), profiles))
         out.push_back(each.effect);
     return out;
@@ -221,12 +233,6 @@ class Planner {
   }
 
   // --- what is reported -------------------------------------------------------------------------
-
-  [[nodiscard]] std::vector<PlannedDesign> designs(const std::vector<CutSet>& sets) const {
-    std::vector<PlannedDesign> out(sets.size());
-    for (std::size_t i = 0; i < sets.size(); ++i) out[i] = design(sets[i]);
-    return out;
-  }
 
   [[nodiscard]] PlannedDesign design(const CutSet& set) const {
     const Criteria criteria = this->criteria(set);
@@ -251,9 +257,9 @@ class Planner {
   }
 
   [[nodiscard]] std::vector<PlannedQuantity> quantities(const CutSet& set) const {
-    Model model = declared_.model;
+    Model model = fitted_.model;
     for (const std::size_t c : set) model.observations.push_back(imagined_[c]->observation);
-    const ModelResult planned = summarise(model, with_profiles(model, declared_.fit, more(set)));
+    const ModelResult planned = summarise(model, with_profiles(model, fitted_.fit, more(set)));
     const ModelResult& now = summary_;
     std::vector<PlannedQuantity> out;
     for (const Eigen::Index p : wanted_) {
@@ -276,7 +282,7 @@ class Planner {
                             suspects_.hidden_by(suspect), suspect.limit,
                             suspects_.limit(suspect, paper)});
     }
-    const double size = declared_.model.gates.planned_size;
+    const double size = fitted_.model.gates.planned_size;
     for (const SuspectPair& pair : suspects_.pairs()) {
       const Rivalry& worst = pair.directions.front();
       const std::optional<double> planned = suspects_.told_apart(pair, paper);
@@ -307,16 +313,16 @@ class Planner {
   }
 
   void add_notes(Plan& out) const {
-    const std::vector<Noise>& noise = declared_.fit.noise;
+    const std::vector<Noise>& noise = fitted_.fit.noise;
     if (noise.size() == 1 && noise[0].is_estimated() && !noise[0].is_white())
       out.notes.emplace_back(
           "the noise of one profile has a memory here, of which one profile says little: planned "
           "U may turn out half as large or twice as large; more profiles know it better");
-    if (declared_.fit.uncertainty.inflation > 1.0)
+    if (fitted_.fit.uncertainty.inflation > 1.0)
       out.notes.emplace_back(
-          "the declared model leaves structure in the profiles, which widens every U, planned ones "
-          "too; slideway identify looks for what is missing");
-    if (declared_.fit.other_form)
+          "structure without a name is left in the profiles, which widens every U, planned ones "
+          "too");
+    if (fitted_.fit.other_form)
       out.notes.emplace_back(
           "a curve beside the polynomial form of the slide is likelier than none; what it adds to "
           "U "
@@ -325,7 +331,7 @@ class Planner {
 
   const Problem& problem_;
   const std::vector<CutToCome>& cuts_;
-  FittedModel declared_;
+  const FittedModel& fitted_;
   std::optional<FittedModel> coarser_;
   Suspects suspects_;
   std::vector<Eigen::Index> wanted_;
@@ -337,11 +343,52 @@ class Planner {
   std::vector<std::optional<double>> limits_now_;
 };
 
+/// The cuts on which the effects that the closed loop has found can be evaluated: the log of a
+/// measured cause may end before a cut does.
+/// @param without  is told which cannot, and why
+template <typename Told>
+std::vector<CutToCome> with_found_effects(const Problem& problem, const Model& model,
+                                          std::vector<CutToCome> cuts, Told&& without) {
+  std::erase_if(cuts, [&](const CutToCome& cut) {
+    for (const ModelTerm& term : model.terms) {
+      if (std::ranges::count(problem.effects, term.name, &DeclaredEffect::name) > 0) continue;
+      const std::string why = lacks(term, cut);
+      if (why.empty()) continue;
+      without("planned cut '" + cut.profile.name + "': " + why);
+      return true;
+    }
+    return false;
+  });
+  return cuts;
+}
+
 }  // namespace
 
 Plan plan_cuts(const Problem& problem, const std::vector<Profile>& profiles,
-               const std::vector<CutToCome>& cuts) {
-  return Planner(problem, profiles, cuts).run();
+               const std::vector<CutToCome>& cuts, const Progress& progress) {
+  const FittedModel declared = fit_declared(problem, profiles);
+  TimeLimit limit(problem.trace.time_limit_s);
+  const ClosedLoop loop = close_loop(problem, profiles, declared, limit, progress);
+  if (progress) progress("trying cuts on paper", 0.0);
+  const FittedModel& fitted = loop.last(declared);
+  std::vector<std::string> left_out;
+  const std::vector<CutToCome> tried = with_found_effects(
+      problem, fitted.model, cuts, [&](const std::string& why) { left_out.push_back(why); });
+  if (tried.empty()) throw UsageError(left_out.front());
+  Plan out = Planner(problem, profiles, fitted, tried).run();
+  std::ranges::move(left_out, std::back_inserter(out.notes));
+  for (const TraceRound& round : loop.trace.rounds)
+    out.notes.push_back("the model has " + term_name(round.accepted, round.profiles) +
+                        ", which the closed loop has found");
+  return out;
+}
+
+std::optional<NextCut> next_cut(const Problem& problem, const std::vector<Profile>& profiles,
+                                const FittedModel& fitted) {
+  const std::vector<CutToCome> cuts = with_found_effects(
+      problem, fitted.model, cuts_to_come(problem, profiles), [](const std::string&) {});
+  if (cuts.empty()) return std::nullopt;
+  return Planner(problem, profiles, fitted, cuts).best_alone();
 }
 
 }  // namespace slideway

@@ -369,8 +369,7 @@ class Loop {
 }  // namespace
 
 ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profiles,
-                      const FittedModel& declared, const Progress& progress) {
-  TimeLimit limit(problem.trace.time_limit_s);
+                      const FittedModel& declared, TimeLimit& limit, const Progress& progress) {
   Known known = known_before_search(shown_by_samples(problem, declared), declared);
   const auto run = [&] {
     const FittedModel& begun = known.fitted ? *known.fitted : declared;
@@ -391,6 +390,7 @@ ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profil
   trace.rounds.insert(trace.rounds.begin(), known.rounds.begin(), known.rounds.end());
   if ((!known.notes.empty() || !known.rounds.empty()) && !out.extended)
     out.extended = std::move(known.fitted);
+  if (out.extended) allow_for_other_form(problem, *out.extended);
   return out;
 }
 

@@ -1,5 +1,3 @@
-#include "slideway/identify/planned_cut.hpp"
-
 #include "identify/problem_file.hpp"
 
 namespace slideway {
@@ -22,7 +20,7 @@ TEST_F(PlannedCutFile, TakesWhatItLeavesOutFromTheProfileItIsLike) {
       profile("feed_mm_per_min = 8.0", "feed8") + kEffect +
       "[[plan.cut]]\nname = \"a\"\nspindle_rpm = 200.0\ntime_min = 12.0\n"
       "[[plan.cut]]\nname = \"b\"\nlike = \"feed8\"\nwindow = [0.0, 10.0]\nsamples = 50\n";
-  const std::vector<PlannedCut> cuts = read_planned_cuts(write(text));
+  const std::vector<PlannedCut> cuts = read_problem(write(text)).planned;
   ASSERT_EQ(cuts.size(), 2U);
   EXPECT_EQ(cuts[0].like, "feed2");
   const slideway::Setup& setup = cuts[0].entry.profile.setup;
@@ -32,7 +30,7 @@ TEST_F(PlannedCutFile, TakesWhatItLeavesOutFromTheProfileItIsLike) {
   EXPECT_EQ(cuts[0].time_min, 12.0);
   EXPECT_EQ(cuts[1].entry.profile.setup.feed_mm_per_min, 8.0);
   EXPECT_EQ(cuts[1].samples, 50U);
-  EXPECT_TRUE(read_planned_cuts(write(kMachine + profile() + kEffect)).empty());
+  EXPECT_TRUE(read_problem(write(kMachine + profile() + kEffect)).planned.empty());
 }
 
 // An SDF file states its units, so its profile need not; a cut like it is planned in mm and µm.
@@ -45,7 +43,7 @@ TEST_F(PlannedCutFile, LikeAFileThatStatesItsUnitsIsInMillimetres) {
   const std::string text = std::string(kMachine) +
                            "[[profile]]\nname = \"own\"\nfile = \"own.sdf\"\n" + kEffect +
                            "[[plan.cut]]\nname = \"a\"\nwindow = [0.0, 10.0]\nsamples = 50\n";
-  const std::vector<PlannedCut> cuts = read_planned_cuts(write(text));
+  const std::vector<PlannedCut> cuts = read_problem(write(text)).planned;
   ASSERT_EQ(cuts.size(), 1U);
   EXPECT_EQ(cuts[0].entry.source.position_unit, "mm");
   EXPECT_EQ(cuts[0].entry.source.value_unit, "um");

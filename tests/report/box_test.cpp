@@ -71,6 +71,8 @@ TEST(Box, HasANextStepWhereverTheNumbersAreInDoubt) {
   EXPECT_THAT(next(sound), HasSubstr("none is needed"));
   trace.detection_limits[0].squareness_rad = 3.0e-9;
   EXPECT_THAT(next(sound), HasSubstr("slideway plan"));
+  trace.next_cut = {"cut1-feed8", "a cut at 8 mm/min", "tells cup from tool_wear; 75 min"};
+  EXPECT_THAT(next(sound), HasSubstr("a cut at 8 mm/min, by slideway plan"));
 }
 
 TEST(Box, CountsTheContradictionsThatItHasNoRoomFor) {

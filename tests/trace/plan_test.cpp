@@ -17,7 +17,7 @@ constexpr double kWhite = 0.02e-3;  // mm
 /// What a change of one thing in the first profile brings.
 PlannedDesign design_of(const Problem& problem, const std::vector<Profile>& profiles,
                         const std::string& suffix) {
-  const Plan plan = plan_cuts(problem, profiles, cuts_to_come(problem, profiles, {}));
+  const Plan plan = plan_cuts(problem, profiles, cuts_to_come(problem, profiles));
   for (const PlannedDesign& design : plan.alone)
     if (design.cuts.front() == profiles.front().name + "-" + suffix) return design;
   ADD_FAILURE() << "no cut " << suffix;
@@ -176,7 +176,7 @@ TEST(PlannedCut, KeepsItsPromiseExactlyWhereTheNoiseIsKnown) {
 TEST(PlannedCut, SetsBringMoreThanTheirParts) {
   const Problem problem = problem_of({"linear_drift", "tool_wear"});
   const std::vector<Profile> one = quarter_faces({"clean"}, 1, kBlunt, 1);
-  const Plan plan = plan_cuts(problem, one, cuts_to_come(problem, one, {}));
+  const Plan plan = plan_cuts(problem, one, cuts_to_come(problem, one));
   ASSERT_GE(plan.sets.size(), 2U);
   double best = plan.alone.front().score;
   for (const PlannedDesign& set : plan.sets) {
@@ -191,7 +191,7 @@ TEST(PlannedCut, NeedsTheMetadataOfEveryDeclaredEffect) {
   Problem problem = problem_of({"cup"});
   problem.effects.push_back({"linear_drift", {}, {}});
   const std::vector<Profile> two = quarter_faces({"clean"}, 2, kBlunt, 1);
-  std::vector<CutToCome> cuts = cuts_to_come(problem, two, {});
+  std::vector<CutToCome> cuts = cuts_to_come(problem, two);
   cuts[0].profile.setup.feed_mm_per_min.reset();
   EXPECT_THAT([&] { plan_cuts(problem, two, cuts); },
               ::testing::ThrowsMessage<UsageError>(::testing::HasSubstr(
@@ -201,13 +201,47 @@ TEST(PlannedCut, NeedsTheMetadataOfEveryDeclaredEffect) {
 TEST(PlannedCut, OfAnotherKindNeedsItsNoise) {
   const Problem problem = problem_of({"linear_drift"});
   const std::vector<Profile> one = quarter_faces({"clean"}, 1, kBlunt, 1);
-  std::vector<CutToCome> cuts = cuts_to_come(problem, one, {});
+  std::vector<CutToCome> cuts = cuts_to_come(problem, one);
   cuts.resize(1);
   cuts[0].like.clear();
   cuts[0].profile.setup.kind = Kind::slide;
   EXPECT_THAT(
       [&] { plan_cuts(problem, one, cuts); },
       ::testing::ThrowsMessage<UsageError>(::testing::HasSubstr("accepted: standard_uncertainty")));
+}
+
+// One side of the axis leaves the squareness open, and the tilt of the trace.
+TEST(NextCut, OfAnIdentificationIsTheFirstOfThePlan) {
+  const Problem problem = problem_of({"linear_drift"});
+  const std::vector<Profile> one = radius_of(quarter_faces({"clean"}, 1, kBlunt, 1));
+  const Plan plan = plan_cuts(problem, one, cuts_to_come(problem, one));
+  const std::optional<NextCut> next = closed(problem, one).next_cut;
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->name, plan.alone.front().cuts.front());
+  EXPECT_EQ(next->reason, plan.alone.front().reason);
+}
+
+TEST(NextCut, IsOneOfThoseThatTheProblemPlans) {
+  Problem problem = problem_of({"linear_drift"});
+  const std::vector<Profile> one = radius_of(quarter_faces({"clean"}, 1, kBlunt, 1));
+  PlannedCut& cut = problem.planned.emplace_back();
+  cut.like = one[0].name;
+  cut.entry.profile = one[0];
+  cut.entry.profile.name = "mine";
+  EXPECT_EQ(closed(problem, one).next_cut.value().name, "mine");
+  problem.effects.push_back({"linear_drift", {}, {}});
+  cut.entry.profile.setup.feed_mm_per_min.reset();
+  const Closed without = closed(problem, one);
+  EXPECT_FALSE(without.next_cut);
+  EXPECT_THAT(without.notes,
+              ::testing::Contains(::testing::HasSubstr(
+                  "planned cut 'mine': effect 'linear_drift' needs feed_mm_per_min")));
+}
+
+// Two diameters at two feeds, and no candidate that could hide: nothing is open.
+TEST(NextCut, IsNotLookedForWhereNothingIsOpen) {
+  EXPECT_FALSE(
+      closed(problem_of({"linear_drift"}), quarter_faces({"clean"}, 2, kBlunt, 1)).next_cut);
 }
 
 }  // namespace

@@ -65,6 +65,14 @@ struct ProfileEntry {
   std::map<std::string, int> lines;  // of its keys in the problem file, and of "", the table
 };
 
+/// One [[plan.cut]]: a cut or trace that can be made next.
+struct PlannedCut {
+  ProfileEntry entry;       // without a file; a key it leaves out is that of `like`
+  std::string like;         // a profile, else the first of its kind and quantity; empty: none is
+  std::size_t samples = 0;  // evenly spaced in the window; 0: as close as those of `like`
+  std::optional<double> cost, time_min;
+};
+
 /// A problem file, checked.
 struct Problem {
   std::filesystem::path path;
@@ -82,6 +90,7 @@ struct Problem {
   std::optional<Runout> runout;
   TraceOptions trace;
   std::optional<Truth> truth;
+  std::vector<PlannedCut> planned;
   std::vector<Assumption> assumed;  // values that the data give are empty: assumptions()
 
   [[nodiscard]] Machine machine() const { return {bodies, lever}; }
@@ -130,5 +139,10 @@ std::vector<Assumption> assumptions(const Problem& problem, const std::vector<Pr
 /// leave_out. The same text on every machine. REQUIRES one file per profile.
 /// @throws UsageError  the problem file can no longer be read
 std::string simulated_problem_text(const Problem& problem, const std::vector<std::string>& files);
+
+/// The problem file without [plan] and [truth], to be put into another directory: relative paths
+/// lead from there to where they lead now.
+/// @throws UsageError  the problem file can no longer be read
+std::string moved_problem_text(const Problem& problem, const std::filesystem::path& directory);
 
 }  // namespace slideway

@@ -229,4 +229,7 @@ struct Result {
 /// undetermined that no convention fixes.
 bool is_negative(const Result& result);
 
+/// Directions that the data leave open and no convention closes.
+std::vector<const UndeterminedDirection*> open_directions(const ModelResult& model);
+
 }  // namespace slideway

@@ -135,6 +135,12 @@ inline constexpr auto kRecord<SharedResidual> =
            field("significant", &SharedResidual::significant, "then it is the instrument's error"));
 
 template <>
+inline constexpr auto kRecord<NextCut> =
+    record("NextCut", "The cut or trace to make next: the first of slideway plan.",
+           field("name", &NextCut::name), field("what", &NextCut::what),
+           field("reason", &NextCut::reason));
+
+template <>
 inline constexpr auto kRecord<TraceResult> = record(
     "Trace", "The closed loop.", field("verdict", &TraceResult::verdict),
     field("unfinished", &TraceResult::unfinished,
@@ -147,7 +153,10 @@ inline constexpr auto kRecord<TraceResult> = record(
     field("gain", &TraceResult::gain, "of the accepted effects, by cross_validation"),
     field("instrument", &TraceResult::instrument, "pairs of one instrument and two surfaces"),
     field("blunders", &TraceResult::blunders, "rivals, most likely first; then no effect is named"),
-    field("advice", &TraceResult::advice), field("not_testable", &TraceResult::not_testable),
+    field("advice", &TraceResult::advice),
+    field("next_cut", &TraceResult::next_cut,
+          "none: nothing is open and nothing unseen moves the squareness by more than its U"),
+    field("not_testable", &TraceResult::not_testable),
     field("not_separable", &TraceResult::not_separable),
     field("refused", &TraceResult::refused, "of the last search, best first"),
     field("left", &TraceResult::left), field("detection_limits", &TraceResult::detection_limits),

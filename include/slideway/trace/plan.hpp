@@ -5,7 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "slideway/identify/planned_cut.hpp"
+#include "slideway/identify/fit.hpp"
+#include "slideway/identify/problem.hpp"
+#include "slideway/trace/trace.hpp"
 
 /// What to measure next: cuts and traces that could be made, tried on paper.
 namespace slideway {
@@ -26,8 +28,7 @@ struct CutToCome {
 /// diameter, at other levels Z, with another overhang; or of the first reading of a slide: once
 /// more, backwards, at another speed.
 /// @throws UsageError  no fitted profile is there to begin with
-std::vector<CutToCome> cuts_to_come(const Problem& problem, const std::vector<Profile>& profiles,
-                                    const std::vector<PlannedCut>& planned);
+std::vector<CutToCome> cuts_to_come(const Problem& problem, const std::vector<Profile>& profiles);
 
 /// A wanted quantity: its U as it is and as it will be, none where it is not determined.
 struct PlannedQuantity {
@@ -79,8 +80,9 @@ struct Plan {
   std::vector<std::string> notes;
 };
 
-/// Fits the declared model to the profiles there are and tries every cut on paper: its columns are
-/// known, its noise is that of the profiles there are, and no value of it is needed.
+/// Fits the model that the closed loop ends with to the profiles there are and tries every cut on
+/// paper: its columns are known, its noise is that of the profiles there are, and no value of it is
+/// needed.
 ///
 /// With u a standard uncertainty of a wanted quantity (the parameters of the carriages that no
 /// convention fixes; where there are none, all), C their covariance and n their number:
@@ -97,7 +99,13 @@ struct Plan {
 /// a_share. REQUIRES at least one cut.
 /// @throws UsageError, DataError  as identify()
 Plan plan_cuts(const Problem& problem, const std::vector<Profile>& profiles,
-               const std::vector<CutToCome>& cuts);
+               const std::vector<CutToCome>& cuts, const Progress& progress = {});
+
+/// The first line of that, of cuts_to_come(), without the rest; none where no cut can be tried.
+/// @param fitted  the model that the closed loop ended with
+/// @throws UsageError, DataError
+std::optional<NextCut> next_cut(const Problem& problem, const std::vector<Profile>& profiles,
+                                const FittedModel& fitted);
 
 /// The problem with the cuts as [[profile]] entries, as a file in `directory`; comments say what to
 /// measure.

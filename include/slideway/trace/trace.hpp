@@ -188,6 +188,12 @@ struct Fragile {
   TraceVerdict verdict = TraceVerdict::nothing_missing;  // there
 };
 
+/// The cut or trace to make next: next_cut().
+struct NextCut {
+  std::string name, what;  // "feed2-feed0.5", "a cut at 0.5 mm/min"
+  std::string reason;      // in words
+};
+
 struct TraceResult {
   TraceVerdict verdict = TraceVerdict::nothing_missing;
   bool unfinished = false;                 // the time limit ended the search: no effect is named
@@ -201,6 +207,7 @@ struct TraceResult {
   std::vector<SharedResidual> instrument;         // pairs of one instrument and two surfaces
   std::vector<Blunder> blunders;  // rivals, most likely first; effects are then not looked for
   std::vector<std::string> advice;
+  std::optional<NextCut> next_cut;  // where numbers are open, or effects may move them unseen
   std::vector<NotTestable> not_testable;
   std::vector<NotSeparable> not_separable;
   std::vector<TriedEffect> refused;  // of the last search, best first

@@ -677,6 +677,15 @@ class Blunder:
 
 
 @dataclass(frozen=True)
+class NextCut:
+    """The cut or trace to make next: the first of slideway plan."""
+
+    name: str
+    what: str
+    reason: str
+
+
+@dataclass(frozen=True)
 class NotTestable:
     """An effect the data cannot be asked for."""
 
@@ -747,6 +756,8 @@ class Trace:
     blunders: list[Blunder]
     """rivals, most likely first; then no effect is named"""
     advice: list[str]
+    next_cut: NextCut | None
+    """none: nothing is open and nothing unseen moves the squareness by more than its U"""
     not_testable: list[NotTestable]
     not_separable: list[NotSeparable]
     refused: list[Tried]

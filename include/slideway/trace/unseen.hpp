@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "slideway/effects/effect.hpp"
+#include "slideway/identify/result.hpp"
+#include "slideway/trace/trace.hpp"
+
+/// What effects that the data do not show may do to the numbers.
+namespace slideway {
+
+/// The effect that moves Δβxz most while it is just not seen; null: of none is that known.
+const DetectionLimit* worst_unseen(const TraceResult& trace);
+
+/// Effects whose columns an error of the carriages makes, but for the one that is so by Eq. (16).
+std::vector<std::string> same_columns_as(MotionError error, const TraceResult& trace);
+
+/// Whether such effects may move Δβxz by more than its U.
+bool may_be_moved_unseen(const ModelResult& model, const TraceResult& trace);
+
+/// Whether a number is open that a further cut or trace may settle.
+bool wants_another_cut(const ModelResult& model, const TraceResult& trace);
+
+}  // namespace slideway

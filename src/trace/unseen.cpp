@@ -1,0 +1,54 @@
+#include "slideway/trace/unseen.hpp"
+
+#include <algorithm>
+
+#include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/identify.hpp"
+
+namespace slideway {
+namespace {
+
+/// Whether a parameter of an error of the carriages is among names joined by commas.
+bool has_parameter_of(MotionError error, const std::string& names) {
+  for (std::size_t at = 0; at < names.size(); at = names.find_first_of(' ', at))
+    if (at = names.find_first_not_of(' ', at); motion_error_of(names.substr(at)) == error)
+      return true;
+  return false;
+}
+
+}  // namespace
+
+const DetectionLimit* worst_unseen(const TraceResult& trace) {
+  const DetectionLimit* worst = nullptr;
+  for (const DetectionLimit& each : trace.detection_limits)
+    if (each.squareness_rad && (!worst || *each.squareness_rad > *worst->squareness_rad))
+      worst = &each;
+  return worst;
+}
+
+std::vector<std::string> same_columns_as(MotionError error, const TraceResult& trace) {
+  std::vector<std::string> names;
+  for (const NotSeparable& each : trace.not_separable)
+    if (has_parameter_of(error, each.same_as) &&
+        motion_error_of(each.effect) != MotionError::vertical_straightness)
+      names.push_back(each.effect);
+  return names;
+}
+
+bool may_be_moved_unseen(const ModelResult& model, const TraceResult& trace) {
+  const auto squareness = std::ranges::find_if(model.parameters, [](const auto& each) {
+    return motion_error_of(each.name) == MotionError::squareness;
+  });
+  if (squareness == model.parameters.end() || !squareness->value ||
+      !squareness->expanded_uncertainty)
+    return false;
+  const DetectionLimit* const worst = worst_unseen(trace);
+  return worst != nullptr && (*worst->squareness_rad > *squareness->expanded_uncertainty ||
+                              !same_columns_as(MotionError::squareness, trace).empty());
+}
+
+bool wants_another_cut(const ModelResult& model, const TraceResult& trace) {
+  return !open_directions(model).empty() || may_be_moved_unseen(model, trace);
+}
+
+}  // namespace slideway
