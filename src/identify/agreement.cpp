@@ -2,12 +2,14 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "reported.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/low_band_lines.hpp"
 #include "slideway/identify/noise_model.hpp"
 #include "slideway/identify/subset_estimate.hpp"
 #include "slideway/identify/uncertainty.hpp"
@@ -113,11 +115,19 @@ Eigen::MatrixXd levelled_curve(const Linearisation& linear, std::size_t i, const
 }
 
 /// Every effect of the model as a curve of profile `a` and, for the slide, the travel in common.
+/// Not of waves that are too fine for the low band: the nose of the tool takes off their crests,
+/// more of them the smaller the feed.
 std::vector<Curve> curves(const Model& model, const Solution& fit, std::size_t a, std::size_t b) {
   std::vector<Curve> out;
   const auto& observations = fit.linear.observations;
+  const auto is_fine = [&](const ModelTerm& term) {
+    return std::ranges::any_of(std::array{a, b}, [&](std::size_t i) {
+      return term.acts_on(*observations[i]->profile) &&
+             is_too_fine(model, term, shapes_of(term, fit.estimate.shapes), *observations[i]);
+    });
+  };
   for (const ModelTerm& term : model.terms) {
-    if (term.effect->description().kinematic) continue;
+    if (term.effect->description().kinematic || is_fine(term)) continue;
     const bool of_slide = term.effect->description().motion == MotionError::straightness;
     const Eigen::MatrixXd own =
         of_slide ? straightness_curve(

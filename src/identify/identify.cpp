@@ -1,4 +1,5 @@
 #include "slideway/identify/identify.hpp"
+#include "slideway/identify/low_band_lines.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -105,6 +106,35 @@ bool is_disagreement(const ProfileCheck& check) {
   return check.verdict == Consistency::inconsistent;
 }
 
+/// The amplitudes of waves that are too fine for the low band of a profile, but for feed marks.
+std::vector<Eigen::Index> amplitudes_of_fine_waves(const Model& model, const Solution& fit) {
+  std::vector<Eigen::Index> out;
+  for (const ModelTerm& term : model.terms) {
+    const auto is_fine_in = [&](const Observation* each) {
+      return term.acts_on(*each->profile) &&
+             is_too_fine(model, term, shapes_of(term, fit.estimate.shapes), *each);
+    };
+    if (!term.effect->description().kinematic &&
+        std::ranges::any_of(fit.linear.observations, is_fine_in))
+      for (int a = 0; a < term.effect->amplitudes(); ++a) out.push_back(term.first_amplitude + a);
+  }
+  return out;
+}
+
+/// What estimates without one profile each differ by: all of them where profiles disagree, else
+/// those of waves that are too fine, which the nose of the tool makes smaller in one cut than in
+/// another. No columns: none.
+Eigen::MatrixXd scatter_between_profiles(const Model& model, const Solution& fit,
+                                         bool profiles_disagree) {
+  const std::vector<Eigen::Index> fine = amplitudes_of_fine_waves(model, fit);
+  if (fit.linear.observations.size() < 2 || (!profiles_disagree && fine.empty())) return {};
+  const Eigen::MatrixXd all = scatter_of_profiles(fit, model.gates);
+  if (profiles_disagree) return all;
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(all.rows(), all.cols());
+  for (const Eigen::Index a : fine) out.row(a) = all.row(a);
+  return out;
+}
+
 }  // namespace
 
 Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles) {
@@ -158,9 +188,9 @@ void set_final(const Problem& problem, const FittedModel& fitted, const MoreVari
     checks.held_out = check_held_out(model, fit, of_each);
     checks.repeats = check_repeats(fit.linear, model.gates);
     profiles_disagree = std::ranges::any_of(checks.profiles, is_disagreement);
-    if (profiles_disagree)
-      variance = [more,
-                  scatter = scatter_of_profiles(fit, model.gates)](const Eigen::RowVectorXd& row) {
+    Eigen::MatrixXd scatter = scatter_between_profiles(model, fit, profiles_disagree);
+    if (scatter.size() > 0)
+      variance = [more, scatter = std::move(scatter)](const Eigen::RowVectorXd& row) {
         return (row * scatter).squaredNorm() + (more ? more(row) : 0.0);
       };
   }

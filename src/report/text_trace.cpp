@@ -63,6 +63,7 @@ std::string left_over(const Unnamed& left) {
   if (!left.clock.empty())
     text += "; best described as " + likeness(left) + ", correlation length " +
             number(left.correlation_length, 2) + " " + unit_text(left.correlation_unit);
+  if (left.has_folded_wave) text += "; with a wave that the low band may have folded";
   if (left.dominant_period_mm)
     text += "; dominant period " + number(*left.dominant_period_mm, 3) + " mm";
   if (left.odd_share)

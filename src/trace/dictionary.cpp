@@ -61,7 +61,8 @@ class Viewer {
   [[nodiscard]] Eigen::Index rows() const { return rows_; }
 
   /// Of several shapes, side by side.
-  void columns(const ModelTerm& term, std::span<const std::vector<double>> shapes,
+  /// @param is_fast  what varies inside a quarter of a low-band value counts
+  void columns(const ModelTerm& term, std::span<const std::vector<double>> shapes, bool is_fast,
                Eigen::Ref<Eigen::MatrixXd> out) const {
     out.setZero();
     Eigen::Index row = 0;
@@ -70,7 +71,7 @@ class Viewer {
       auto rows = out.middleRows(row, observation.values.size());
       row += rows.rows();
       if (!term.acts_on(*observation.profile)) continue;
-      if (thin_[i]) {
+      if (thin_[i] && !is_fast) {
         rows = thin_columns(term, shapes, observation, *thin_[i]);
         continue;
       }
@@ -130,7 +131,8 @@ void lay_out(const Viewer& viewer, ShapeLattice grid, Candidate& candidate) {
     const auto shapes =
         std::span(candidate.grid.points())
             .subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
-    viewer.columns(candidate.term, shapes, columns->middleCols(first * a, count * a));
+    viewer.columns(candidate.term, shapes, candidate.is_fast,
+                   columns->middleCols(first * a, count * a));
   });
   candidate.rows = viewer.rows();
   candidate.columns = std::move(columns);
@@ -208,6 +210,20 @@ void add_own(const Model& model, const Problem& problem, const DeclaredEffect& o
   const std::string missing = needs(model, candidate.term);
   if (!missing.empty()) return out.not_testable.push_back({candidate.term.name, missing});
   add(model, viewer, std::move(candidate), out);
+}
+
+/// The effects of one rate at those of lines that are too fast for the low band.
+void add_fast(const Model& model, const Viewer& viewer, const std::vector<FastLine>& lines,
+              Dictionary& out) {
+  if (lines.empty()) return;
+  std::vector<Candidate> fast;
+  for (const Candidate& each : out.candidates)
+    for (ShapeLattice& grid : shapes_of_lines(model, each.term, lines)) {
+      Candidate& own = fast.emplace_back(each);
+      own.is_fast = true;
+      lay_out(viewer, std::move(grid), own);
+    }
+  std::ranges::move(fast, std::back_inserter(out.candidates));
 }
 
 /// The same effect in each profile alone, where several show it: a step in one cut, a warm-up that
@@ -302,13 +318,15 @@ void lay_out(const Model& model, Eigen::Index prior_rows, ShapeLattice grid, Can
   lay_out(Viewer(model, prior_rows), std::move(grid), candidate);
 }
 
-Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows) {
+Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows,
+                           const std::vector<FastLine>& lines) {
   Dictionary out;
   const Viewer viewer(model, prior_rows);
   std::vector<Candidate> alone;
   for (const std::string& name : problem.trace.candidates)
     add_hypotheses(model, problem, name, viewer, out);
   for (const DeclaredEffect& own : problem.trace.own) add_own(model, problem, own, viewer, out);
+  add_fast(model, viewer, lines, out);
   for (Candidate& whole : out.candidates) {
     std::ranges::move(in_one_profile(model, whole), std::back_inserter(alone));
     std::vector<Candidate> of_surfaces = on_one_surface(model, whole);
@@ -330,7 +348,7 @@ Eigen::MatrixXd searched_columns(const Model& model, const ModelTerm& term,
                                  std::span<const std::vector<double>> shapes) {
   const Viewer viewer(model, 0);
   Eigen::MatrixXd out(viewer.rows(), std::ssize(shapes) * term.effect->amplitudes());
-  viewer.columns(term, shapes, out);
+  viewer.columns(term, shapes, false, out);
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "fast_lines.hpp"
 #include "shape_lattice.hpp"
 #include "slideway/identify/model.hpp"
 #include "slideway/identify/solve.hpp"
@@ -19,6 +20,7 @@ struct Candidate {
   ShapeLattice grid;           // its points are the atoms
   std::string takes;           // Effect::lacking_to_be_told(); empty: it may be named
   bool coarse = false;         // the grid: shapes are refined over all of it
+  bool is_fast = false;        // its shapes are those of fast_lines()
   bool is_searched = true;     // false: each surface has a form of its own, looked for alone
   /// Stacked rows by (#amplitudes * #atoms), not whitened; shared with the same effect in one
   /// profile alone.
@@ -68,7 +70,10 @@ struct Dictionary {
 /// The hypotheses of every candidate effect about itself (Effect::hypotheses), and each that is no
 /// carriage's also in one profile alone, where several show it.
 /// @param prior_rows  rows of zeros below the observations', one per prior of the model
-Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows);
+/// @param lines       of the samples, too fast for the low band, where an effect of one rate is
+///                    looked for besides
+Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::Index prior_rows,
+                           const std::vector<FastLine>& lines = {});
 
 /// Gives a candidate whose effect is set the grid of its shapes and the columns there.
 void lay_out(const Model& model, Eigen::Index prior_rows, Candidate& candidate);

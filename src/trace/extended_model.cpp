@@ -5,6 +5,7 @@
 #include <string>
 
 #include "kept.hpp"
+#include "slideway/base/text.hpp"
 
 namespace slideway {
 namespace {
@@ -62,14 +63,19 @@ ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>&
       progress_(progress),
       coarser_(search_band(problem, profiles, declared, shown)) {
   if (progress_) progress_("making the columns of every candidate", 0.0);
-  dictionary_ = make_dictionary(base().model, problem, base().fit.linear.prior_rows.rows());
+  dictionary_ =
+      make_dictionary(base().model, problem, base().fit.linear.prior_rows.rows(),
+                      coarser_ ? std::vector<FastLine>{} : fast_lines(base().model, base().fit));
 }
 
 ModelExtender::Key ModelExtender::key_of(const std::vector<AcceptedEffect>& effects) {
   Key key;
   for (const AcceptedEffect& effect : effects)
-    key.emplace_back(effect.name(), effect.candidate->options.degree.value_or(
-                                        effect.candidate->term.effect->amplitudes()));
+    key.emplace_back(
+        effect.name() + (effect.candidate->is_fast
+                             ? significant(effect.candidate->grid.points()[0][0], 12)
+                             : ""),
+        effect.candidate->options.degree.value_or(effect.candidate->term.effect->amplitudes()));
   std::ranges::sort(key);
   return key;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slideway/identify/low_band_lines.hpp"
+
 namespace slideway {
 namespace {
 
@@ -33,39 +35,16 @@ double amplitude_on(const Model& model, const Refined& refined, const Profile& p
   return std::sqrt(2.0 * signal.squaredNorm() / static_cast<double>(signal.size()));
 }
 
-/// How often a wave goes up and down along a trace, of which a line counts what lies over the
-/// radius of a face, or over the trace where the effect is of the measurement.
-double cycles_along(const Setup& setup, const Effect& effect, const LineBand& line) {
-  const IndependentVariable variable = effect.description().variable;
-  if (setup.kind != Kind::face || variable == IndependentVariable::trace ||
-      variable == IndependentVariable::measuring_time)
-    return line.low;
-  const double radius = std::max(setup.last_mm - setup.center_mm, setup.center_mm - setup.first_mm);
-  return line.low * (setup.last_mm - setup.first_mm) / radius;
-}
-
 /// Largest amplitude, mm, that feed marks can have where the lines of an effect in one face lie:
 /// that of the lowest harmonic that sampling folds there, nearer than the gate folded_widths.
 /// Infinite where the nose is not known, 0 where no harmonic is near.
 double largest_mark_at(const Profile& profile, const Effect& effect,
                        const std::vector<LineBand>& lines, const Gates& gates) {
-  const Setup& setup = profile.setup;
-  const auto samples = static_cast<double>(profile.positions.size());
-  if (setup.kind != Kind::face || !setup.feed_mm_per_min || !setup.spindle_rpm || samples < 2.0)
-    return 0.0;
-  const double spacing = (setup.last_mm - setup.first_mm) / (samples - 1.0);
-  const double marks = spacing * *setup.spindle_rpm / *setup.feed_mm_per_min;  // cycles a sample
-  const auto at = [&](const LineBand& line) {
-    for (int m = 1; m <= static_cast<int>(gates.feed_harmonics); ++m)
-      if (std::abs(folded(cycles_along(setup, effect, line) / (samples - 1.0)) -
-                   folded(m * marks)) *
-              samples <=
-          gates.folded_widths)
-        return largest_feed_mark(setup, m).value_or(INFINITY);
-    return 0.0;
-  };
   double out = INFINITY;
-  for (const LineBand& line : lines) out = std::min(out, at(line));
+  for (const LineBand& line : lines) {
+    const auto mark = mark_at(profile, cycles_along(profile.setup, effect, line), gates);
+    out = std::min(out, mark ? largest_feed_mark(profile.setup, *mark).value_or(INFINITY) : 0.0);
+  }
   return out;
 }
 
@@ -103,23 +82,25 @@ bool is_one_wave(const std::vector<const Observation*>& observations, const Whit
 
 }  // namespace
 
+std::optional<int> mark_at(const Profile& profile, double cycles, const Gates& gates) {
+  const Setup& setup = profile.setup;
+  const auto samples = static_cast<double>(profile.positions.size());
+  if (setup.kind != Kind::face || !setup.feed_mm_per_min || !setup.spindle_rpm || samples < 2.0)
+    return std::nullopt;
+  const double spacing = (setup.last_mm - setup.first_mm) / (samples - 1.0);
+  const double marks = spacing * *setup.spindle_rpm / *setup.feed_mm_per_min;  // cycles a sample
+  const double own = folded(cycles / (samples - 1.0));
+  for (int m = 1; m <= static_cast<int>(gates.feed_harmonics); ++m)
+    if (std::abs(own - folded(m * marks)) * samples <= gates.folded_widths) return m;
+  return std::nullopt;
+}
+
 bool is_wave(const Model& model, const ModelTerm& term, std::span<const double> shape) {
   return std::ranges::any_of(fitted_observations(model), [&](const Observation* observation) {
     const Profile& profile = *observation->profile;
     return term.acts_on(profile) && term.effect->applies_to(profile.setup) &&
            !term.effect->lines(profile.stations(model.machine), shape).empty();
   });
-}
-
-bool is_too_fine(const Model& model, const Refined& refined, const Observation& observation) {
-  const Effect& effect = *refined.candidate->term.effect;
-  const Profile& profile = *observation.profile;
-  const double cycles =
-      static_cast<double>(observation.values.size() - 1) / model.gates.values_per_cycle;
-  return std::ranges::any_of(
-      effect.lines(profile.stations(model.machine), refined.shape), [&](const LineBand& line) {
-        return cycles_along(profile.setup, effect, line) > cycles + 1.0;  // one: its width
-      });
 }
 
 std::string part_of_a_line(const Model& model, const Eigen::VectorXd& shapes,

@@ -1,16 +1,18 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "refine.hpp"
 
 namespace slideway {
 
+/// The lowest harmonic of the feed marks that sampling folds to a line of so many cycles along a
+/// trace, nearer than the gate folded_widths; none does, or the feed is not known.
+std::optional<int> mark_at(const Profile& profile, double cycles, const Gates& gates);
+
 /// Whether an effect is a wave in a fitted profile: it makes lines.
 bool is_wave(const Model& model, const ModelTerm& term, std::span<const double> shape);
-
-/// Whether it is a wave of which a profile's low band has fewer than four values a cycle.
-bool is_too_fine(const Model& model, const Refined& refined, const Observation& observation);
 
 /// What the line of an effect is of a line in the model instead of one of its own: "a modulation
 /// of" it, where in every fitted profile all of its lines lie beside those of that effect, nearer

@@ -103,10 +103,13 @@ void report_untestable(const Dictionary& dictionary, const Problem& problem, Tra
 }
 
 void report_unnamed(const FittedModel& fitted, const Whitened& data, double p_value,
-                    const std::vector<TestedCandidate>& tested, ClosedLoop& closed) {
+                    const std::vector<TestedCandidate>& tested, const TestedCandidate* wave,
+                    ClosedLoop& closed) {
   const Structure structure = find_structure(fitted.model, data, fitted.fit.linear);
   std::optional<Unnamed>& unnamed = closed.trace.unnamed;
-  unnamed = describe(fitted.model, structure, data, fitted.fit.linear);
+  Eigen::VectorXd folded;
+  if (wave) folded = wave->refined.columns * wave->refined.projection.amplitudes;
+  unnamed = describe(fitted.model, structure, data, fitted.fit.linear, folded);
   unnamed->p_value = p_value;
   closed.widening = widening(fitted.model, fitted.fit, structure, tested);
 }

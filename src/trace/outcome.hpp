@@ -33,8 +33,10 @@ void report_untestable(const Dictionary& dictionary, const Problem& problem, Tra
 
 /// Says what is left without a name, and widens the uncertainties by what it may be.
 /// @param p_value  of the test that found it
+/// @param wave     folded_wave(): null: none is left
 void report_unnamed(const FittedModel& fitted, const Whitened& data, double p_value,
-                    const std::vector<TestedCandidate>& tested, ClosedLoop& closed);
+                    const std::vector<TestedCandidate>& tested, const TestedCandidate* wave,
+                    ClosedLoop& closed);
 
 TraceVerdict verdict(const TraceResult& out, bool other_cause);
 

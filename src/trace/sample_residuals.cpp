@@ -9,17 +9,17 @@
 
 namespace slideway {
 
-SampleResiduals::Trace::Trace(const Observation& observation) : profile(observation.profile) {
+SampleResiduals::Trace::Trace(const Observation& observation)
+    : profile(observation.profile), low_band(&observation.low_band) {
   const std::vector<double>& positions = profile->positions;
-  const LowBand& low_band = observation.low_band;
   std::vector<Eigen::Index> undescribed;
-  std::ranges::set_difference(left_out_values(observation), low_band.unmeasured(),
+  std::ranges::set_difference(left_out_values(observation), low_band->unmeasured(),
                               std::back_inserter(undescribed));
   if (!undescribed.empty()) {
     const double step =
-        (positions.back() - positions.front()) / static_cast<double>(low_band.samples() - 1);
-    const double half = std::ldexp(0.5 * step, low_band.options().level);
-    const std::vector<double> places = low_band.positions(positions);
+        (positions.back() - positions.front()) / static_cast<double>(low_band->samples() - 1);
+    const double half = std::ldexp(0.5 * step, low_band->options().level);
+    const std::vector<double> places = low_band->positions(positions);
     const auto at = [&](double place) {
       return std::ranges::lower_bound(positions, place) - positions.begin();
     };

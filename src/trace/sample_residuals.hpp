@@ -21,9 +21,9 @@ class SampleResiduals {
   /// where the low band is the samples.
   [[nodiscard]] bool have(const Refined& effect) const;
 
- private:
   struct Trace {
     const Profile* profile;
+    const LowBand* low_band;
     std::vector<std::pair<Eigen::Index, Eigen::Index>> left_out;  // first sample, how many
     Eigen::MatrixXd level;     // orthonormal: offset and tilt of the trace, 0 where left out
     Eigen::VectorXd residual;  // levelled, 0 where left out
@@ -31,7 +31,10 @@ class SampleResiduals {
     explicit Trace(const Observation& observation);
     [[nodiscard]] Eigen::VectorXd levelled(Eigen::VectorXd signal) const;
   };
+  /// Of the fitted profiles whose low band is not the samples.
+  [[nodiscard]] const std::vector<Trace>& traces() const { return traces_; }
 
+ private:
   const Model& model_;
   std::vector<Trace> traces_;
 };

@@ -12,6 +12,7 @@
 #include "slideway/base/text.hpp"
 #include "slideway/identify/left_out.hpp"
 #include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/low_band_lines.hpp"
 #include "slideway/identify/noise_model.hpp"
 
 namespace slideway {
@@ -116,7 +117,7 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
       tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
     tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
     tested.is_wave = is_wave(model, finding.candidate->term, tested.refined.shape);
-    if (tested.is_wave) {
+    if (tested.is_wave && !finding.candidate->is_fast) {  // else the samples have shown it
       Eigen::VectorXd rest = data.residual() - tested.fitted;
       rest -= no_wave * (no_wave.transpose() * rest).eval();
       tested.noise_beside = noise_beside_line(data, finding, rest, model.gates);
@@ -124,7 +125,9 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     tested.p_value = calibration.p_value(-tested.delta_bic_beside());
     tested.part_of = part_of_a_line(model, fit.estimate.shapes, tested.refined);
     const std::optional<std::size_t> only = finding.candidate->only;
-    if (only && is_too_fine(model, tested.refined, *fit.linear.observations[*only]))
+    if (only && !finding.candidate->is_fast &&
+        is_too_fine(model, finding.candidate->term, tested.refined.shape,
+                    *fit.linear.observations[*only]))
       tested.folded = "its profile has too few low-band values a cycle";
     else if ((tested.of_feed_marks = is_of_feed_marks(model, data, tested.refined, tested.fitted)))
       tested.folded = "its line is that of the feed marks, folded by sampling";

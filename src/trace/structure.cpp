@@ -149,8 +149,9 @@ const Clock& clock_of(const Unnamed& unnamed) {
 }
 
 Unnamed describe(const Model& model, const Structure& found, const Whitened& data,
-                 const Linearisation& linear) {
+                 const Linearisation& linear, const Eigen::VectorXd& wave) {
   Unnamed out = found.description;
+  out.has_folded_wave = wave.size() > 0;
   double largest = -1.0;
   std::size_t which = 0;
   Eigen::MatrixXd columns =
@@ -162,6 +163,7 @@ Unnamed describe(const Model& model, const Structure& found, const Whitened& dat
   for (std::size_t i = 0; i < found.columns.size(); ++i) {
     const Observation& observation = *linear.observations[i];
     Eigen::VectorXd values = process.segment(data.first_row(i), data.count(i));
+    if (out.has_folded_wave) values += wave.segment(data.first_row(i), data.count(i));
     const double standing_out = values.norm() / std::sqrt(static_cast<double>(values.size())) /
                                 data.noise()[i].standard_deviation();
     if (standing_out <= largest) continue;

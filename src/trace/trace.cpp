@@ -155,7 +155,7 @@ class Loop {
     if (first)
       report_refused(*first, "the time limit came before it was held against its rivals", out);
     report_unnamed(base, data, out.lack_of_fit_p,
-                   first ? first->tested : std::vector<TestedCandidate>(), closed);
+                   first ? first->tested : std::vector<TestedCandidate>(), nullptr, closed);
   }
 
   /// @param otherwise  the reason of a candidate that passes every gate of its own
@@ -286,13 +286,14 @@ class Loop {
       found_p = std::min(found_p, std::exp(-evidence));
       is_wrong = evidence > gates.shared_evidence;
     }
-    if (const TestedCandidate* const wave = folded_wave(last, gates)) {
+    const TestedCandidate* const wave = folded_wave(last, gates);
+    if (wave) {
       found_p = std::min(found_p, std::exp(0.5 * wave->delta_bic_beside()));
       is_wrong = true;
       out.advice.push_back(finer_band_advice(fitted.fit.linear, *wave, extender_.is_coarser()));
     }
     if (!is_wrong) return;
-    report_unnamed(fitted, last.data, found_p, last.tested, closed);
+    report_unnamed(fitted, last.data, found_p, last.tested, wave, closed);
     if (profiles_differ() && out.blunders.empty())
       out.advice.push_back(disagreement_advice(among_));
     if (!limit_.allows([&] {
@@ -349,7 +350,7 @@ class Loop {
     const FittedModel& base = extender_.base();
     Candidates everywhere;
     for (const Candidate& each : extender_.dictionary().candidates)
-      if (each.term.profiles.empty()) everywhere.push_back(&each);
+      if (each.term.profiles.empty() && !each.is_fast) everywhere.push_back(&each);
     const std::vector<Noise>&searched = own_noise_ ? *own_noise_ : data.noise(),
           &of_fit = own_noise_ ? *own_noise_ : fitted.fit.noise;
     out.detection_limits = detection_limits(base, {base.fit.linear, searched}, of_fit, everywhere,

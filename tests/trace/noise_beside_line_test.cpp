@@ -8,6 +8,7 @@
 #include "search_round.hpp"
 #include "slideway/base/random.hpp"
 #include "slideway/base/units.hpp"
+#include "slideway/identify/low_band_lines.hpp"
 #include "trace/faces.hpp"
 
 namespace slideway::noise_beside_line_test {
@@ -137,7 +138,8 @@ TEST(WavesOfOneProfile, AreTooFineBelowFourValuesACycle) {
   refined.candidate = &waves.wave;
   const auto too_fine = [&](double cycles) {
     refined.shape = {kLength / cycles};
-    return is_too_fine(waves.model, refined, waves.model.observations[0]);
+    return is_too_fine(waves.model, refined.candidate->term, refined.shape,
+                       waves.model.observations[0]);
   };
   EXPECT_FALSE(too_fine(10.0));
   EXPECT_FALSE(too_fine(63.2));

@@ -60,6 +60,8 @@ inline constexpr auto kRecord<Unnamed> = record(
     "Unnamed", "What is left and has no name: how much, where, on which clock.",
     field("rms_um", &Unnamed::rms_um), field("pv_um", &Unnamed::pv_um),
     field("rms_urad", &Unnamed::rms_urad), field("pv_urad", &Unnamed::pv_urad),
+    field("has_folded_wave", &Unnamed::has_folded_wave,
+          "a wave is left that the low band may have folded"),
     field("p_value", &Unnamed::p_value), field("profile", &Unnamed::profile),
     field("from_mm", &Unnamed::from_mm), field("to_mm", &Unnamed::to_mm),
     field("clock", &Unnamed::clock), field("log_evidence", &Unnamed::log_evidence),

@@ -124,8 +124,9 @@ struct UnnamedCurve {
 
 /// What is left and has no name.
 struct Unnamed {
-  /// Of the smooth part, in the profile where it stands out most.
+  /// Of the smooth part, and of the wave if one is left, in the profile where it stands out most.
   std::optional<double> rms_um, pv_um, rms_urad, pv_urad;
+  bool has_folded_wave = false;       // of which the low band does not tell the rate
   double p_value = 1.0;               // lack of fit against the noise
   std::string profile;                // where it is largest
   double from_mm = 0.0, to_mm = 0.0;  // trace positions between which it is above half its peak

@@ -618,6 +618,8 @@ class Unnamed:
     pv_um: float | None
     rms_urad: float | None
     pv_urad: float | None
+    has_folded_wave: bool
+    """a wave is left that the low band may have folded"""
     p_value: float
     profile: str
     from_mm: float
