@@ -271,7 +271,8 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   std::vector<std::string> clauses = objections(result);
   if (!clauses.empty()) out.alarm = std::max(out.alarm, Alarm::warn);
   const bool harms = out.alarm == Alarm::warn || out.alarm == Alarm::bad;
-  if (harms) clauses.push_back(finding);
+  const bool has_blunder = analysis.trace && !analysis.trace->blunders.empty();
+  if (harms) clauses.insert(has_blunder ? clauses.begin() : clauses.end(), finding);
   const std::string lead = lead_of(result);
   const bool has_room = !harms || code_points(joined(clauses, "; ") + lead) < kTwoLines;
   if (out.alarm != Alarm::bad && !lead.empty() && has_room) clauses.push_back(lead);

@@ -58,6 +58,11 @@ Profile rescaled(Profile profile, double factor) {
   return profile;
 }
 
+Profile multiplied(Profile profile, double factor) {
+  for (double& value : profile.values) value *= factor;
+  return profile;
+}
+
 /// Another unit of the positions that makes a trace about as long as one of the others, where it is
 /// as long as none.
 std::optional<Hypothesis> other_position_unit(const Profile& profile,
@@ -184,21 +189,19 @@ class Finder {
     return out;
   }
 
-  [[nodiscard]] std::vector<CorrectedBlunder> find_of_time(const std::string& profile) const {
+  [[nodiscard]] std::vector<CorrectedBlunder> find_in(const std::string& profile) const {
     std::vector<CorrectedBlunder> out;
     for (std::size_t i = 0; i < noise_.size(); ++i) {
       const Profile& own = *fit_.linear.observations[i]->profile;
       if (own.name != profile) continue;
       std::vector<Hypothesis> list = hypotheses_of(i);
-      std::erase_if(list, [](const Hypothesis& each) {
-        return each.kind != BlunderKind::cut_direction && each.kind != BlunderKind::clock;
-      });
+      std::erase_if(list, [](const Hypothesis& each) { return is_of_positions(each.kind); });
       std::optional<CorrectedBlunder> start;
       const auto tell = [&](const Blunder& each, const Hypothesis& by) {
         if (each.what == BlunderKind::clock) {  // it may come nearer once it is moved
           if (!start || each.delta_bic < start->blunder.delta_bic) start = {each, *by.profile};
         } else if (each.left <= model_.gates.blunder_left) {
-          out.push_back({each, *by.profile});
+          out.push_back({each, by.profile ? *by.profile : multiplied(own, by.factor), by.factor});
         }
       };
       try_profile(i, list, tell);
@@ -213,10 +216,20 @@ class Finder {
       }
       if (start->blunder.left <= model_.gates.blunder_left) out.push_back(*std::move(start));
     }
+    keep_unit(out);
     return out;
   }
 
  private:
+  /// Another unit alone, where it is likelier than all else: only that changes the noise.
+  void keep_unit(std::vector<CorrectedBlunder>& found) const {
+    const auto cost = [](const CorrectedBlunder& each) { return each.blunder.delta_bic; };
+    const auto best = std::ranges::min_element(found, {}, cost);
+    if (best == found.end() || std::abs(best->factor) == 1.0) return;
+    const double most = cost(*best) + model_.gates.tie_bic;
+    std::erase_if(found, [&](const CorrectedBlunder& each) { return cost(each) > most; });
+  }
+
   [[nodiscard]] std::vector<Hypothesis> hypotheses_of(std::size_t i) const {
     return hypotheses(*fit_.linear.observations[i]->profile, other_lengths(i));
   }
@@ -358,9 +371,9 @@ std::vector<Blunder> find_blunders(const FittedModel& fitted) {
   return Finder(fitted).find();
 }
 
-std::vector<CorrectedBlunder> find_blunders_of_time(const FittedModel& fitted,
-                                                    const std::string& profile) {
-  return Finder(fitted).find_of_time(profile);
+std::vector<CorrectedBlunder> find_blunders_in(const FittedModel& fitted,
+                                               const std::string& profile) {
+  return Finder(fitted).find_in(profile);
 }
 
 std::string blunder_advice(const std::vector<Blunder>& blunders) {

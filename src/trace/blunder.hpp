@@ -30,11 +30,12 @@ inline bool is_of_positions(BlunderKind kind) {
 struct CorrectedBlunder {
   Blunder blunder;
   Profile meant;
+  double factor = 1.0;  // of its values
 };
 
-/// Of one profile, those of the time of its cut: another direction or start.
-std::vector<CorrectedBlunder> find_blunders_of_time(const FittedModel& fitted,
-                                                    const std::string& profile);
+/// Of one profile, those of its values and of the time of its cut, its start moved to the best.
+std::vector<CorrectedBlunder> find_blunders_in(const FittedModel& fitted,
+                                               const std::string& profile);
 
 /// What to do about them, in a sentence. REQUIRES one.
 std::string blunder_advice(const std::vector<Blunder>& blunders);

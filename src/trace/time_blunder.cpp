@@ -192,7 +192,7 @@ class TimeFinder {
         make_dictionary(others.model, problem_, others.fit.linear.prior_rows.rows());
     for (const AcceptedEffect& effect : shown_effects(problem_, others, dictionary))
       for (const CorrectedBlunder& each :
-           find_blunders_of_time(as_the_others_show(extender_.base(), others, effect), odd))
+           find_blunders_in(as_the_others_show(extender_.base(), others, effect), odd))
         if (auto found = tested(each, effect)) found_.push_back(*std::move(found));
   }
 
@@ -203,22 +203,34 @@ class TimeFinder {
     extender_.limit().check();
     std::vector<Profile> profiles = extender_.profiles();
     *std::ranges::find(profiles, corrected.meant.name, &Profile::name) = corrected.meant;
-    const bool turned = corrected.blunder.what == BlunderKind::cut_direction;
+    const bool turned = corrected.blunder.what == BlunderKind::cut_direction ||
+                        corrected.blunder.what == BlunderKind::sign;
     const FittedModel declared = fitted_to(
         problem_, profiles, turned ? of_any_phase_in(shown_, corrected.meant.name) : shown_);
     FittedModel fitted = fit_model(with(declared.model, effect),
                                    shapes_with(declared.fit.estimate.shapes, effect.shape));
     const Gates& gates = problem_.trace.gates;
-    if (lack_of_fit(fitted.fit.linear, noise_, gates).significant(gates) ||
+    const std::vector<Noise> noise = noise_in_unit_of(corrected, fitted.fit.linear);
+    if (lack_of_fit(fitted.fit.linear, noise, gates).significant(gates) ||
         !profiles_agree(fitted, gates))
       return std::nullopt;
-    const Whitened data(fitted.fit.linear, noise_);
+    const Whitened data(fitted.fit.linear, noise);
     const double cost = data.residual().squaredNorm() +
                         penalty(data, *effect.candidate, effect.candidate->amplitudes());
     fitted.model.observations.clear();  // they are of the profiles here
     fitted.fit.linear.observations.clear();
     return TimeBlunder{corrected.blunder, cost,
                        std::make_shared<const FittedModel>(std::move(fitted))};
+  }
+
+  /// The noise, that of the corrected profile in the unit that was meant.
+  [[nodiscard]] std::vector<Noise> noise_in_unit_of(const CorrectedBlunder& corrected,
+                                                    const Linearisation& linear) const {
+    std::vector<Noise> out = noise_;
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (linear.observations[i]->profile->name == corrected.meant.name)
+        out[i] = out[i].scaled(corrected.factor * corrected.factor);
+    return out;
   }
 
   Problem problem_;

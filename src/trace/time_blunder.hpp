@@ -5,11 +5,10 @@
 
 namespace slideway {
 
-/// Wrong directions and starts of cuts that show only beside an effect of time which nobody
-/// declared: of each profile, the others by themselves say which effects of the cutting time or
-/// distance they have, and how that profile would look with another direction or start. Of those
-/// that make it agree, the one is said that leaves the least of all profiles, fitted together
-/// again.
+/// Blunders that show only beside an effect of time which nobody declared: of each profile, the
+/// others by themselves say which effects of the cutting time or distance they have, and how that
+/// profile would look with another direction, start, sign or unit. Of those that make it agree, the
+/// one is said that leaves the least of all profiles, fitted together again.
 std::vector<Blunder> find_time_blunders(const Problem& problem, ModelExtender& extender,
                                         const std::vector<ShownEffect>& shown);
 
@@ -20,7 +19,7 @@ struct TimeBlunder {
   std::shared_ptr<const FittedModel> fitted;  // without observations
 };
 
-/// Wrong directions and starts in the place of effects of time.
+/// Blunders in the place of effects of time.
 struct TimeBlundersInPlace {
   std::vector<Blunder> better;       // the effects do not explain the profiles at so low a cost
   std::vector<TimeBlunder> as_good;  // those within tie_bic of the effects

@@ -96,5 +96,18 @@ TEST(Box, CountsTheContradictionsThatItHasNoRoomFor) {
   EXPECT_THAT(all.substr(0, all.find("\n\n")), HasSubstr("of inward and outward, E_n = 1.5"));
 }
 
+// It is why they disagree, and two lines have no room for all of both.
+TEST(Box, BeginsWithTheBlunder) {
+  TraceResult trace;
+  trace.verdict = TraceVerdict::unnamed;
+  trace.blunders = {{.profile = "coarse", .what = BlunderKind::sign}};
+  trace.advice = {"profile coarse: wrong sign"};
+  Result result = sample_result();
+  result.crosscheck.profiles = {{.profiles = {"inward", "coarse"},
+                                 .what = "squareness",
+                                 .verdict = Consistency::inconsistent}};
+  EXPECT_THAT(short_text(result, trace), HasSubstr("│ Verdict  Blunder: profile coarse disagrees"));
+}
+
 }  // namespace
 }  // namespace slideway::box_test

@@ -204,6 +204,25 @@ TEST(Disagreement, AWrongDirectionOfOneCutIsNamedWithItsCut) {
   EXPECT_THAT(named(right), Contains("thermal_drift"));
 }
 
+// With the right sign or unit the cuts still differ, by what the warm-up makes of their feeds.
+TEST(Disagreement, AWrongSignOrUnitBesideAWarmUpIsNamedWithItsCut) {
+  const Problem problem = of_carriages();
+  const std::array<std::pair<double, BlunderKind>, 4> slips{{{-1.0, BlunderKind::sign},
+                                                             {25.4, BlunderKind::per_inch},
+                                                             {1e-3, BlunderKind::metre},
+                                                             {1e3, BlunderKind::per_metre}}};
+  for (const auto& [factor, kind] : slips)
+    for (const std::size_t wrong : {0U, 1U, 2U}) {
+      std::vector<Profile> cuts = warmed(std::nullopt, 7, 6e-4);
+      for (double& value : cuts[wrong].values) value *= factor;
+      const Closed result = closed(problem, cuts);
+      SCOPED_TRACE(story(result));
+      ASSERT_FALSE(result.blunders.empty()) << factor << " in " << cuts[wrong].name;
+      EXPECT_EQ(result.blunders.front().profile, cuts[wrong].name);
+      EXPECT_EQ(result.blunders.front().what, kind);
+    }
+}
+
 /// What is said in the place of a turned sign of one cut.
 Blunder instead_of_sign(const std::string& turned, const std::vector<Profile>& cuts) {
   const Problem problem = of_carriages();
