@@ -94,7 +94,7 @@ def ratios(program, seed, faces, folder):
     before = folder / "before.toml"
     before.write_text(text + rest + cut)
     plan = result_of(program, "plan", before)
-    fitted = result_of(program, "identify", "--no-trace", folder / "problem.toml")["final"]
+    fitted = result_of(program, "identify", folder / "problem.toml")["final"]
     reached = {p["name"]: p["expanded_uncertainty"] for p in fitted["parameters"]}
     if fitted.get("straightness"):
         reached["E_ZX"] = fitted["straightness"]["expanded_uncertainty_um"]

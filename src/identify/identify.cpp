@@ -128,7 +128,7 @@ Eigen::MatrixXd scatter_between_profiles(const Model& model, const Solution& fit
                                          bool profiles_disagree) {
   const std::vector<Eigen::Index> fine = amplitudes_of_fine_waves(model, fit);
   if (fit.linear.observations.size() < 2 || (!profiles_disagree && fine.empty())) return {};
-  const Eigen::MatrixXd all = scatter_of_profiles(fit, model.gates);
+  Eigen::MatrixXd all = scatter_of_profiles(fit, model.gates);
   if (profiles_disagree) return all;
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(all.rows(), all.cols());
   for (const Eigen::Index a : fine) out.row(a) = all.row(a);

@@ -23,7 +23,7 @@ constexpr double kHannWidth = 1.5;                // cycles, of noise
 constexpr double kVarianceOfMedian = 2.08;
 // How far off the rate of a line may be, cycles: the halves of a diameter may cancel each other
 // there.
-constexpr double kReach = 1.5;
+constexpr double kRateReach = 1.5;
 constexpr Eigen::Index kMostShapes = 256;  // about one line
 constexpr double kSameRate = 1e-6;         // of a rate: what rounding leaves
 
@@ -90,7 +90,7 @@ std::vector<Peak> peaks_of(const Periodogram& spectrum, double from_cycles, doub
   const auto first = static_cast<std::size_t>(from_cycles * spectrum.per_cycle) + 1;
   std::vector<Peak> out;
   if (first + 1 >= power.size()) return out;
-  const double places = static_cast<double>(power.size() - first);
+  const auto places = static_cast<double>(power.size() - first);
   for (std::size_t k = first; k + 1 < power.size(); ++k) {
     if (!(power[k] > power[k - 1] && power[k] >= power[k + 1])) continue;
     const double chance = spectrum.chance(k);
@@ -167,8 +167,8 @@ std::vector<ShapeLattice> shapes_of_lines(const Model& model, const ModelTerm& t
     const Setup& setup = line.profile->setup;
     if (!term.acts_on(*line.profile) || !effect.applies_to(setup)) continue;
     const Stations own = line.profile->stations(model.machine);
-    const auto from = shape_at(effect, setup, own, line.cycles - kReach),
-               to = shape_at(effect, setup, own, line.cycles + kReach);
+    const auto from = shape_at(effect, setup, own, line.cycles - kRateReach),
+               to = shape_at(effect, setup, own, line.cycles + kRateReach);
     if (!from || !to) continue;
     std::vector<double> axis;
     double value = std::min(*from, *to);

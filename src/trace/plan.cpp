@@ -313,11 +313,15 @@ class Planner {
   }
 
   void add_notes(Plan& out) const {
+    const auto has_memory = [](const Noise& noise) {
+      return noise.is_estimated() && !noise.is_white();
+    };
     const std::vector<Noise>& noise = fitted_.fit.noise;
-    if (noise.size() == 1 && noise[0].is_estimated() && !noise[0].is_white())
+    if (std::ranges::any_of(noise, has_memory))
       out.notes.emplace_back(
-          "the noise of one profile has a memory here, of which one profile says little: planned "
-          "U may turn out half as large or twice as large; more profiles know it better");
+          "the noise has a memory here: planned U may turn out half as large or " +
+          std::string(noise.size() == 1 ? "twice as large" : "a fifth larger") +
+          "; more profiles know it better");
     if (fitted_.fit.uncertainty.inflation > 1.0)
       out.notes.emplace_back(
           "structure without a name is left in the profiles, which widens every U, planned ones "
