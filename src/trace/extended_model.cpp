@@ -55,13 +55,13 @@ std::vector<AcceptedEffect> all_but(const std::vector<AcceptedEffect>& effects,
 }
 
 ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
-                             const FittedModel& declared, const std::vector<ShownEffect>& shown,
-                             const TimeLimit& limit, const Progress& progress)
+                             const FittedModel& declared, const TimeLimit& limit,
+                             const Progress& progress)
     : profiles_(profiles),
       declared_(declared),
       limit_(limit),
       progress_(progress),
-      coarser_(search_band(problem, profiles, declared, shown)) {
+      coarser_(search_band(problem, profiles, declared)) {
   if (progress_) progress_("making the columns of every candidate", 0.0);
   dictionary_ =
       make_dictionary(base().model, problem, base().fit.linear.prior_rows.rows(),

@@ -37,8 +37,7 @@ class ModelExtender {
   /// All arguments must outlive it and what it makes.
   /// @param declared  with what is shown
   ModelExtender(const Problem& problem, const std::vector<Profile>& profiles,
-                const FittedModel& declared, const std::vector<ShownEffect>& shown,
-                const TimeLimit& limit, const Progress& progress);
+                const FittedModel& declared, const TimeLimit& limit, const Progress& progress);
 
   /// The declared model, in the low band of the search.
   [[nodiscard]] const FittedModel& base() const { return coarser_ ? coarser_->fitted : declared_; }

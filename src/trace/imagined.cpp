@@ -1,5 +1,7 @@
 #include "imagined.hpp"
 
+#include <cmath>
+
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/left_out.hpp"
@@ -34,6 +36,45 @@ std::optional<std::size_t> like_which(const FittedModel& base, const CutToCome& 
   return out;
 }
 
+/// A cut with its low band, and how much of the variance of its noise is like that of the profile
+/// it is like: means have less of it.
+struct Seen {
+  Profile profile;
+  double variance = 1.0;
+};
+
+int level_of_means(const LowBandOptions& samples, const Profile& means) {
+  return samples.level - means.low_band->level;
+}
+
+/// In the low band of a search as the profiles there: two laws of one form there would else differ
+/// by what varies within a mean.
+Seen seen_in(const SearchBand& band, const Problem& problem, LowBandOptions options,
+             const Observation* like, const CutToCome& cut) {
+  int level = 0;
+  for (std::size_t i = 0; like && i < band.profiles.size(); ++i)
+    if (band.profiles[i].name == like->profile->name) {
+      level = level_of_means(band.low_bands[i], band.profiles[i]);
+      if (!cut.profile.low_band) options = band.low_bands[i];
+    }
+  options = with_at_most(std::move(options), cut.profile.positions.size(),
+                         static_cast<std::size_t>(problem.trace.gates.search_values));
+  Seen out{in_means(cut.profile, options)};
+  out.variance = std::ldexp(1.0, level - level_of_means(options, out.profile));
+  return out;
+}
+
+Seen seen(const SearchBand* band, const Problem& problem, const Observation* like,
+          const CutToCome& cut) {
+  LowBandOptions options = cut.profile.low_band ? *cut.profile.low_band
+                           : like               ? like->low_band.options()
+                                                : problem.low_band;
+  if (band) return seen_in(*band, problem, std::move(options), like, cut);
+  Seen out{cut.profile};
+  out.profile.low_band = std::move(options);
+  return out;
+}
+
 }  // namespace
 
 std::string lacks(const ModelTerm& term, const CutToCome& cut) {
@@ -42,7 +83,8 @@ std::string lacks(const ModelTerm& term, const CutToCome& cut) {
   return lacking.empty() ? "" : "effect '" + term.name + "' needs " + joined(lacking);
 }
 
-Imagined imagine(const Problem& problem, const FittedModel& base, const CutToCome& cut) {
+Imagined imagine(const Problem& problem, const FittedModel& base, const SearchBand* band,
+                 const CutToCome& cut) {
   for (const ModelTerm& term : base.model.terms)
     if (const std::string why = lacks(term, cut); !why.empty())
       throw UsageError("planned cut '" + cut.profile.name + "': " + why);
@@ -51,21 +93,23 @@ Imagined imagine(const Problem& problem, const FittedModel& base, const CutToCom
   Problem bare = problem;
   bare.effects.clear();
   bare.trace.own.clear();
-  std::vector<Profile> one{cut.profile};
-  if (like && !cut.profile.low_band) one[0].low_band = like->low_band.options();
-  Imagined out{std::move(build_model(bare, one).observations[0]), {}};
-  out.observation.profile = &cut.profile;
+  auto [profile, variance] = seen(band, problem, like, cut);
+  std::vector<Profile> one{std::move(profile)};
+  Observation observation = std::move(build_model(bare, one).observations[0]);
+  Imagined out{std::make_shared<const Profile>(std::move(one[0])), std::move(observation), {}};
+  out.observation.profile = out.profile.get();
   leave_out(out.observation, values_at_axis(out.observation, base.model.machine));
   const std::optional<double>& declared = cut.profile.standard_uncertainty;
   if (like && (!declared || declared == like->profile->standard_uncertainty)) {
     out.noise = noise_like(base.fit.noise[*which], *like, out.observation);
+    if (variance != 1.0) out.noise = out.noise.scaled(variance);
     return out;
   }
   if (!declared)
     throw UsageError("planned cut '" + cut.profile.name +
                      "': no fitted profile of its kind and quantity tells its noise; accepted: "
                      "standard_uncertainty");
-  out.noise = Noise::white(*declared, out.observation.values.size());
+  out.noise = Noise::white(*out.profile->standard_uncertainty, out.observation.values.size());
   out.noise.declared = true;
   return out;
 }

@@ -10,6 +10,7 @@
 #include "imagined.hpp"
 #include "loop.hpp"
 #include "plan_words.hpp"
+#include "search_band.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/effects/catalogue.hpp"
@@ -65,6 +66,18 @@ double logarithm_of_fall(const std::optional<double>& now, const std::optional<d
   return now ? std::log(std::min(*now / *planned, kHidden)) : std::log(kHidden);
 }
 
+std::optional<double> expanded(const FittedParameter& of) { return of.expanded_uncertainty; }
+std::optional<double> expanded(const Straightness& of) { return of.expanded_uncertainty_um; }
+
+/// U that is planned, of U in the declared low band now and of both in that of a search.
+template <typename Quantity>
+std::optional<double> in_declared_band(const Quantity& now, const Quantity& coarse,
+                                       const Quantity& planned) {
+  const std::optional<double> before = expanded(now), as_coarse = expanded(coarse),
+                              then = expanded(planned);
+  return before && as_coarse && then ? *before * (*then / *as_coarse) : then;
+}
+
 double mean(double sum, std::size_t count) {
   return count == 0 ? 0.0 : sum / static_cast<double>(count);
 }
@@ -79,20 +92,21 @@ class Planner {
           const std::vector<CutToCome>& cuts)
       : problem_(problem),
         cuts_(cuts),
-        fitted_(fitted),
-        coarser_(coarser_model(problem, profiles, fitted_)),
-        suspects_(problem, base()),
+        coarser_(search_band(problem, profiles, fitted)),
+        fitted_(coarser_ ? coarser_->fitted : fitted),
+        suspects_(problem, fitted_),
         wanted_(wanted_parameters(fitted_.model)),
         quick_(with_known_noise(fitted_.fit)),
         now_(wanted_, with_profiles(fitted_.model, quick_, {})),
-        summary_(summarise(fitted_.model, fitted_.fit)) {
+        summary_(summarise(fitted.model, fitted.fit)),
+        coarse_(coarser_ ? summarise(fitted_.model, fitted_.fit) : summary_) {
     const std::size_t count = cuts_.size();
     imagined_.resize(count);
     papers_.resize(count);
     parallel_for(count, [&](std::size_t c) {
-      imagined_[c] = imagine(problem, fitted_, cuts_[c]);
-      const Imagined seen = coarser_ ? imagine(problem, *coarser_, cuts_[c]) : *imagined_[c];
-      papers_[c] = std::make_unique<PaperProfile>(suspects_.on_paper(seen.observation, seen.noise));
+      imagined_[c] = imagine(problem, fitted_, coarser_.get(), cuts_[c]);
+      papers_[c] = std::make_unique<PaperProfile>(
+          suspects_.on_paper(imagined_[c]->observation, imagined_[c]->noise));
     });
     for (const Suspect& suspect : suspects_.all()) limits_now_.push_back(suspect.limit);
   }
@@ -121,22 +135,6 @@ class Planner {
   }
 
  private:
-  [[nodiscard]] const FittedModel& base() const { return coarser_ ? *coarser_ : fitted_; }
-
-  /// In the low band a search looks at; none where that is the fit's own.
-  static std::optional<FittedModel> coarser_model(const Problem& problem,
-                                                  const std::vector<Profile>& profiles,
-                                                  const FittedModel& fitted) {
-    const auto most = static_cast<std::size_t>(fitted.model.gates.search_values);
-    const auto is_long = [&](const Observation& each) {
-      return static_cast<std::size_t>(each.values.size()) > most;
-    };
-    if (std::ranges::none_of(fitted.model.observations, is_long)) return std::nullopt;
-    Model coarser = build_model(problem, profiles, most);
-    coarser.terms = fitted.model.terms;
-    return fit_model(std::move(coarser), fitted.fit.estimate.shapes);
-  }
-
   [[nodiscard]] std::vector<ProfileToCome> more(const CutSet& set) const {
     std::vector<ProfileToCome> out;
     for (const std::size_t c : set)
@@ -148,7 +146,7 @@ class Planner {
     std::vector<const PaperProfile*> all;
     for (const PaperProfile& profile : suspects_.present()) all.push_back(&profile);
     for (const std::size_t c : set) all.push_back(papers_[c].get());
-    return {all, base().fit.linear.prior_rows};
+    return {all, fitted_.fit.linear.prior_rows};
   }
 
   [[nodiscard]] Criteria criteria(const CutSet& set) const {
@@ -260,17 +258,17 @@ class Planner {
     Model model = fitted_.model;
     for (const std::size_t c : set) model.observations.push_back(imagined_[c]->observation);
     const ModelResult planned = summarise(model, with_profiles(model, fitted_.fit, more(set)));
-    const ModelResult& now = summary_;
     std::vector<PlannedQuantity> out;
     for (const Eigen::Index p : wanted_) {
-      const FittedParameter& parameter = now.parameters[static_cast<std::size_t>(p)];
-      out.push_back({parameter.name, parameter.symbol, parameter.unit,
-                     parameter.expanded_uncertainty,
-                     planned.parameters[static_cast<std::size_t>(p)].expanded_uncertainty});
+      const auto at = static_cast<std::size_t>(p);
+      const FittedParameter& now = summary_.parameters[at];
+      out.push_back({now.name, now.symbol, now.unit, now.expanded_uncertainty,
+                     in_declared_band(now, coarse_.parameters[at], planned.parameters[at])});
     }
-    if (now.straightness)
-      out.push_back({"E_ZX", "E_ZX", "um", now.straightness->expanded_uncertainty_um,
-                     planned.straightness->expanded_uncertainty_um});
+    if (summary_.straightness)
+      out.push_back(
+          {"E_ZX", "E_ZX", "um", summary_.straightness->expanded_uncertainty_um,
+           in_declared_band(*summary_.straightness, *coarse_.straightness, *planned.straightness)});
     return out;
   }
 
@@ -335,13 +333,13 @@ class Planner {
 
   const Problem& problem_;
   const std::vector<CutToCome>& cuts_;
-  const FittedModel& fitted_;
-  std::optional<FittedModel> coarser_;
+  std::unique_ptr<SearchBand> coarser_;  // null: the low band is as coarse
+  const FittedModel& fitted_;            // in the low band of a search
   Suspects suspects_;
   std::vector<Eigen::Index> wanted_;
   Solution quick_;
   Wanted now_;
-  ModelResult summary_;
+  ModelResult summary_, coarse_;
   std::vector<std::optional<Imagined>> imagined_;
   std::vector<std::unique_ptr<PaperProfile>> papers_;
   std::vector<std::optional<double>> limits_now_;

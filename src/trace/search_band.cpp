@@ -14,33 +14,34 @@ bool has_more_values(const Observation& observation, std::size_t most) {
   return with_at_most(options, observation.profile->positions.size(), most).level > options.level;
 }
 
-/// The profile as its search looks at it, with the low band that leaves it few enough values.
-Profile with_fewer_samples(const Problem& problem, const Profile& profile, std::size_t most) {
-  LowBandOptions options =
-      with_at_most(problem.low_band_of(profile), profile.positions.size(), most);
-  if (options.wavelet != "db1" || options.level <= kMeansLevel) return profile;
-  Profile out = means_of(profile, std::size_t{1} << (options.level - kMeansLevel));
-  options.level = kMeansLevel;
-  out.low_band = options;
+}  // namespace
+
+Profile in_means(const Profile& profile, LowBandOptions options) {
+  const bool is_long = options.wavelet == "db1" && options.level > kMeansLevel;
+  Profile out =
+      is_long ? means_of(profile, std::size_t{1} << (options.level - kMeansLevel)) : profile;
+  if (is_long) options.level = kMeansLevel;
+  out.low_band = std::move(options);
   return out;
 }
 
-}  // namespace
-
 std::unique_ptr<SearchBand> search_band(const Problem& problem,
                                         const std::vector<Profile>& profiles,
-                                        const FittedModel& declared,
-                                        const std::vector<ShownEffect>& shown) {
-  const auto most = static_cast<std::size_t>(declared.model.gates.search_values);
+                                        const FittedModel& whole) {
+  const auto most = static_cast<std::size_t>(whole.model.gates.search_values);
   const auto is_long = [&](const Observation& each) { return has_more_values(each, most); };
-  if (std::ranges::none_of(declared.model.observations, is_long)) return nullptr;
+  if (std::ranges::none_of(whole.model.observations, is_long)) return nullptr;
   std::vector<Profile> thin;
+  std::vector<LowBandOptions> low_bands;
   for (const Profile& profile : profiles)
-    thin.push_back(with_fewer_samples(problem, profile, most));
+    thin.push_back(
+        in_means(profile, low_bands.emplace_back(with_at_most(problem.low_band_of(profile),
+                                                              profile.positions.size(), most))));
   Model model = build_model(problem, thin, most);  // points into the profiles
-  append_settled(model, shown);
-  FittedModel fitted = fit_model(std::move(model));
-  return std::make_unique<SearchBand>(SearchBand{std::move(thin), std::move(fitted)});
+  model.terms = whole.model.terms;
+  FittedModel fitted = fit_model(std::move(model), whole.fit.estimate.shapes);
+  return std::make_unique<SearchBand>(
+      SearchBand{std::move(thin), std::move(low_bands), std::move(fitted)});
 }
 
 }  // namespace slideway

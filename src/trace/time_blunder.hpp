@@ -2,6 +2,7 @@
 
 #include "blunder.hpp"
 #include "selection.hpp"
+#include "shown.hpp"
 
 namespace slideway {
 

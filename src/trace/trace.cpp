@@ -38,7 +38,7 @@ class Loop {
         progress_(progress),
         limit_(limit),
         shown_(shown),
-        extender_(problem, profiles, declared, shown, limit_, progress),
+        extender_(problem, profiles, declared, limit_, progress),
         statistics_(extender_) {}
 
   ClosedLoop run() {

@@ -229,7 +229,7 @@ Blunder instead_of_sign(const std::string& turned, const std::vector<Profile>& c
   const FittedModel declared = fit_declared(problem, cuts);
   const TimeLimit limit(std::nullopt);
   const std::vector<ShownEffect> shown;
-  ModelExtender extender(problem, cuts, declared, shown, limit, {});
+  ModelExtender extender(problem, cuts, declared, limit, {});
   return held_against_time({{turned, BlunderKind::sign, -100.0, 0.05}}, problem, extender, shown)
       .front();
 }
