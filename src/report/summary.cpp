@@ -169,11 +169,11 @@ std::string say_finding(const Analysis& analysis, Summary& out) {
     case TraceVerdict::unnamed:
       break;
   }
-  return say(Alarm::bad, "Unnamed",
-             (trace.unnamed && trace.unnamed->has_folded_wave
-                  ? "a wave is left that the low band has folded"
-                  : "no known effect explains what is left") +
-                 left_over(trace));
+  return say(
+      Alarm::bad, "Unnamed",
+      (trace.unnamed && trace.unnamed->has_folded_wave ? "a folded wave is left"
+                                                       : "no known effect explains what is left") +
+          left_over(trace));
 }
 
 std::string straightness_of(const Result& result) {

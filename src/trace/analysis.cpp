@@ -30,11 +30,16 @@ void add_next_cut(const Problem& problem, const std::vector<Profile>& profiles,
       !trace.blunders.empty() || trace.verdict == TraceVerdict::unnamed || !model.converged ||
       !wants_another_cut(model, trace))
     return;
+  const auto say = [&](const std::exception& error) {
+    trace.notes.push_back("no further cut was tried on paper: " + std::string(error.what()));
+  };
   try {
     if (!limit.allows([&] { trace.next_cut = next_cut(problem, profiles, fitted); }))
       trace.not_looked_at.emplace_back("the cut to make next");
-  } catch (const std::runtime_error& error) {  // a planned cut lacks metadata or samples
-    trace.notes.push_back("no further cut was tried on paper: " + std::string(error.what()));
+  } catch (const UsageError& error) {  // a planned cut lacks metadata
+    say(error);
+  } catch (const DataError& error) {  // or samples
+    say(error);
   }
 }
 
