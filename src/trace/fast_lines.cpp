@@ -62,6 +62,7 @@ struct Periodogram {
       if (std::abs(d) > own && k >= 0 && k < std::ssize(power))
         beside.push_back(power[static_cast<std::size_t>(k)]);
     }
+    if (beside.empty()) return 0.0;  // a trace of a few samples
     const auto middle = beside.begin() + std::ssize(beside) / 2;
     std::ranges::nth_element(beside, middle);
     const double mean = *middle / std::numbers::ln2;

@@ -116,6 +116,22 @@ TEST(FastLine, IsSeldomSeenInNoise) {
   EXPECT_LE(lines, 5U);
 }
 
+TEST(FastLine, IsNotSeenInAFewSamples) {
+  Problem problem = problem_of({"slide_periodic"});
+  problem.effects = {{"straightness", {std::nullopt, 2, std::nullopt}, {}}};
+  problem.low_band.level = 1;
+  for (const std::size_t count : {8U, 9U, 12U, 16U, 24U}) {
+    std::vector<Profile> profiles = with_line(0.7, 1);
+    for (Profile& profile : profiles) {
+      profile.positions.resize(count);
+      profile.values.resize(count);
+      profile.setup.last_mm = profile.positions.back();
+    }
+    const FittedModel fitted = fit_declared(problem, profiles);
+    EXPECT_THAT(fast_lines(fitted.model, fitted.fit), ::testing::IsEmpty()) << count;
+  }
+}
+
 /// Distance of a rate in cycles a sample from the nearest whole one.
 double folded(double cycles) { return std::abs(cycles - std::round(cycles)); }
 
