@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::size_t kMostLines = 4;             // of a profile
 constexpr int kOfOwn = 3, kNear = 12, kFar = 64;  // cycles to either side of a line
-constexpr double kHannWidth = 1.5;                // cycles, of noise
+constexpr Eigen::Index kFewestSamples = 4 * kFar;
+constexpr double kHannWidth = 1.5;  // cycles, of noise
 // Of the median of an exponential distribution, over that of its mean: 1 / ln² 2.
 constexpr double kVarianceOfMedian = 2.08;
 // How far off the rate of a line may be, cycles: the halves of a diameter may cancel each other
@@ -53,7 +54,6 @@ struct Periodogram {
   /// Of an F distribution of 2 and 2 m degrees of freedom: ln 2 of the mean of an exponential is
   /// its median.
   [[nodiscard]] double chance_within(std::size_t at, int cycles) const {
-    const double m = 2.0 * (cycles - kOfOwn) / (kHannWidth * kVarianceOfMedian);
     std::vector<double> beside;
     const auto own = static_cast<std::ptrdiff_t>(kOfOwn * per_cycle),
                far = static_cast<std::ptrdiff_t>(cycles * per_cycle);
@@ -62,7 +62,8 @@ struct Periodogram {
       if (std::abs(d) > own && k >= 0 && k < std::ssize(power))
         beside.push_back(power[static_cast<std::size_t>(k)]);
     }
-    if (beside.empty()) return 0.0;  // a trace of a few samples
+    const double m = static_cast<double>(beside.size()) /
+                     (per_cycle * kHannWidth * kVarianceOfMedian);  // independent places
     const auto middle = beside.begin() + std::ssize(beside) / 2;
     std::ranges::nth_element(beside, middle);
     const double mean = *middle / std::numbers::ln2;
@@ -135,7 +136,7 @@ std::vector<FastLine> fast_lines(const Model& model, const Solution& fit) {
   const SampleResiduals samples(model, fit);
   std::vector<FastLine> out;
   for (const SampleResiduals::Trace& trace : samples.traces()) {
-    if (trace.low_band->resampled()) continue;
+    if (trace.low_band->resampled() || trace.residual.size() < kFewestSamples) continue;
     const double slowest =
         static_cast<double>(trace.low_band->values() - 1) / model.gates.values_per_cycle;
     const double fastest = fastest_shown(*trace.profile);

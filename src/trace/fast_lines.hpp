@@ -16,7 +16,8 @@ struct FastLine {
 
 /// Those that stand out of the noise beside them (Gates::significance, of all rates of a trace) in
 /// the spectrum of what the model leaves of the samples, but for those of feed marks; the strongest
-/// of each profile. None of a profile whose low band is the samples, or that has gaps.
+/// of each profile. None of a profile whose low band is the samples, that has gaps, or that has
+/// fewer than 256 samples.
 std::vector<FastLine> fast_lines(const Model& model, const Solution& fit);
 
 /// The shapes at which an effect of one rate makes each of such lines, with those beside them; none
