@@ -87,13 +87,15 @@ struct Peak {
   double cycles, chance;
 };
 
-std::vector<Peak> peaks_of(const Periodogram& spectrum, double from_cycles, double significance) {
+std::vector<Peak> peaks_of(const Periodogram& spectrum, double from_cycles, double to_cycles,
+                           double significance) {
   const std::vector<double>& power = spectrum.power;
   const auto first = static_cast<std::size_t>(from_cycles * spectrum.per_cycle) + 1;
   std::vector<Peak> out;
   if (first + 1 >= power.size()) return out;
   const auto places = static_cast<double>(power.size() - first);
-  for (std::size_t k = first; k + 1 < power.size(); ++k) {
+  const auto last = static_cast<std::size_t>(to_cycles * spectrum.per_cycle);
+  for (std::size_t k = first; k <= last && k + 1 < power.size(); ++k) {
     if (!(power[k] > power[k - 1] && power[k] >= power[k + 1])) continue;
     const double chance = spectrum.chance(k);
     if (chance < std::log(significance / places))
@@ -140,14 +142,14 @@ std::vector<FastLine> fast_lines(const Model& model, const Solution& fit) {
     const double slowest =
         static_cast<double>(trace.low_band->values() - 1) / model.gates.values_per_cycle;
     const double fastest = fastest_shown(*trace.profile);
+    if (fastest <= slowest) continue;
     std::vector<FastLine> own;
     for (const Peak& peak :
-         peaks_of(Periodogram(trace.residual), slowest, model.gates.significance)) {
+         peaks_of(Periodogram(trace.residual), slowest, fastest, model.gates.significance)) {
       const bool is_known = std::ranges::any_of(own, [&](const FastLine& other) {
         return std::abs(other.cycles - peak.cycles) < kOfOwn;
       });
-      if (is_known || peak.cycles > fastest || mark_at(*trace.profile, peak.cycles, model.gates))
-        continue;
+      if (is_known || mark_at(*trace.profile, peak.cycles, model.gates)) continue;
       own.push_back({trace.profile, peak.cycles});
       if (own.size() == kMostLines) break;
     }
