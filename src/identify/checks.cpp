@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <span>
 
 #include "residual.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/profile_bases.hpp"
 #include "slideway/identify/straightness.hpp"
 
 namespace slideway {
@@ -156,31 +160,72 @@ void explain_noise(const Solution& fit, ModelResult& out) {
   }
 }
 
-/// Errors in variables: of the information on an amplitude, 1/u², noise of its measured cause makes
-/// a part Σ n v/σ², with v its variance in n values of noise σ. The estimate is too small by that
-/// share (Fuller 1987, Measurement Error Models, Eq. (1.1.7)).
+/// Columns of effects of one amplitude at the places of the low-band values, whose spacing is that
+/// which a measured cause is averaged over, side by side.
+Eigen::MatrixXd columns_at_values(const std::vector<std::unique_ptr<Effect>>& effects,
+                                  const Observation& observation, const Machine& machine,
+                                  std::span<const double> shape) {
+  const Profile& profile = *observation.profile;
+  std::vector<double> positions = observation.low_band.positions(profile.positions);
+  const bool falls = positions.front() > positions.back();
+  std::ranges::sort(positions);
+  const Stations stations(positions, profile.setup, machine);
+  Eigen::MatrixXd out(stations.size(), std::ssize(effects));
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    effects[i]->columns(stations, shape, out.middleCols(static_cast<Eigen::Index>(i), 1));
+  out *= low_band_scale(observation);
+  if (falls) return out.colwise().reverse();
+  return out;
+}
+
+/// Of the sum of squares of a measured cause's column beside all else that is free, the part that
+/// the noise of its log makes on average.
+double share_of_noise(const Model& model, const Solution& fit, const ModelTerm& term) {
+  constexpr int kDraws = 32;  // of a sum of n squares: to (2 / 32 n)^½
+  const Linearisation& linear = fit.linear;
+  const Eigen::Index priors = linear.prior_rows.rows(), own = term.first_amplitude;
+  Eigen::Index values = 0;
+  for (const Observation* observation : linear.observations) values += observation->values.size();
+  Eigen::MatrixXd others(values + priors, linear.prior_rows.cols());
+  Eigen::MatrixXd causes = Eigen::MatrixXd::Zero(values + priors, 1 + kDraws);
+  others.bottomRows(priors) = linear.prior_rows;
+  std::vector<std::unique_ptr<Effect>> draws;
+  for (int d = 0; d < kDraws; ++d)
+    draws.push_back(term.effect->noise_of_cause(static_cast<std::uint64_t>(d)));
+  const std::span<const double> shape = shapes_of(term, fit.estimate.shapes);
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+    const Observation& observation = *linear.observations[i];
+    const Eigen::Index count = observation.values.size();
+    others.middleRows(row, count) = linear.columns[i];
+    causes.block(row, 0, count, 1) = linear.columns[i].col(own);
+    if (term.acts_on(*observation.profile))
+      causes.block(row, 1, count, kDraws) =
+          columns_at_values(draws, observation, model.machine, shape);
+    fit.noise[i].whiten(others.middleRows(row, count));
+    fit.noise[i].whiten(causes.middleRows(row, count));
+    row += count;
+  }
+  causes.bottomRows(priors).col(0) = linear.prior_rows.col(own);
+  others.col(own).setZero();
+  const ProfileBases levelling = own_bases(linear.observations, fit.noise);
+  const Eigen::MatrixXd span = orthonormal(levelling.beside(std::move(others)));
+  levelling.take_out(causes);
+  causes -= span * (span.transpose() * causes).eval();
+  const Eigen::RowVectorXd squares = causes.colwise().squaredNorm();
+  return squares[0] > 0.0 ? std::min(squares.tail(kDraws).mean() / squares[0], 1.0) : 1.0;
+}
+
+/// Errors in variables: an estimate is too small by the share that noise has of the sum of squares
+/// of its measured cause (Fuller 1987, Measurement Error Models, Eq. (1.1.7)).
 void explain_noise_of_causes(const Model& model, const Solution& fit, ModelResult& out) {
   constexpr double kMatters = 0.1;  // of U
   for (const ModelTerm& term : model.terms) {
-    if (!term.effect->description().measured) continue;
-    double information = 0.0;
-    for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
-      const Observation& observation = *fit.linear.observations[i];
-      const Profile& profile = *observation.profile;
-      if (!term.acts_on(profile)) continue;
-      std::vector<double> positions = observation.low_band.positions(profile.positions);
-      std::ranges::sort(positions);
-      const double noise = fit.noise[i].standard_deviation() / low_band_scale(observation);
-      information += static_cast<double>(observation.values.size() - observation.left_out()) *
-                     term.effect->noise_variance({positions, profile.setup, model.machine},
-                                                 shapes_of(term, fit.estimate.shapes)) /
-                     (noise * noise);
-    }
+    if (!term.effect->noise_of_cause(0)) continue;
     const std::string name = term.name + "." + term.effect->parameters().front().name;
     const FittedParameter* size = out.find(name);
-    if (information == 0.0 || !size || !size->value || !size->expanded_uncertainty) continue;
-    const Eigen::RowVectorXd row = fit.uncertainty.basis.row(term.first_amplitude);
-    const double share = std::min(information * row.dot(row * fit.uncertainty.covariance), 1.0);
+    if (!size || !size->value || !size->expanded_uncertainty) continue;
+    const double share = share_of_noise(model, fit, term);
     const double bias = std::abs(*size->value) * share / (1.0 - share);
     if (!(bias > kMatters * *size->expanded_uncertainty)) continue;
     const std::string why = ", because the log is noisy; U does not include this";

@@ -7,7 +7,7 @@
 namespace slideway {
 namespace {
 
-bool is_own_place(const Candidate& candidate) { return candidate.only && is_of_place(candidate); }
+bool is_own_place(const Candidate& candidate) { return only(candidate) && is_of_place(candidate); }
 
 }  // namespace
 
@@ -33,7 +33,7 @@ const TestedCandidate* place_of_another(const SearchRound& round,
     const Candidate& own = *each.refined.candidate;
     return is_own_place(own) && each.is_possible() && each.refined.delta_bic < 0.0 &&
            std::ranges::none_of(effects, [&](const AcceptedEffect& effect) {
-             return effect.candidate->only == own.only && is_own_place(*effect.candidate);
+             return only(*effect.candidate) == only(own) && is_own_place(*effect.candidate);
            });
   });
   return found == round.tested.end() ? nullptr : &*found;

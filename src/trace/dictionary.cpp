@@ -1,10 +1,9 @@
 #include "dictionary.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 #include <optional>
 
+#include "candidate_parts.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
@@ -134,7 +133,7 @@ void lay_out(const Viewer& viewer, ShapeLattice grid, Candidate& candidate) {
     viewer.columns(candidate.term, shapes, candidate.is_fast,
                    columns->middleCols(first * a, count * a));
   });
-  candidate.rows = viewer.rows();
+  candidate.rows = {{0, viewer.rows()}};
   candidate.columns = std::move(columns);
 }
 
@@ -226,72 +225,6 @@ void add_fast(const Model& model, const Viewer& viewer, const std::vector<FastLi
   std::ranges::move(fast, std::back_inserter(out.candidates));
 }
 
-/// The same effect in each profile alone, where several show it: a step in one cut, a warm-up that
-/// has faded in the next.
-std::vector<Candidate> in_one_profile(const Model& model, const Candidate& whole) {
-  const ModelTerm& term = whole.term;
-  std::vector<Candidate> out;
-  if (term.effect->is_carriage() || !term.profiles.empty() || whole.raises_degree) return out;
-  Eigen::Index row = 0;
-  const std::vector<const Observation*> observations = fitted_observations(model);
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    const Profile& profile = *observations[i]->profile;
-    const Eigen::Index rows = observations[i]->values.size();
-    if (term.acts_on(profile) && term.effect->lacking_together({&profile.setup}).empty()) {
-      Candidate& alone = out.emplace_back(whole);
-      alone.term.profiles = alone.options.profiles = {profile.name};
-      alone.term.name = term_name(term.name, alone.term.profiles);
-      alone.only = i;
-      alone.first_row = row;
-      alone.rows = rows;
-    }
-    row += rows;
-  }
-  if (out.size() < 2) out.clear();
-  for (Candidate& each : out) each.choice = 2.0 * std::log(static_cast<double>(out.size()));
-  return out;
-}
-
-/// The same effect in the traces of one surface alone, where it takes several traces to show it and
-/// there are several surfaces: the form a disc was clamped to.
-std::vector<Candidate> on_one_surface(const Model& model, const Candidate& whole) {
-  const ModelTerm& term = whole.term;
-  std::map<std::string, std::vector<const Profile*>> surfaces;
-  for (const Observation* observation : fitted_observations(model))
-    if (const Profile& profile = *observation->profile; profile.surface && term.acts_on(profile))
-      surfaces[*profile.surface].push_back(&profile);
-  std::vector<Candidate> out;
-  if (term.effect->is_carriage() || !term.profiles.empty() || surfaces.size() < 2) return out;
-  for (const auto& [surface, profiles] : surfaces) {
-    std::vector<const Setup*> setups;
-    std::vector<std::string> names;
-    for (const Profile* profile : profiles) {
-      setups.push_back(&profile->setup);
-      names.push_back(profile->name);
-    }
-    if (term.effect->lacking_together({setups.front()}).empty() ||
-        !term.effect->lacking_together(setups).empty())
-      continue;
-    Candidate& alone = out.emplace_back(whole);
-    alone.term.profiles = alone.options.profiles = names;
-    alone.term.name = term_name(term.name, names);
-  }
-  for (Candidate& each : out) each.choice = 2.0 * std::log(static_cast<double>(surfaces.size()));
-  return out;
-}
-
-/// Whether the parts act, together, on every fitted profile that the whole acts on.
-bool has_all_profiles_of(const Model& model, const Candidate& whole,
-                         const std::vector<Candidate>& parts) {
-  return !parts.empty() &&
-         std::ranges::all_of(fitted_observations(model), [&](const Observation* observation) {
-           const Profile& profile = *observation->profile;
-           return !whole.term.acts_on(profile) ||
-                  std::ranges::any_of(
-                      parts, [&](const Candidate& part) { return part.term.acts_on(profile); });
-         });
-}
-
 }  // namespace
 
 bool is_of_place(const Candidate& candidate) {
@@ -301,12 +234,24 @@ bool is_of_place(const Candidate& candidate) {
          });
 }
 
+Eigen::MatrixXd Candidate::columns_of(Eigen::Index first, Eigen::Index count) const {
+  const auto asked = columns->middleCols(first * amplitudes(), count * amplitudes());
+  Eigen::MatrixXd out(count_of(rows), asked.cols());
+  Eigen::Index at = 0;
+  for (const RowRange& run : rows) {
+    out.middleRows(at, run.count) = asked.middleRows(run.first, run.count);
+    at += run.count;
+  }
+  return out;
+}
+
 Eigen::MatrixXd Candidate::columns_around(Eigen::Index atom) const {
   const std::vector<Eigen::Index> atoms = grid.around(atom);
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(columns->rows(), std::ssize(atoms) * amplitudes());
   for (std::size_t i = 0; i < atoms.size(); ++i)
-    out.block(first_row, static_cast<Eigen::Index>(i) * amplitudes(), rows, amplitudes()) =
-        columns_of(atoms[i], 1);
+    for (const RowRange& run : rows)
+      out.block(run.first, static_cast<Eigen::Index>(i) * amplitudes(), run.count, amplitudes()) =
+          columns->block(run.first, atoms[i] * amplitudes(), run.count, amplitudes());
   return out;
 }
 
@@ -328,13 +273,9 @@ Dictionary make_dictionary(const Model& model, const Problem& problem, Eigen::In
   for (const DeclaredEffect& own : problem.trace.own) add_own(model, problem, own, viewer, out);
   add_fast(model, viewer, lines, out);
   for (Candidate& whole : out.candidates) {
-    std::ranges::move(in_one_profile(model, whole), std::back_inserter(alone));
-    std::vector<Candidate> of_surfaces = on_one_surface(model, whole);
-    whole.is_searched = !has_all_profiles_of(model, whole, of_surfaces);
-    for (Candidate& each : of_surfaces) {
-      lay_out(model, viewer, each);
-      alone.push_back(std::move(each));
-    }
+    std::vector<Candidate> parts = in_parts(model, whole);
+    whole.is_searched = !has_forms_of_its_own(model, whole, parts);
+    std::ranges::move(parts, std::back_inserter(alone));
   }
   std::ranges::move(alone, std::back_inserter(out.candidates));
   std::erase_if(out.candidates, [&](const Candidate& each) {

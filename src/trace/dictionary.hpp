@@ -9,6 +9,7 @@
 #include "shape_lattice.hpp"
 #include "slideway/identify/model.hpp"
 #include "slideway/identify/solve.hpp"
+#include "whitened.hpp"
 
 namespace slideway {
 
@@ -22,21 +23,19 @@ struct Candidate {
   bool coarse = false;         // the grid: shapes are refined over all of it
   bool is_fast = false;        // its shapes are those of fast_lines()
   bool is_searched = true;     // false: each surface has a form of its own, looked for alone
-  /// Stacked rows by (#amplitudes * #atoms), not whitened; shared with the same effect in one
-  /// profile alone.
+  /// Stacked rows by (#amplitudes * #atoms), not whitened; shared with the same effect in some
+  /// profiles alone.
   std::shared_ptr<const Eigen::MatrixXd> columns;
-  std::optional<std::size_t> only;  // the one fitted observation it acts on; none: all
-  double choice = 0.0;  // price of choosing that one among those that show it, as BIC counts
-  Eigen::Index first_row = 0, rows = 0;  // of the columns, those it acts on
+  std::vector<std::size_t> part;  // the fitted observations it acts on alone; empty: all
+  double choice = 0.0;  // price of choosing that part among those that show it, as BIC counts
+  std::vector<RowRange> rows;  // of the columns, those it acts on
 
   [[nodiscard]] const std::string& name() const { return term.name; }  // "step[feed2]"
   [[nodiscard]] const std::string& effect_name() const { return term.effect->description().name; }
   [[nodiscard]] Eigen::Index amplitudes() const { return term.effect->amplitudes(); }
   [[nodiscard]] Eigen::Index atoms() const { return std::ssize(grid.points()); }
-  /// Columns of `count` atoms from `first` on, in the rows it acts on.
-  [[nodiscard]] auto columns_of(Eigen::Index first, Eigen::Index count) const {
-    return columns->block(first_row, first * amplitudes(), rows, count * amplitudes());
-  }
+  /// Columns of `count` atoms from `first` on, in the rows it acts on, under one another.
+  [[nodiscard]] Eigen::MatrixXd columns_of(Eigen::Index first, Eigen::Index count) const;
   /// Stacked columns of an atom and of its neighbours on the grid, for a shape between them.
   [[nodiscard]] Eigen::MatrixXd columns_around(Eigen::Index atom) const;
   /// Free numbers: the amplitudes that the model does not span, and the shapes.
@@ -48,6 +47,11 @@ struct Candidate {
 /// Whether every cut has the effect: feed marks.
 inline bool is_kinematic(const Candidate& candidate) {
   return candidate.term.effect->description().kinematic;
+}
+
+/// The one profile it acts on alone, by its place among those fitted.
+inline std::optional<std::size_t> only(const Candidate& candidate) {
+  return candidate.part.size() == 1 ? std::optional(candidate.part.front()) : std::nullopt;
 }
 
 /// Whether it is of the place of a trace on the workpiece: a trace off centre, or a step of the
@@ -68,7 +72,8 @@ struct Dictionary {
 };
 
 /// The hypotheses of every candidate effect about itself (Effect::hypotheses), and each that is no
-/// carriage's also in one profile alone, where several show it.
+/// carriage's also in a part of the profiles: in each alone, where several show it; in the traces
+/// of one surface, where one of them cannot have it without the others.
 /// @param prior_rows  rows of zeros below the observations', one per prior of the model
 /// @param lines       of the samples, too fast for the low band, where an effect of one rate is
 ///                    looked for besides

@@ -78,6 +78,17 @@ std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck&
          "(autocollimator), or cut and trace otherwise";
 }
 
+void doubt_what_some_have(const Disagreement& among, std::vector<AcceptedEffect>& effects) {
+  for (AcceptedEffect& effect : effects) {
+    const std::vector<std::string>& profiles = effect.round.profiles;
+    std::vector<std::string>& rivals = effect.round.ambiguous_with;
+    const bool is_odd = among.odd_one.empty() || std::ranges::count(profiles, among.odd_one) > 0;
+    if (!profiles.empty() && is_odd && !is_kinematic(*effect.candidate) &&
+        std::ranges::count(rivals, kUnnamedRival) == 0)
+      rivals.emplace_back(kUnnamedRival);
+  }
+}
+
 void doubt_what_is_uncertain(const Model& model, const ModelResult& final, TraceResult& out) {
   for (TraceRound& round : out.rounds) {
     const std::string name = term_name(round.accepted, round.profiles);

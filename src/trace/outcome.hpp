@@ -1,5 +1,6 @@
 #pragma once
 
+#include "disagreement.hpp"
 #include "extended_model.hpp"
 #include "loop.hpp"
 #include "search_round.hpp"
@@ -23,6 +24,11 @@ std::vector<std::string> outranked_by(const SearchRound& round, const TestedCand
 /// good slide speak against it, and other effects make the same columns.
 std::string form_of_another_cause(const TraceResult& out, const SquarenessCheck& check,
                                   const ModelResult& fit);
+
+/// An effect in some profiles only is not said alone where profiles that it is in disagree with the
+/// rest all the same: what is wrong with them may have made it.
+/// @param among  of the profiles, with the effects; no odd one: any of them may be wrong
+void doubt_what_some_have(const Disagreement& among, std::vector<AcceptedEffect>& effects);
 
 /// An effect that is no longer so many times larger than its uncertainty as it must be, once that
 /// holds its rivals, those of the others and what has no name, is not said alone.

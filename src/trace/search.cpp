@@ -46,15 +46,15 @@ void for_block(const Whitened& data, const Candidate& candidate, Eigen::Index fi
                Eigen::Index count, const Eigen::MatrixXd& residuals, Use&& use) {
   const Eigen::Index a = candidate.amplitudes();
   Eigen::MatrixXd columns = candidate.columns_of(first, count);
-  if (candidate.only)
-    data.noise()[*candidate.only].whiten(columns);
-  else
-    data.whiten(columns);
-  const auto own_rows = [&](const Eigen::MatrixXd& stacked) {
-    return stacked.middleRows(candidate.first_row, candidate.rows);
-  };
-  const Eigen::MatrixXd inside = data.inside(columns, candidate.only ? candidate.first_row : 0);
-  const Eigen::MatrixXd products = columns.transpose() * own_rows(residuals);
+  data.whiten(candidate.rows, columns);
+  const Eigen::MatrixXd inside = data.inside(candidate.rows, columns);
+  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(columns.cols(), residuals.cols());
+  Eigen::Index from = 0;
+  for (const RowRange& run : candidate.rows) {
+    products += columns.middleRows(from, run.count).transpose() *
+                residuals.middleRows(run.first, run.count);
+    from += run.count;
+  }
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto own = columns.middleCols(i * a, a);
     const auto spanned = inside.middleCols(i * a, a);
@@ -148,7 +148,7 @@ double noise_beside_line(const Whitened& data, const Finding& line, const Eigen:
 Projection project(const Whitened& data, const Eigen::MatrixXd& columns) {
   Eigen::MatrixXd white = columns;
   data.whiten(white);
-  const Eigen::MatrixXd inside = data.inside(white, 0);
+  const Eigen::MatrixXd inside = data.inside({{RowRange{0, data.rows()}}}, white);
   return solved({.gram = white.transpose() * white - inside.transpose() * inside,
                  .products = white.transpose() * data.residual()},
                 white.colwise().squaredNorm().transpose());

@@ -23,7 +23,7 @@ constexpr int kNoiseRounds = 3;
 
 /// Whether it is of how one trace lies on the workpiece.
 bool is_of_one_trace(const Candidate& candidate) {
-  return candidate.only &&
+  return only(candidate) &&
          candidate.term.effect->description().variable == IndependentVariable::trace;
 }
 
@@ -37,8 +37,9 @@ std::vector<Finding> suspects_among(std::vector<Finding> findings, const Gates& 
   for (const Finding& each : findings) {
     if (each.delta_bic >= -gates.delta_bic) break;
     const Candidate& own = *each.candidate;
-    if (is_of_one_trace(own) &&
-        std::ranges::none_of(out, [&](const Finding& f) { return f.candidate->only == own.only; }))
+    if (is_of_one_trace(own) && std::ranges::none_of(out, [&](const Finding& f) {
+          return only(*f.candidate) == only(own);
+        }))
       out.push_back(each);
   }
   return out;
@@ -52,11 +53,11 @@ std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
   std::vector<Eigen::MatrixXd> out;
   for (const Observation* each : linear.observations) out.emplace_back(each->values.size(), 0);
   for (const Finding& each : findings) {
-    const std::optional<std::size_t> only = each.candidate->only;
+    const std::vector<std::size_t>& part = each.candidate->part;
     const std::vector<Eigen::MatrixXd> around =
         by_profile(linear, each.candidate->columns_around(each.atom));
     for (std::size_t i = 0; i < out.size(); ++i)
-      if (!only || *only == i) append_columns(out[i], around[i]);
+      if (part.empty() || std::ranges::count(part, i) > 0) append_columns(out[i], around[i]);
   }
   for (std::size_t i = 0; i < out.size(); ++i)
     append_columns(out[i], unit_columns(undescribed[i], out[i].rows()));
@@ -124,10 +125,10 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     }
     tested.p_value = calibration.p_value(-tested.delta_bic_beside());
     tested.part_of = part_of_a_line(model, fit.estimate.shapes, tested.refined);
-    const std::optional<std::size_t> only = finding.candidate->only;
-    if (only && !finding.candidate->is_fast &&
+    const std::optional<std::size_t> alone = only(*finding.candidate);
+    if (alone && !finding.candidate->is_fast &&
         is_too_fine(model, finding.candidate->term, tested.refined.shape,
-                    *fit.linear.observations[*only]))
+                    *fit.linear.observations[*alone]))
       tested.folded = "its profile has too few low-band values a cycle";
     else if ((tested.of_feed_marks = is_of_feed_marks(model, data, tested.refined, tested.fitted)))
       tested.folded = "its line is that of the feed marks, folded by sampling";

@@ -73,6 +73,7 @@ class Loop {
         }))
       out.not_looked_at.emplace_back("another direction or start of one cut");
     if (!blunders.empty()) selection = nothing_selected(extender_, gates);
+    if (profiles_differ()) doubt_what_some_have(among_, selection.effects);
     tell_rounds(selection.effects);
     out.blunders = std::move(blunders);
     return selection;

@@ -57,6 +57,28 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, FreeVa
   residual_ = outside(residual_);
 }
 
+Eigen::Index count_of(std::span<const RowRange> rows) {
+  Eigen::Index out = 0;
+  for (const RowRange& run : rows) out += run.count;
+  return out;
+}
+
+template <typename Use>
+void Whitened::for_each_in(std::span<const RowRange> rows, Use&& use) const {
+  Eigen::Index at = 0;
+  for (const RowRange& run : rows) {
+    for (std::size_t i = 0; i < noise_.size(); ++i)
+      if (first_[i] >= run.first && first_[i + 1] <= run.end()) use(i, at + first_[i] - run.first);
+    at += run.count;
+  }
+}
+
+void Whitened::whiten(std::span<const RowRange> rows, Eigen::Ref<Eigen::MatrixXd> columns) const {
+  for_each_in(rows, [&](std::size_t i, Eigen::Index at) {
+    noise_[i].whiten(columns.middleRows(at, count(i)));
+  });
+}
+
 void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
   for (std::size_t i = 0; i < noise_.size(); ++i)
     noise_[i].whiten(stacked.middleRows(first_[i], count(i)));
@@ -69,19 +91,20 @@ Eigen::MatrixXd Whitened::outside(Eigen::MatrixXd stacked) const {
   return stacked;
 }
 
-Eigen::MatrixXd Whitened::inside(const Eigen::MatrixXd& white, Eigen::Index first) const {
-  const Eigen::Index end = first + white.rows();
-  const auto is_there = [&](std::size_t i) { return first_[i] >= first && first_[i + 1] <= end; };
-  Eigen::Index next = shared_.cols(), size = next;
-  for (std::size_t i = 0; i < own_.size(); ++i) size += is_there(i) ? own_[i].cols() : 0;
-  Eigen::MatrixXd out(size, white.cols());
-  out.topRows(next) = shared_.middleRows(first, white.rows()).transpose() * white;
-  for (std::size_t i = 0; i < own_.size(); ++i) {
-    if (!is_there(i)) continue;
-    out.middleRows(next, own_[i].cols()) =
-        own_[i].transpose() * white.middleRows(first_[i] - first, count(i));
-    next += own_[i].cols();
+Eigen::MatrixXd Whitened::inside(std::span<const RowRange> rows,
+                                 const Eigen::MatrixXd& white) const {
+  Eigen::Index next = shared_.cols(), size = next, from = 0;
+  for_each_in(rows, [&](std::size_t i, Eigen::Index) { size += own_[i].cols(); });
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, white.cols());
+  for (const RowRange& run : rows) {
+    out.topRows(next) +=
+        shared_.middleRows(run.first, run.count).transpose() * white.middleRows(from, run.count);
+    from += run.count;
   }
+  for_each_in(rows, [&](std::size_t i, Eigen::Index at) {
+    out.middleRows(next, own_[i].cols()) = own_[i].transpose() * white.middleRows(at, count(i));
+    next += own_[i].cols();
+  });
   return out;
 }
 

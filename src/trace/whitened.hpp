@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "slideway/identify/fit.hpp"
@@ -8,10 +9,19 @@
 
 namespace slideway {
 
+/// RowRange of stacked columns: of whole profiles, one after another.
+struct RowRange {
+  Eigen::Index first = 0, count = 0;
+
+  [[nodiscard]] Eigen::Index end() const { return first + count; }
+};
+
+Eigen::Index count_of(std::span<const RowRange> rows);
+
 /// All fitted low bands under one another, and the priors below them, made white: what the search
 /// for a missing effect looks at.
 ///
-/// Rows are low-band values divided by their noise (generalised least squares); the span of the
+/// RowRange are low-band values divided by their noise (generalised least squares); the span of the
 /// model's columns, of its shapes' derivatives and of the nuisances is taken out of the residual,
 /// so that only what the model cannot make is left.
 class Whitened {
@@ -35,6 +45,8 @@ class Whitened {
 
   /// Stacked low-band columns (rows() of them, zero in the rows of priors) made white, in place.
   void whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const;
+  /// The same of those in some rows alone.
+  void whiten(std::span<const RowRange> rows, Eigen::Ref<Eigen::MatrixXd> columns) const;
 
   /// The same, then without what the model and the nuisances span.
   [[nodiscard]] Eigen::MatrixXd outside(Eigen::MatrixXd stacked) const;
@@ -44,9 +56,9 @@ class Whitened {
   [[nodiscard]] Eigen::MatrixXd outside_in(const std::vector<Eigen::Index>& rows,
                                            Eigen::MatrixXd white) const;
 
-  /// Its transpose times white rows that are zero elsewhere: those of whole profiles from row
-  /// `first` on, or all.
-  [[nodiscard]] Eigen::MatrixXd inside(const Eigen::MatrixXd& white, Eigen::Index first) const;
+  /// Its transpose times white columns that are zero but in some rows.
+  [[nodiscard]] Eigen::MatrixXd inside(std::span<const RowRange> rows,
+                                       const Eigen::MatrixXd& white) const;
 
   /// What columns of one profile show beside its nuisances. Over profiles, with sums of each: the
   /// Gram matrix of the columns outside the model's span is gram - sharedᵀ shared.
@@ -64,6 +76,10 @@ class Whitened {
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
 
  private:
+  /// Calls use(observation, its first row among some) for each that lies in them.
+  template <typename Use>
+  void for_each_in(std::span<const RowRange> rows, Use&& use) const;
+
   std::vector<Noise> noise_;
   FreeValues undescribed_;
   std::vector<Eigen::Index> first_;
@@ -74,8 +90,8 @@ class Whitened {
   Eigen::VectorXd residual_;
 };
 
-/// Rows of observations under one another, with rows of zeros for the priors below: the layout of
-/// Whitened. `of(i)` gives the rows of observation i.
+/// RowRange of observations under one another, with rows of zeros for the priors below: the layout
+/// of Whitened. `of(i)` gives the rows of observation i.
 template <typename Of>
 Eigen::MatrixXd stack(const std::vector<const Observation*>& observations, Eigen::Index prior_rows,
                       Eigen::Index columns, Of&& of) {

@@ -83,6 +83,56 @@ TEST(Placing, LobesOfEachClampingAreNamed) {
   }
 }
 
+/// Two discs, three traces each, the discs in turn; the first has a form of X and the azimuth.
+template <typename Form>
+std::vector<Profile> two_discs(Form&& form) {
+  std::vector<Profile> first = at_azimuths(form, 5);
+  std::vector<Profile> second = at_azimuths([](double, double) { return 0.0; }, 8);
+  std::vector<Profile> out;
+  for (std::size_t c = 0; c < first.size(); ++c)
+    for (std::vector<Profile>* disc : {&first, &second}) {
+      Profile& trace = out.emplace_back(std::move((*disc)[c]));
+      trace.surface = disc == &first ? "first" : "second";
+      trace.name = *trace.surface + trace.name;
+    }
+  return out;
+}
+
+std::vector<std::string> traces_of(const std::vector<Profile>& profiles, const std::string& disc) {
+  std::vector<std::string> out;
+  for (const Profile& each : profiles)
+    if (each.surface == disc) out.push_back(each.name);
+  return out;
+}
+
+// Two lobes that the traces at 0° and 50° show alike, 0.5 µm cos 2(θ - 25°): beside a b_2 that all
+// have, the third trace alone is cupped. No face is cupped along one diameter only.
+TEST(Placing, ACupOfOneTraceOfASurfaceIsALobe) {
+  constexpr double kSize = 0.5e-3, kTurned = 25.0 * kPi / 180.0;
+  const std::vector<Profile> profiles = two_discs([](double x, double azimuth) {
+    return kSize * std::pow(x / kPlacedRadius, 2) * std::cos(2.0 * (azimuth - kTurned));
+  });
+  const Closed result = closed(problem_of(), profiles);
+  SCOPED_TRACE(story(result));
+  ASSERT_THAT(named(result), ElementsAre("chucking_lobes"));
+  EXPECT_EQ(result.rounds[0].profiles, traces_of(profiles, "first"));
+  EXPECT_THAT(result.rounds[0].ambiguous_with, IsEmpty());
+}
+
+// A step of 0.2 µm at r = 4 mm of one of two discs.
+TEST(Placing, AStepOfASurfaceIsInAllItsTraces) {
+  constexpr double kStep = 0.2e-3, kAt = 4.0;
+  const std::vector<Profile> profiles =
+      two_discs([](double x, double /*azimuth*/) { return std::abs(x) < kAt ? kStep : 0.0; });
+  const Closed result = closed(problem_of(), profiles);
+  SCOPED_TRACE(story(result));
+  ASSERT_THAT(named(result), ElementsAre("step"));
+  const std::vector<std::string> traces = traces_of(profiles, "first");
+  EXPECT_EQ(result.rounds[0].profiles, traces);
+  expect_within_4u(result.rounds[0].parameters, "step[" + joined(traces, ",") + "].height_um",
+                   kStep / kMicrometre);
+}
+
 TEST(Placing, LobesNeedSeveralAzimuths) {
   const Closed result = closed(problem_of({"chucking_lobes"}), quarter_faces({}, 3, kBlunt, 5));
   ASSERT_EQ(result.not_testable.size(), 1U);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -72,6 +73,9 @@ struct Description {
   bool of_instrument = false;
   /// Its form is that of the face it is in: TravelRange::face_slope.
   bool of_face = false;
+  /// Of a turned face, the same along every trace of a surface: one of them cannot have it without
+  /// the others.
+  bool axisymmetric = false;
   /// Every cut has it, by the kinematics: not whether it is there is in question, but its size.
   /// What has no name is no rival of it.
   bool kinematic = false;
@@ -283,10 +287,9 @@ class Effect {
   /// search_range().
   [[nodiscard]] virtual std::string fault(const Stations& stations) const;
 
-  /// Variance of the noise that a measured cause brings into its columns at these stations.
-  /// REQUIRES as columns().
-  [[nodiscard]] virtual double noise_variance(const Stations& stations,
-                                              std::span<const double> shape) const;
+  /// The effect with a draw of the noise of its cause in the place of that; null: none was
+  /// measured.
+  [[nodiscard]] virtual std::unique_ptr<Effect> noise_of_cause(std::uint64_t seed) const;
 
   /// Keys of [machine] the effect cannot do without and the problem does not give.
   [[nodiscard]] virtual std::vector<std::string> lacking_of_machine(const TravelRange& range) const;

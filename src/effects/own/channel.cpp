@@ -7,6 +7,7 @@
 #include "../linear_effect.hpp"
 #include "../variable_range.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/base/random.hpp"
 #include "slideway/base/statistics.hpp"
 #include "slideway/base/text.hpp"
 
@@ -142,7 +143,8 @@ Description describe(const Channel& channel, const ChannelResponse& response) {
           .cause = name + " as it was logged",
           .typical = "what the log and the size of the effect say",
           .variable = channel.clock,
-          .measured = true};
+          .measured = true,
+          .axisymmetric = channel.clock == IndependentVariable::time};
 }
 
 std::vector<Parameter> parameters_of(const Channel& channel, const ChannelResponse& response) {
@@ -183,8 +185,7 @@ class ChannelEffect : public LinearEffect {
                Eigen::Ref<Eigen::MatrixXd> out) const override;
   void derivatives(const Stations& stations, std::span<const double> shape, int which,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
-  [[nodiscard]] double noise_variance(const Stations& stations,
-                                      std::span<const double> shape) const override;
+  [[nodiscard]] std::unique_ptr<Effect> noise_of_cause(std::uint64_t seed) const override;
   [[nodiscard]] double resolution(int shape, double value,
                                   const Stations& stations) const override {
     const double coarser = shapes().size() > 1 ? 2.0 : 1.0;  // a grid of two is finer between
@@ -281,15 +282,13 @@ void ChannelEffect::derivatives(const Stations& stations, std::span<const double
   }
 }
 
-// White noise of the log, averaged over the spacing of the stations and over τ.
-double ChannelEffect::noise_variance(const Stations& stations,
-                                     std::span<const double> shape) const {
-  if (!applies_to(stations.setup())) return 0.0;
-  const double spacing =
-      (channel_->at.back() - channel_->at.front()) / static_cast<double>(channel_->at.size() - 1);
-  const double averaged =
-      std::max(1.0, (range_of(stations, reading()).step + 2.0 * tau(shape)) / spacing);
-  return std::pow(unit_of(stations) * noise_of(*channel_), 2) / averaged;
+// White, as noise_of() has it.
+std::unique_ptr<Effect> ChannelEffect::noise_of_cause(std::uint64_t seed) const {
+  auto noise = std::make_shared<Channel>(*channel_);
+  const double size = noise_of(*channel_);
+  RandomStream random(seed, channel_->name);
+  for (double& value : noise->values) value = size * random.normal();
+  return std::make_unique<ChannelEffect>(std::move(noise), response_);
 }
 
 }  // namespace

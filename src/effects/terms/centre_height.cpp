@@ -36,7 +36,8 @@ std::unique_ptr<Effect> make_centre_height(const Request& request) {
                       .separated_by =
                           "parallel traces at known spacing, a microscope: a nub is there "
                           "or not",
-                      .steep_at_centre = true},
+                      .steep_at_centre = true,
+                      .axisymmetric = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
       .reading = radius_of,
       .value = centre_height_value,

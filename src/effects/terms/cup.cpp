@@ -29,7 +29,8 @@ std::unique_ptr<Effect> make_cup(const Request& request) {
            .confounded_effects = {"straightness", "tool_wear"},
            .separated_by = "measuring while still clamped, another clamping force; an "
                            "independent reading of the straightness; a second feed against "
-                           "tool_wear"},
+                           "tool_wear",
+           .axisymmetric = true},
       .amplitude = {"sag_um", "A", "µm", 0.1},
       .reading = relative_radius,
       .value = [](double ratio, double) { return ratio * ratio; },

@@ -38,7 +38,8 @@ std::unique_ptr<Effect> make_edge_roll_off(const Request& request) {
                       .confounded_effects = {"thermal_drift", "tool_running_in"},
                       .separated_by =
                           "it stays at the same radii at every feed and in both cutting "
-                          "directions"},
+                          "directions",
+                      .axisymmetric = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
       .reading = from_rim,
       .value = edge_roll_off_value,

@@ -30,7 +30,8 @@ Description describe_hysteresis() {
       .confounded_effects = {"straightness", "thermal_drift"},
       .separated_by =
           "two cuts in each direction: what goes with the direction repeats, what one cut alone "
-          "has does not"};
+          "has does not",
+      .axisymmetric = true};
 }
 
 std::ptrdiff_t of_rarer_direction(const std::vector<const Setup*>& setups) {

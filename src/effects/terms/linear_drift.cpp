@@ -19,7 +19,8 @@ std::unique_ptr<Effect> make_linear_drift(const Request& request) {
                       .confounded_effects = {"squareness"},
                       .separated_by =
                           "a second feed: the slope on the face goes with 1/feed; a cut "
-                          "in the other direction changes its sign"},
+                          "in the other direction changes its sign",
+                      .axisymmetric = true},
       .amplitude = {"rate_um_per_min", "a", "µm/min", 0.01},
       .unit = kMicrometre / kMinute,
       .reading = time_of,

@@ -77,7 +77,8 @@ std::unique_ptr<Effect> make_slide_periodic(const Request& request) {
                       .confounded_effects = {"straightness", "revolution_periodic", "time_periodic",
                                              "traverse_periodic"},
                       .separated_by = "a second feed or spindle speed: λ stays as it is in mm; a "
-                                      "data-sheet pitch"},
+                                      "data-sheet pitch",
+                      .axisymmetric = true},
       .rate = {"period_mm", "λ", "mm", 1.0, 1e-3, 1e5},
       .rate_is_period = true,
       .reading = slide_of,

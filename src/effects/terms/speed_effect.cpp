@@ -42,7 +42,8 @@ std::unique_ptr<Effect> make_speed_effect(const Request& request) {
                       .confounded_effects = {"centre_height"},
                       .separated_by = "a spring pass (no depth of cut, no force), a second feed "
                                       "(force grows with about f^0.7)",
-                      .steep_at_centre = true},
+                      .steep_at_centre = true,
+                      .axisymmetric = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.01},
       .reading = log_speed_ratio,
       .value = speed_effect_value,

@@ -31,7 +31,8 @@ std::unique_ptr<Effect> make_step(const Request& request) {
                       .confounded_effects = {"thermal_drift", "tool_running_in"},
                       .separated_by =
                           "both halves of a diameter show it at the same radius; the next "
-                          "part does not"},
+                          "part does not",
+                      .axisymmetric = true},
       .amplitude = {"height_um", "A", "µm", 0.1},
       .reading = tool_radius_of,
       .value = [](double radius, double position) { return radius < position ? 1.0 : 0.0; },

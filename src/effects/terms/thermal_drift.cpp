@@ -41,7 +41,8 @@ std::unique_ptr<Effect> make_thermal_drift(const Request& request) {
                               "short",
            .confounded_effects = {"straightness", "tool_running_in", "tool_wear", "edge_roll_off"},
            .separated_by = "a second feed (the time scale on the face changes), a cut "
-                           "outward (mirrored), a temperature log"},
+                           "outward (mirrored), a temperature log",
+           .axisymmetric = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.1},
       .reading = since_start,
       .value = thermal_drift_value,

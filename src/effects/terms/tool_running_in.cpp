@@ -38,7 +38,8 @@ std::unique_ptr<Effect> make_tool_running_in(const Request& request) {
                       .confounded_effects = {"thermal_drift", "edge_roll_off"},
                       .separated_by =
                           "a change of spindle speed at the same feed rate (distance "
-                          "changes, time does not), a second feed, an edge already run in"},
+                          "changes, time does not), a second feed, an edge already run in",
+                      .axisymmetric = true},
       .amplitude = {"amplitude_um", "A", "µm", 0.1, 0.0},
       .reading = since_start_m,
       .value = tool_running_in_value,

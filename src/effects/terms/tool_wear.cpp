@@ -23,7 +23,8 @@ std::unique_ptr<Effect> make_tool_wear(const Request& request) {
            .confounded_effects = {"cup", "straightness", "thermal_drift"},
            .separated_by = "a second feed or spindle speed (distance goes with rpm/feed, "
                            "thermal drift does not know the rpm), the other cutting "
-                           "direction"},
+                           "direction",
+           .axisymmetric = true},
       .amplitude = {"rate_um_per_m", "w", "µm/m", 0.01, 0.0},
       .unit = kMicrometre / kMetre,
       .reading = [](const Stations& stations, Eigen::Index i) { return stations.distance(i); },

@@ -29,8 +29,9 @@ std::unique_ptr<Effect> make_traverse_datum(const Request& request) {
                                "(trefoil) gives the same odd cubic on a diameter",
                       .typical = "5 to 50 nm over 20 mm",
                       .variable = IndependentVariable::trace,
-                      .confounded_with = "b_3 of straightness on a radius",
-                      .confounded_effects = {"straightness"},
+                      .confounded_with = "b_3 of straightness on a radius; three chucking_lobes at "
+                                         "one azimuth",
+                      .confounded_effects = {"straightness", "chucking_lobes"},
                       .separated_by =
                           "turning the part by 180° on the instrument (the datum stays), "
                           "a trace at another azimuth (the trefoil changes), a trace over "
