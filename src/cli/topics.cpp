@@ -201,7 +201,7 @@ const std::vector<Section>& sections() {
        {{"name", "a name of its own"},
         {"file", "as of a profile"},
         {"time_column", "header name or number; default 1"},
-        {"time_unit", "s min h; m mm um nm inch where the clock is x"},
+        {"time_unit", "s min h; m mm um nm inch where the clock is x; none: as the file states"},
         {"value_column", "header name or number; default 2"},
         {"value_unit", "text: for the report"},
         {"clock",

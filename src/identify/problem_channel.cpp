@@ -14,13 +14,24 @@ namespace {
 
 constexpr std::size_t kMostValues = 20000;  // of a log; more are kept as means
 
+/// The unit that the file states, where it does and the problem asks for no other.
+std::optional<std::string> unit_of(const Section& section, const std::string& key,
+                                   const std::string& in_file,
+                                   const std::optional<std::string>& asked) {
+  if (in_file.empty()) return asked;
+  if (asked && *asked != in_file)
+    section.fail(key,
+                 "the file has " + in_file + ", the problem " + *asked + "; accepted: the same");
+  return in_file;
+}
+
 /// What a place in the file is in s, or in mm.
 double scale_of_places(const Section& section, const Channel& channel, const TraceFile& file) {
   const bool is_slide = channel.clock == IndependentVariable::slide;
   const std::string accepted(is_slide ? kLengthUnits : kTimeUnits);
-  std::optional<std::string> asked = section.unit("time_unit", accepted, "");
-  if (!asked && file.states_units) asked = file.trace.position_unit;
-  const std::string unit = section.required("time_unit", asked, accepted);
+  const std::optional<std::string> asked = section.unit("time_unit", accepted, "");
+  const std::string unit = section.required(
+      "time_unit", unit_of(section, "time_unit", file.trace.position_unit, asked), accepted);
   if (const auto scale = is_slide ? length_unit(unit) : time_unit(unit)) return (*scale)(1.0);
   section.fail("time_unit", "the file has " + unit + "; accepted: " + accepted);
 }
@@ -82,7 +93,6 @@ Channel read_channel(const Section& section, const ProblemRules& rules, Problem&
        {IndependentVariable::slide, IndependentVariable::measuring_time,
         IndependentVariable::reading_time})
     if (clock == symbol(each)) channel.clock = each;
-  channel.unit = section.text("value_unit").value_or("unit of the log");
   TraceRequest request;
   request.position_column = section.column("time_column").value_or(request.position_column);
   request.value_column = section.column("value_column").value_or(request.value_column);
@@ -90,6 +100,10 @@ Channel read_channel(const Section& section, const ProblemRules& rules, Problem&
       resolved(section, "file", section.required("file", section.text("file"), "a path"), rules);
   problem.beside.push_back(path);
   const TraceFile file = read_log(channel.name, path, request);
+  const std::optional<std::string> asked = section.text("value_unit");
+  channel.unit =
+      (file.states_units ? unit_of(section, "value_unit", file.trace.value_unit, asked) : asked)
+          .value_or("unit of the log");
   take(file, scale_of_places(section, channel, file), channel);
   return channel;
 }

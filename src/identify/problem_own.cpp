@@ -106,12 +106,30 @@ const OwnKind* own_kind_of(const Section& section) {
   return found == std::end(kOwnKinds) ? nullptr : found;
 }
 
-void check_name_is_free(const Section& section, std::string_view key, const std::string& name,
-                        const std::vector<DeclaredEffect>& known) {
+namespace {
+
+void check_name_is_free(const std::string& name, const std::vector<DeclaredEffect>& known) {
   const bool is_kind = std::ranges::count(own_kinds(), name, &OwnKind::name) > 0;
   const bool is_known = std::ranges::count(known, name, &DeclaredEffect::name) > 0;
   if (is_kind || is_known || name == "all" || std::ranges::count(effect_names(), name) > 0)
-    section.fail(key, "'" + name + "' is the name of another effect; accepted: one of its own");
+    throw UsageError("'" + name + "' is the name of another effect; accepted: one of its own");
+}
+
+}  // namespace
+
+void look_for(DeclaredEffect effect, Problem& problem) {
+  check_name_is_free(effect.name, problem.own_effects);
+  problem.own_effects.push_back(effect);
+  problem.trace.own.push_back(std::move(effect));
+}
+
+void check_name_is_free(const Section& section, std::string_view key, const std::string& name,
+                        const std::vector<DeclaredEffect>& known) {
+  try {
+    check_name_is_free(name, known);
+  } catch (const UsageError& error) {
+    section.fail(key, error.what());
+  }
 }
 
 std::vector<DeclaredEffect> read_effect_file(const std::filesystem::path& path) {

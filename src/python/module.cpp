@@ -174,8 +174,7 @@ py::tuple analysed(const py::object& problem,
   {
     const py::gil_scoped_release unlocked;
     Problem read = given.read();
-    read.own_effects.insert(read.own_effects.end(), own.begin(), own.end());
-    read.trace.own.insert(read.trace.own.end(), own.begin(), own.end());
+    for (const DeclaredEffect& effect : own) look_for(effect, read);
     const Analysis analysis =
         analyse(read, read_profiles(read, traces),
                 {ranks_only ? Scope::rank : Scope::identify, closes_loop, true, true},

@@ -143,6 +143,36 @@ TEST_F(OwnEffects, OfATruthAreWrittenWhereTheyAre) {
   EXPECT_NEAR(profiles[0].values.back(), 2e-3, 1e-18);
 }
 
+// A position in mm that a problem calls m is another log.
+TEST_F(OwnEffects, TakeNoOtherUnitOfALogThanItsFileStates) {
+  write("x_mm,q_K\n0,1\n5,2\n10,4\n", "log.csv");
+  const auto read_in = [&](const std::string& unit) {
+    return read_problem(
+        write(with("[[channel]]\nname = \"sensor\"\nfile = \"log.csv\"\n"
+                   "clock = \"x\"\ntime_column = \"x_mm\"\n"
+                   "value_column = \"q_K\"\n" +
+                   unit)));
+  };
+  EXPECT_EQ(read_in("time_unit = \"mm\"\n").own_effects.front().name, "sensor");
+  EXPECT_EQ(read_in("").own_effects.front().name, "sensor");
+  try {
+    (void)read_in("time_unit = \"m\"\n");
+    ADD_FAILURE();
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("channel.time_unit: the file has mm, the problem m; "
+                                        "accepted: the same"));
+  }
+}
+
+TEST_F(OwnEffects, NeedANameOfTheirOwn) {
+  Problem problem = read_problem(write(with("")));
+  const DeclaredEffect own{"coolant", {}, {}};
+  look_for(own, problem);
+  EXPECT_EQ(problem.trace.own.back().name, "coolant");
+  for (const std::string name : {"coolant", "step", "formula", "all"})
+    EXPECT_THROW(look_for({name, {}, {}}, problem), UsageError) << name;
+}
+
 TEST_F(OwnEffects, OfAFileGoWithASimulation) {
   write(kShared, "our-lathes.toml");
   const Problem problem = read_problem(write(

@@ -75,6 +75,9 @@ def test_what_does_not_fit_is_refused():
     assert "'own'" in refused(lambda T, a: a * T, {"a": "um"})
     assert "no argument 'b'" in refused(lambda t, a: a * t, {"a": "um", "b": "um"})
     assert "tau" in refused(lambda t, a, tau: a * np.exp(-t / tau), {"a": "um", "tau": "s"})
+    for name in ("step", "formula"):
+        with pytest.raises(slideway.UsageError, match="name of another effect"):
+            slideway.identify(problem(), faces, effects={name: EFFECT})
     assert "not finite" in refused(lambda r, a: a / np.where(r > 5, r - r, r + 1), {"a": "um"})
 
 

@@ -125,6 +125,10 @@ std::vector<Profile> read_profiles(const Problem& problem, const ReadProgress& p
 /// The profiles that can be read; why the others cannot is added to `faults`.
 std::vector<Profile> read_profiles(const Problem& problem, Faults& faults);
 
+/// Adds an effect that is not in the catalogue to those that the loop looks for.
+/// @throws UsageError  if another effect of the problem or of the catalogue has its name
+void look_for(DeclaredEffect effect, Problem& problem);
+
 /// The effects of a file that problems share (`effects = ["our-lathes.toml"]`): [[effect]] tables,
 /// each a formula with cause, source and typical size.
 /// @throws UsageError  as read_problem()

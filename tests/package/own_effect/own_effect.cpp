@@ -54,11 +54,11 @@ class RackTeeth : public slideway::Effect {
 
 int main(int, char** argv) try {
   slideway::Problem problem = slideway::read_problem(argv[1]);
-  problem.trace.own.push_back(
-      {"rack_teeth",
-       {.own = [](const slideway::Machine&,
-                  const slideway::TravelRange&) { return std::make_unique<RackTeeth>(); }},
-       {}});
+  look_for({"rack_teeth",
+            {.own = [](const slideway::Machine&,
+                       const slideway::TravelRange&) { return std::make_unique<RackTeeth>(); }},
+            {}},
+           problem);
 
   std::vector<slideway::Profile> profiles = slideway::read_profiles(problem);
   for (slideway::Profile& profile : profiles)  // 0.5 µm of it, for the example
