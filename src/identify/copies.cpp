@@ -84,7 +84,7 @@ void hold_out_copies(std::vector<Profile>& profiles) {
                                        [&](const Profile& each) { return is_copy(each, *copy); });
     if (original == copy) continue;
     const bool both = original->role == Role::fit && copy->role == Role::fit;
-    copy->notes.push_back(
+    copy->doubts.push_back(
         "a copy of profile '" + original->name +
         "': the same values after levelling, to their rounding; " +
         (both ? "it is not fitted, so that they count once" : "that they agree says nothing"));

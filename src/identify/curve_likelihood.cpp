@@ -16,7 +16,7 @@ constexpr double kRoughness[] = {1.5, 2.5};
 constexpr double kLengthStep = 1.6;      // between lengths of the grid: no estimate moves visibly
 constexpr double kAmplitudeStep = 1.12;  // and between amplitudes
 constexpr double kLeastInformation = 1e-2, kMostInformation = 1e14;  // of the data over the prior's
-constexpr double kLikely = 1e-4;    // of the best hypothesis: less is not looked at
+constexpr double kLikely = 1e-4;    // of the best hypothesis of its kind: less is not looked at
 constexpr double kLevelled = 1e-9;  // of a column: what levelling leaves of an offset
 constexpr double kJitter = 1e-10;   // of the variance, for a covariance of rounded numbers
 
@@ -27,8 +27,10 @@ double matern(double roughness, double u) {
 }
 
 /// Every amplitude of one length and roughness: with the correlation's root L and the coefficients
-/// L⁻¹ of the knots, a prior a² I.
-std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, double roughness) {
+/// L⁻¹ of the knots, a prior a² I. Beside each, a kink at every knot, all of them as likely as
+/// none.
+std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, double roughness,
+                                         double kink_mm) {
   const Eigen::MatrixXd root = correlation_root(data.knots(), length, roughness);
   const Eigen::MatrixXd inner = root.transpose() * data.information() * root;
   const double most = inner.trace();
@@ -38,6 +40,18 @@ std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, d
   const double last = std::sqrt(kMostInformation / most);
   for (double a = std::sqrt(kLeastInformation / most); a < last; a *= kAmplitudeStep)
     out.push_back({{a, length, roughness}, prior.log_evidence(a * a)});
+  if (!(kink_mm > 0.0)) return out;
+  const CurvePosterior posterior(data, length, roughness);
+  for (std::size_t i = 0, smooth = out.size(); i < smooth; ++i) {
+    const Hypothesis without = out[i];
+    const Eigen::VectorXd more =
+        posterior.log_evidence_of_kinks(without.prior.amplitude_mm, kink_mm);
+    for (Eigen::Index k = 0; k < more.size(); ++k) {
+      Hypothesis& kinked = out.emplace_back(without);
+      kinked.prior.kink = {k + 1, kink_mm};
+      kinked.log_likelihood += more[k] - std::log(static_cast<double>(more.size()));
+    }
+  }
   return out;
 }
 
@@ -79,9 +93,21 @@ CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
   target -= basis * (basis.transpose() * target).eval();
   information_ = curve.transpose() * curve;
   products_ = curve.transpose() * target;
+  kinks_.resize(own, std::max<Eigen::Index>(own - 2, 0));
+  for (Eigen::Index k = 0; k < kinks_.cols(); ++k) kinks_.col(k) = kink_form(knots_, k + 1);
 }
 
-std::vector<Hypothesis> likely_priors(const CurveData& data) {
+Eigen::VectorXd kink_form(const Knots& knots, Eigen::Index knot) {
+  const Eigen::ArrayXd x = knots.positions_mm.array();
+  const double at = x[knot], first = x[0], last = x[x.size() - 1];
+  const Eigen::VectorXd heights = ((x - first) / (at - first)).min((last - x) / (last - at));
+  Eigen::MatrixXd spline = Eigen::MatrixXd::Identity(x.size(), x.size());
+  for (Eigen::Index i = 1; i + 1 < x.size(); ++i)  // of even knots
+    spline.row(i).segment(i - 1, 3) << 1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0;
+  return spline.lu().solve(heights);
+}
+
+std::vector<Hypothesis> likely_priors(const CurveData& data, double kink_mm) {
   const Eigen::VectorXd& x = data.knots().positions_mm;
   const double travel = x[x.size() - 1] - x[0];
   std::vector<CurvePrior> shapes;
@@ -91,15 +117,19 @@ std::vector<Hypothesis> likely_priors(const CurveData& data) {
       shapes.push_back({0.0, std::min(length, 2.0 * travel), roughness});
   std::vector<std::vector<Hypothesis>> found(shapes.size());
   parallel_for(shapes.size(), [&](std::size_t i) {
-    found[i] = along_amplitudes(data, shapes[i].length_mm, shapes[i].roughness);
+    found[i] = along_amplitudes(data, shapes[i].length_mm, shapes[i].roughness, kink_mm);
   });
   std::vector<Hypothesis> out;
-  double best = -INFINITY;
+  double smooth = -INFINITY, best = -INFINITY;
   for (const std::vector<Hypothesis>& each : found)
-    for (const Hypothesis& one : each) best = std::max(best, one.log_likelihood);
+    for (const Hypothesis& one : each) {
+      best = std::max(best, one.log_likelihood);
+      if (!one.prior.kink) smooth = std::max(smooth, one.log_likelihood);
+    }
   for (const std::vector<Hypothesis>& each : found)
     for (const Hypothesis& one : each)
-      if (one.log_likelihood > best + std::log(kLikely)) out.push_back(one);
+      if (one.log_likelihood > (one.prior.kink ? best : smooth) + std::log(kLikely))
+        out.push_back(one);
   return out;
 }
 
@@ -108,13 +138,19 @@ const Hypothesis* likeliest(const std::vector<Hypothesis>& hypotheses) {
   return found == hypotheses.end() ? nullptr : &*found;
 }
 
-CurvePosterior::CurvePosterior(const CurveData& data, const CurvePrior& prior) {
-  const Eigen::MatrixXd root = correlation_root(data.knots(), prior.length_mm, prior.roughness);
+CurvePosterior::CurvePosterior(const CurveData& data, double length_mm, double roughness) {
+  const Knots& knots = data.knots();
+  const Eigen::MatrixXd root = correlation_root(knots, length_mm, roughness);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(root.transpose() * data.information() *
                                                              root);
   information_ = eigen.eigenvalues().cwiseMax(0.0);
   axes_ = root * eigen.eigenvectors();
   products_ = axes_.transpose() * data.products();
+  kinks_ = data.kinks();
+  const Eigen::MatrixXd informed = data.information() * kinks_;
+  kinks_on_axes_ = axes_.transpose() * informed;
+  kink_information_ = kinks_.cwiseProduct(informed).colwise().sum();
+  kink_products_ = kinks_.transpose() * data.products();
 }
 
 Eigen::VectorXd CurvePosterior::variances(double amplitude) const {
@@ -122,41 +158,113 @@ Eigen::VectorXd CurvePosterior::variances(double amplitude) const {
   return variance / (1.0 + variance * information_.array());
 }
 
-Eigen::MatrixXd CurvePosterior::determined(double amplitude) const {
+Eigen::VectorXd CurvePosterior::log_evidence_of_kinks(double amplitude_mm, double kink_mm) const {
+  const Eigen::VectorXd own = variances(amplitude_mm);
+  const Eigen::ArrayXd information =
+      (kink_information_ - kinks_on_axes_.cwiseAbs2().transpose() * own).array().max(0.0);
+  const Eigen::ArrayXd products =
+      kink_products_ - kinks_on_axes_.transpose() * own.cwiseProduct(products_);
+  const double variance = kink_mm * kink_mm;
+  const Eigen::ArrayXd wider = 1.0 + variance * information;
+  return 0.5 * (variance * products.square() / wider - wider.log());
+}
+
+CurvePosterior::Kink CurvePosterior::kink_of(const CurvePrior& prior) const {
+  const Eigen::Index k = prior.kink->knot - 1;
+  const Eigen::VectorXd own = variances(prior.amplitude_mm);
+  const Eigen::VectorXd shared = own.cwiseProduct(kinks_on_axes_.col(k));
+  const double information =
+      std::max(kink_information_[k] - kinks_on_axes_.col(k).dot(shared), 0.0);
+  const double product = kink_products_[k] - shared.dot(products_);
+  const double before = prior.kink->height_mm * prior.kink->height_mm;
+  const double variance = before / (1.0 + before * information);
+  return {variance * product, variance, before * information, kinks_.col(k) - axes_ * shared};
+}
+
+Eigen::VectorXd CurvePosterior::mean(const CurvePrior& prior) const {
+  Eigen::VectorXd out = axes_ * variances(prior.amplitude_mm).cwiseProduct(products_);
+  if (!prior.kink) return out;
+  const Kink kink = kink_of(prior);
+  return out + kink.height * kink.moves;
+}
+
+Eigen::MatrixXd CurvePosterior::covariance(const CurvePrior& prior) const {
+  Eigen::MatrixXd out = axes_ * variances(prior.amplitude_mm).asDiagonal() * axes_.transpose();
+  if (!prior.kink) return out;
+  const Kink kink = kink_of(prior);
+  return out + kink.variance * kink.moves * kink.moves.transpose();
+}
+
+Eigen::MatrixXd CurvePosterior::determined(const CurvePrior& prior) const {
   std::vector<Eigen::Index> which;
   for (Eigen::Index i = 0; i < information_.size(); ++i)
-    if (amplitude * amplitude * information_[i] > 1.0) which.push_back(i);
-  return axes_(Eigen::all, which);
+    if (prior.amplitude_mm * prior.amplitude_mm * information_[i] > 1.0) which.push_back(i);
+  const bool has_kink = prior.kink && kink_of(prior).determined > 1.0;
+  Eigen::MatrixXd out(axes_.rows(), std::ssize(which) + (has_kink ? 1 : 0));
+  out.leftCols(std::ssize(which)) = axes_(Eigen::all, which);
+  if (has_kink) out.rightCols(1) = kinks_.col(prior.kink->knot - 1);
+  return out;
 }
 
 void CurvePosterior::add_moments(std::span<const Hypothesis> hypotheses,
                                  std::span<const double> weights, const Eigen::VectorXd& centre,
                                  Eigen::MatrixXd& out) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(information_.size());
-  Eigen::MatrixXd apart(axes_.rows(), std::ssize(hypotheses));
+  Eigen::MatrixXd apart(axes_.rows(), 2 * std::ssize(hypotheses));
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
-    const double amplitude = hypotheses[h].prior.amplitude_mm;
-    sum += weights[h] * variances(amplitude);
-    apart.col(static_cast<Eigen::Index>(h)) = std::sqrt(weights[h]) * (mean(amplitude) - centre);
+    const CurvePrior& prior = hypotheses[h].prior;
+    const Eigen::VectorXd own = variances(prior.amplitude_mm);
+    sum += weights[h] * own;
+    auto pair = apart.middleCols(2 * static_cast<Eigen::Index>(h), 2);
+    pair.col(0) = axes_ * own.cwiseProduct(products_) - centre;
+    pair.col(1).setZero();
+    if (prior.kink) {
+      const Kink kink = kink_of(prior);
+      pair.col(0) += kink.height * kink.moves;
+      pair.col(1) = std::sqrt(kink.variance) * kink.moves;
+    }
+    pair *= std::sqrt(weights[h]);
   }
   out += axes_ * sum.asDiagonal() * axes_.transpose() + apart * apart.transpose();
 }
 
+namespace {
+
+/// By likelihood; but curves without a kink keep half of all at least: that one kink explains more
+/// does not make it the only form that is there.
+std::vector<double> weights_of(const std::vector<Hypothesis>& hypotheses) {
+  constexpr double kLeastSmooth = 0.5;
+  struct Kind {
+    double best = -INFINITY, sum = 0.0;
+    [[nodiscard]] double log_sum() const { return best + std::log(sum); }
+  } smooth, kinked;
+  const auto kind_of = [&](const Hypothesis& each) -> Kind& {
+    return each.prior.kink ? kinked : smooth;
+  };
+  for (const Hypothesis& each : hypotheses)
+    kind_of(each).best = std::max(kind_of(each).best, each.log_likelihood);
+  std::vector<double> out;
+  for (const Hypothesis& each : hypotheses)
+    kind_of(each).sum += out.emplace_back(std::exp(each.log_likelihood - kind_of(each).best));
+  const double odds = kinked.sum > 0.0 ? std::exp(kinked.log_sum() - smooth.log_sum()) : 0.0;
+  const double share = std::max(1.0 / (1.0 + odds), kLeastSmooth);
+  for (std::size_t i = 0; i < out.size(); ++i)
+    out[i] *= (hypotheses[i].prior.kink ? 1.0 - share : share) / kind_of(hypotheses[i]).sum;
+  return out;
+}
+
+}  // namespace
+
 Eigen::MatrixXd second_moments(const CurveData& data, const std::vector<Hypothesis>& hypotheses,
                                const Eigen::VectorXd& centre) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(centre.size(), centre.size());
-  const Hypothesis* const best = likeliest(hypotheses);
-  std::vector<double> weights;
-  double sum = 0.0;
-  for (const Hypothesis& each : hypotheses)
-    sum += weights.emplace_back(std::exp(each.log_likelihood - best->log_likelihood));
-  for (double& weight : weights) weight /= sum;
+  const std::vector<double> weights = weights_of(hypotheses);
   const std::span<const Hypothesis> all = hypotheses;
   for (std::size_t first = 0, next = 0; first < all.size(); first = next) {
     while (next < all.size() && all[next].prior.length_mm == all[first].prior.length_mm &&
            all[next].prior.roughness == all[first].prior.roughness)
       ++next;
-    CurvePosterior(data, all[first].prior)
+    CurvePosterior(data, all[first].prior.length_mm, all[first].prior.roughness)
         .add_moments(all.subspan(first, next - first),
                      std::span(weights).subspan(first, next - first), centre, out);
   }

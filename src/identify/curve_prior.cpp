@@ -30,32 +30,45 @@ CurvePrior first_curve_prior(const Model& model, const Knots& knots) {
 }
 
 Eigen::MatrixXd curve_prior_rows(const Knots& knots, const CurvePrior& prior) {
-  const Eigen::MatrixXd root =
+  Eigen::MatrixXd root =
       prior.amplitude_mm * correlation_root(knots, prior.length_mm, prior.roughness);
+  if (prior.kink) {
+    const Eigen::VectorXd kink = prior.kink->height_mm * kink_form(knots, prior.kink->knot);
+    const Eigen::MatrixXd covariance = root * root.transpose() + kink * kink.transpose();
+    root = covariance.llt().matrixL();
+  }
   return root.triangularView<Eigen::Lower>().solve(
       Eigen::MatrixXd::Identity(root.rows(), root.cols()));
 }
 
+namespace {
+
+double height_of_kink(const Model& model, const CurveData& data) {
+  return first_curve_prior(model, data.knots()).amplitude_mm;
+}
+
+}  // namespace
+
 CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,
                              const std::vector<Noise>& noise, const Estimate& estimate) {
   const CurveData data(*curve_term(model), linear, noise, estimate);
-  const std::vector<Hypothesis> likely = likely_priors(data);
+  const std::vector<Hypothesis> likely = likely_priors(data, height_of_kink(model, data));
   const Hypothesis* const best = likeliest(likely);
   const CurvePrior prior = best ? best->prior : *estimate.curve;
-  return {prior, CurvePosterior(data, prior).determined(prior.amplitude_mm)};
+  return {prior, CurvePosterior(data, prior.length_mm, prior.roughness).determined(prior)};
 }
 
 Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisation& linear,
                                           const std::vector<Noise>& noise,
                                           const Estimate& estimate) {
   const CurveData data(*curve_term(model), linear, noise, estimate);
-  const CurvePosterior own(data, *estimate.curve);
-  const double amplitude = estimate.curve->amplitude_mm;
-  const std::vector<Hypothesis> likely = likely_priors(data);
+  const CurvePrior& prior = *estimate.curve;
+  const CurvePosterior own(data, prior.length_mm, prior.roughness);
+  const std::vector<Hypothesis> likely = likely_priors(data, height_of_kink(model, data));
   const Eigen::Index count = data.knots().positions_mm.size();
   Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(count, count);
   if (!likely.empty())
-    moments = second_moments(data, likely, own.mean(amplitude)) - own.covariance(amplitude);
+    moments = second_moments(data, likely, own.mean(prior)) - own.covariance(prior);
   return data.carried() * moments * data.carried().transpose();
 }
 
@@ -119,7 +132,7 @@ void allow_for_other_form(const Problem& problem, FittedModel& fitted) {
   for (Eigen::MatrixXd& columns : linear.columns)  // the polynomial has offset and slope
     columns.middleCols(curve.first_amplitude, knots.first).setZero();
   const CurveData data(curve, linear, fit.noise, estimate);
-  const std::vector<Hypothesis> likely = likely_priors(data);
+  const std::vector<Hypothesis> likely = likely_priors(data, 0.0);
   const Hypothesis* const best = likeliest(likely);
   if (!best || best->log_likelihood < -std::log(model.gates.lack_of_fit_p)) return;
   fit.other_form = best->log_likelihood;

@@ -60,6 +60,7 @@ InputSummary summarise_input(const Profile& profile) {
     out.pv_urad = spread * 1e6;
   }
   out.notes = profile.notes;
+  out.notes.insert(out.notes.end(), profile.doubts.begin(), profile.doubts.end());
   return out;
 }
 
@@ -96,7 +97,11 @@ Result summarise_inputs(const Problem& problem, const std::vector<Profile>& prof
   result.title = problem.title;
   result.about = problem.about;
   result.version = SLIDEWAY_VERSION;
-  for (const Profile& profile : profiles) result.inputs.push_back(summarise_input(profile));
+  for (const Profile& profile : profiles) {
+    result.inputs.push_back(summarise_input(profile));
+    for (const std::string& doubt : profile.doubts)
+      result.notes.push_back(profile.name + ": " + doubt);
+  }
   result.assumed = assumptions(problem, profiles);
   result.closure = summarise_closure(profiles);
   return result;

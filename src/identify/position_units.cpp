@@ -36,7 +36,7 @@ void note_other_position_units(std::vector<Profile>& profiles) {
       if (differs && other == profiles.end()) other = sister;
     }
     if (unlike < alike || (unlike == alike && other > profile)) continue;
-    profile->notes.push_back(
+    profile->doubts.push_back(
         "positions of " + profile->name + " may be in another unit: its trace is " +
         significant(ratio_of_units(*profile, *other), 3) + " times " +
         (length_of_trace(*profile) < length_of_trace(*other) ? "shorter" : "longer") +

@@ -35,8 +35,8 @@ void note(Profile& profile, const Usual& usual, const std::optional<double>& val
   if (!value || *value == 0.0) return;
   const double size = std::abs(*value);
   if (size >= usual.least && size <= usual.most) return;
-  profile.notes.push_back(std::string(usual.key) + " = " + shortest(*value) + ", but " + usual.why +
-                          ": is it right?");
+  profile.doubts.push_back(std::string(usual.key) + " = " + shortest(*value) + ", but " +
+                           usual.why + ": is it right?");
 }
 
 void note_cut(Profile& profile) {
@@ -46,18 +46,18 @@ void note_cut(Profile& profile) {
   if (setup.feed_mm_per_min) {
     const double hours = travel / *setup.feed_mm_per_min / kMinutesPerHour;
     if (hours > kLongestCut)
-      profile.notes.push_back("feed_mm_per_min = " + shortest(*setup.feed_mm_per_min) +
-                              " makes a cut of " + significant(hours, 2) + " h: is it in mm/min?");
+      profile.doubts.push_back("feed_mm_per_min = " + shortest(*setup.feed_mm_per_min) +
+                               " makes a cut of " + significant(hours, 2) + " h: is it in mm/min?");
   }
   if (setup.kind != Kind::face || !setup.cut_radius_mm) return;
   const double radius = *setup.cut_radius_mm;
   if (radius > kLargestRadius)
-    profile.notes.push_back("the cut has a radius of " + significant(radius / 1e3, 3) +
-                            " m, more than any lathe turns: are center_mm and the units right?");
+    profile.doubts.push_back("the cut has a radius of " + significant(radius / 1e3, 3) +
+                             " m, more than any lathe turns: are center_mm and the units right?");
   const double speed = 2e-3 * kPi * radius * setup.spindle_rpm.value_or(0.0);
   if (speed > kFastestSurface)
-    profile.notes.push_back("the rim runs at " + significant(speed, 3) +
-                            " m/min, faster than anything is turned: is spindle_rpm right?");
+    profile.doubts.push_back("the rim runs at " + significant(speed, 3) +
+                             " m/min, faster than anything is turned: is spindle_rpm right?");
 }
 
 void note_centre(Profile& profile) {
@@ -68,9 +68,9 @@ void note_centre(Profile& profile) {
       std::max(setup.first_mm - setup.center_mm, setup.center_mm - setup.last_mm);
   const double length = setup.last_mm - setup.first_mm;
   if (outside > length)
-    profile.notes.push_back("the spindle axis lies " + significant(outside, 3) +
-                            " mm outside a trace of " + significant(length, 3) +
-                            " mm: a ring, or is center_mm wrong?");
+    profile.doubts.push_back("the spindle axis lies " + significant(outside, 3) +
+                             " mm outside a trace of " + significant(length, 3) +
+                             " mm: a ring, or is center_mm wrong?");
 }
 
 }  // namespace
@@ -80,8 +80,8 @@ void note_implausible(Profile& profile) {
   const Statistics values = statistics_of(profile.values);
   const double range = values.largest - values.least;
   if (setup.quantity == Quantity::height && range > kLargestRange)
-    profile.notes.push_back("heights range over " + significant(range, 3) +
-                            " mm, more than 1 mm: is value_unit right?");
+    profile.doubts.push_back("heights range over " + significant(range, 3) +
+                             " mm, more than 1 mm: is value_unit right?");
   note(profile, kFeed, setup.feed_mm_per_min);
   note(profile, kSpeed, setup.spindle_rpm);
   note(profile, kNose, setup.nose_radius_mm);

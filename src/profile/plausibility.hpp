@@ -4,7 +4,7 @@
 
 namespace slideway {
 
-// Notes sizes that no workshop has: a unit or a digit is more likely wrong. REQUIRES a read
+// Doubts sizes that no workshop has: a unit or a digit is more likely wrong. REQUIRES a read
 // profile.
 void note_implausible(Profile& profile);
 

@@ -24,13 +24,16 @@ std::string minutes(const std::optional<double>& time) { return time ? to_digits
 
 std::string table(const Plan& plan) {
   constexpr auto kText = TextColumn::name, kNumber = TextColumn::number;
-  TextTable out({"", "cut", "what", "score", "D", "A", "min"},
-                {kNumber, kText, kText, kNumber, kNumber, kNumber, kNumber});
+  const bool has_cost = std::ranges::any_of(
+      plan.alone, [](const PlannedDesign& design) { return design.cost.has_value(); });
+  TextTable out({"", "cut", "what", "score", "D", "A", "min", has_cost ? "cost" : ""},
+                {kNumber, kText, kText, kNumber, kNumber, kNumber, kNumber, kNumber});
   for (std::size_t i = 0; i < plan.alone.size(); ++i) {
     const PlannedDesign& design = plan.alone[i];
     out.add({std::to_string(i + 1), design.cuts.front(), what_of(plan, design.cuts.front()),
              fixed_point(design.score, 2), fixed_point(design.d_gain, 2),
-             to_digits(design.a_share, 2), minutes(design.time_min)});
+             to_digits(design.a_share, 2), minutes(design.time_min),
+             design.cost ? to_digits(*design.cost, 4) : ""});
   }
   return out.text();
 }

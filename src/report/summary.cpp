@@ -140,10 +140,14 @@ std::string say_finding(const Analysis& analysis, Summary& out) {
     return clause;
   };
   const TraceResult& trace = *analysis.trace;
+  const bool has_two =
+      std::ranges::count(analysis.result.inputs, Role::fit, &InputSummary::role) == 2;
   if (!trace.blunders.empty())
     return say(Alarm::bad, "Blunder",
-               "profile " + trace.blunders.front().profile + " disagrees with the others: " +
-                   std::string(text_of(trace.blunders.front().what)));
+               "profile " + trace.blunders.front().profile + " disagrees with " +
+                   (has_two ? "the other" : "the others") + ": " +
+                   std::string(text_of(trace.blunders.front().what)) +
+                   (has_two ? ", unless the other is wrong" : ""));
   if (trace.unfinished)
     return say(
         Alarm::bad, "Not finished",
@@ -278,7 +282,7 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   if (out.alarm != Alarm::bad && !lead.empty() && has_room) clauses.push_back(lead);
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::consistent)
-    clauses.emplace_back("the run-out agrees");
+    clauses.emplace_back("the run-out agrees in amount");
   if (!harms) clauses.push_back(finding);
   out.verdict = joined(clauses, "; ");
   out.verdict_names_missing = analysis.trace && was_extended(analysis) &&
@@ -369,14 +373,16 @@ Summary summary_of(const Analysis& analysis) {
     held.push_back(each.what + " " +
                    (each.verdict == ConformityVerdict::does_not_conform
                         ? "DOES NOT CONFORM"
-                        : verdict_text(each.verdict)));
+                        : verdict_text(each.verdict)) +
+                   (each.limit_um_per_m ? if_no_other_cause(analysis) : ""));
   out.conformity = joined(held, "; ");
   say_verdict(analysis, out);
   out.straightness = straightness_of(analysis.result);
   out.squareness = squareness_of(analysis.result);
   const bool has_curve = out.straightness.starts_with("E_ZX ") && out.straightness.ends_with("µm");
-  out.result =
-      out.straightness + (has_curve ? " (end points)" : "") + "; squareness " + out.squareness;
+  out.result = out.straightness + (has_curve ? " (end points)" : "") + "; squareness " +
+               out.squareness + if_no_other_cause(analysis);
+  if (!analysis.result.final) out.result = "none: nothing was fitted";
   if (analysis.result.final && !analysis.result.final->converged)
     out.result = "not determined: the fit did not converge";
   out.unseen = moved_unseen(analysis);

@@ -44,6 +44,9 @@ std::string cut_to_make(const NextCut& cut);
 /// The most that an effect which is just not seen moves the squareness; "": none is known.
 std::string moved_unseen(const Analysis& analysis);
 
+/// ", if no steady drift": what the squareness holds unseen, for it has the same columns; "": none.
+std::string if_no_other_cause(const Analysis& analysis);
+
 /// Effects that the straightness of a face holds unseen, for they have its columns; "": none has.
 std::string same_as_straightness(const Analysis& analysis);
 

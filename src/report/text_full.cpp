@@ -240,15 +240,16 @@ std::string squareness_check(const SquarenessCheck& check) {
   };
   std::string out =
       "Squareness by the fit: " + angle(check.fit_rad, check.fit_U_rad) +
-      "; by the run-out, Eq. (21): " + angle(check.indirect_rad, check.indirect_U_rad) + ". ";
+      "; by the run-out, Eq. (21): " + angle(check.indirect_rad, check.indirect_U_rad) + "; ";
   if (check.En) out += "E_n = " + en_text(*check.En) + ": ";
   if (check.verdict == Consistency::consistent)
-    out += "consistent (E_n is not above 1). ";
+    out += "consistent (E_n is not above 1); ";
   else if (check.verdict == Consistency::inconsistent)
-    out += "INCONSISTENT (E_n is above 1). ";
+    out += "INCONSISTENT (E_n is above 1); ";
   else
-    out += "No cross-check. ";
-  if (!check.reason.empty()) out += check.reason + ". ";
+    out += "no cross-check: ";
+  if (!check.reason.empty()) out += check.reason;
+  out += ". ";
   const auto amplitude = [](const std::optional<double>& um) {
     return um ? number(*um, 4) + " µm" : std::string("unknown");
   };
@@ -303,10 +304,14 @@ std::string data_text(const Result& result) {
          low_band(result) + assumed_in_full(result) + closure(result);
 }
 
+std::string ranking_text(const Result& result) {
+  return ranking(result.ranking) + dominant(result.dominant);
+}
+
 std::string full_text(const Analysis& analysis) {
   const Result& result = analysis.result;
   std::string out = assumed_in_full(result) + inputs(result) + closure(result) + low_band(result) +
-                    ranking(result.ranking) + dominant(result.dominant);
+                    ranking_text(result);
   if (result.final)
     out += fit(*result.final) + noise(*result.final) + identifiability(*result.final) +
            residuals(*result.final);

@@ -38,6 +38,9 @@ std::string in_words(const Combination& terms, const ModelResult& model);
 /// @param most  rows at most; of more parameters the last line says how many are not shown
 std::string parameter_table(const Result& result, std::size_t most);
 
+/// The ranking by correlation, and which effect dominates; "" where there is none.
+std::string ranking_text(const Result& result);
+
 /// What `--full` prints after the short report.
 std::string full_text(const Analysis& analysis);
 

@@ -222,11 +222,11 @@ std::vector<std::string> all_notes(const Analysis& analysis) {
   const auto add = [&](const std::vector<std::string>& notes) {
     for (const std::string& each : notes) out.push_back(with_titles(each));
   };
+  add(analysis.result.notes);
   if (analysis.trace)
     for (const LeftEffect& each : analysis.trace->left)
       out.push_back(effect_title(each.effect) +
                     " was accepted and left again: " + with_titles(each.reason));
-  add(analysis.result.notes);
   if (analysis.trace) add(analysis.trace->notes);
   if (analysis.result.final) add(analysis.result.final->notes);
   return out;
@@ -272,6 +272,8 @@ std::string short_text(const Analysis& analysis, const Summary& summary, std::st
     std::string table = parameter_table(result, rows);
     while (rows > 1 && lines_of(table).size() > room + 1) table = parameter_table(result, --rows);
     text += table;
+  } else {
+    text += ranking_text(result);
   }
   text += more;
   const std::size_t used = lines_of(text).size();
@@ -295,7 +297,11 @@ std::string parameter_table(const Result& result, std::size_t most) {
   std::vector<std::string> headings{"parameter", "value ± U", "unit", has_k ? "k" : "",
                                     has_declared ? "declared model" : ""};
   TextTable table(std::move(headings), std::vector<TextColumn>(5, TextColumn::text));
-  for (std::vector<std::string>& row : rows) table.add(std::move(row));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (has_k && rows[i][3].empty() && is_known(all[i]) && all[i].coverage_factor)
+      rows[i][3] = "2.00";
+    table.add(std::move(rows[i]));
+  }
   if (rows.size() == all.size()) return table.text();
   return table.text() + item(counted(all.size() - rows.size(), "more parameter") + ": --full");
 }

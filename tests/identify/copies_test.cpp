@@ -45,7 +45,7 @@ void expect_copy(std::vector<Profile> profiles) {
   EXPECT_EQ(profiles[0].role, Role::fit);
   EXPECT_EQ(profiles[1].role, Role::holdout);
   EXPECT_THAT(profiles[0].notes, Contains(HasSubstr("'b'")));
-  EXPECT_THAT(profiles[1].notes, Contains(HasSubstr("'a'")));
+  EXPECT_THAT(profiles[1].doubts, Contains(HasSubstr("'a'")));
 }
 
 TEST(Copies, AreHeldOutHoweverTheyAreLevelledAndRounded) {
@@ -68,7 +68,7 @@ TEST(Copies, SecondReadingsAreNone) {
                                   rounded_to(second_reading("b", noise, 3), digit)};
     hold_out_copies(profiles);
     EXPECT_EQ(profiles[1].role, Role::fit) << noise << " " << digit;
-    EXPECT_THAT(profiles[1].notes, IsEmpty());
+    EXPECT_THAT(profiles[1].doubts, IsEmpty());
   }
 }
 

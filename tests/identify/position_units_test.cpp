@@ -19,7 +19,7 @@ Profile cut_of(const std::string& name, double length_mm) {
 Notes notes_of(std::vector<Profile> profiles) {
   note_other_position_units(profiles);
   Notes out;
-  for (const Profile& profile : profiles) out.push_back(profile.notes);
+  for (const Profile& profile : profiles) out.push_back(profile.doubts);
   return out;
 }
 

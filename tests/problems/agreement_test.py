@@ -172,8 +172,8 @@ class Agreement(unittest.TestCase):
         if not curve["tip_um"]:  # the slide itself was read: the report's own error, in mm
             heights = [1e3 * height for _, height in points]
             error = final["straightness"]["end_point_um"]
-            # A table of stations may miss the ends of a curve's bows.
-            self.assertAlmostEqual(max(heights) - min(heights), error, delta=0.02 * error)
+            # A table of stations may miss the ends of a curve's bows, and a kink between two.
+            self.assertAlmostEqual(max(heights) - min(heights), error, delta=0.03 * error)
 
     def test_every_problem(self):
         problems = sorted(SOURCE.glob("problems/*/*.toml"))

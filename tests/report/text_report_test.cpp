@@ -392,7 +392,7 @@ TEST(TextReport, ShoutsAnInconsistentCrossCheckWithItsReason) {
   result.crosscheck.squareness->reason = "the fit asks for more than the run-out allows";
   const std::string text = on_one_line(full(result));
   EXPECT_THAT(text, HasSubstr("E_n = 70: INCONSISTENT"));
-  EXPECT_THAT(text, HasSubstr("(E_n is above 1). the fit asks for more than the run-out allows."));
+  EXPECT_THAT(text, HasSubstr("(E_n is above 1); the fit asks for more than the run-out allows."));
   EXPECT_THAT(text, Not(HasSubstr("Over the travel")));  // the library's reason has it
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "slideway/effects/effect.hpp"
@@ -15,13 +16,22 @@ struct Model;
 struct ModelTerm;
 class Noise;
 
+/// A place where the slope may jump, as where a way was cut short: a triangle over the travel.
+struct CurveKink {
+  Eigen::Index knot = 0;   // where it is
+  double height_mm = 0.0;  // standard deviation of its height there
+
+  bool operator==(const CurveKink&) const = default;
+};
+
 /// Covariance of the curve at two places a distance d apart, Matérn's: a² M_ν(d / ℓ) with
 ///   M_3/2(u) = (1 + √3 u) exp(-√3 u),  M_5/2(u) = (1 + √5 u + 5/3 u²) exp(-√5 u).
 /// At ν = 3/2 the curve has a slope everywhere, and the slope has kinks.
 struct CurvePrior {
-  double amplitude_mm = 0.0;  // a, the standard deviation about b_0 + b_1 x
-  double length_mm = 0.0;     // ℓ
-  double roughness = 1.5;     // ν
+  double amplitude_mm = 0.0;                     // a, the standard deviation about b_0 + b_1 x
+  double length_mm = 0.0;                        // ℓ
+  double roughness = 1.5;                        // ν
+  std::optional<CurveKink> kink = std::nullopt;  // beside that, with a variance of its own
 
   bool operator==(const CurvePrior&) const = default;
 };
@@ -42,8 +52,9 @@ struct CurveEstimate {
 };
 
 /// The restricted likelihood is evaluated on a grid: ν of 3/2 and 5/2, lengths from two
-/// distances of knots to twice the travel, and every amplitude between nothing and a curve that is
-/// free. REQUIRES a curve_term().
+/// distances of knots to twice the travel, every amplitude between nothing and a curve that is
+/// free; no kink, or as likely one at any knot, about as high as the readings. REQUIRES a
+/// curve_term().
 /// @param linear  at the estimate
 /// @param noise   per fitted observation
 CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,

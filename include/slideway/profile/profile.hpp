@@ -62,7 +62,8 @@ struct Profile {
   std::optional<double> standard_uncertainty;  // of one sample, mm or rad
   std::optional<LowBandOptions> low_band;      // its own; none: that of the problem
   Loss loss = Loss::none;
-  std::vector<std::string> notes;  // what was done to the data on the way in
+  std::vector<std::string> notes;   // what was done to the data on the way in
+  std::vector<std::string> doubts;  // what is more likely a slip in the problem than so
 
   [[nodiscard]] Stations stations(const Machine& machine) const {
     return {positions, setup, machine};

@@ -93,7 +93,7 @@ class VerticalStraightness : public LinearEffect {
       return other->description().motion == MotionError::squareness;
     });
     if (square && std::ranges::count(part.own, "c1") > 0)
-      return "no face can tell c_1 from the squareness: both tilt the Z carriage by a constant; "
+      return "no face can tell c_1 from the squareness: both make a cone; "
              "read the straightness of the Z carriage along Z, or measure the squareness itself "
              "(run-out, Eq. 21)";
     if (square)
