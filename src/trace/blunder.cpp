@@ -334,7 +334,7 @@ class Finder {
                                 gates.rank_tolerance);
     Observation observation = recorded(i, list);
     const Prediction as_it_is = prediction(observation, others, noise);
-    if (as_it_is.directions() == 0) return;
+    if (as_it_is.directions() == 0 || is_a_surface_alone(profile)) return;
     const auto [before, size_before] = as_it_is.best(1.0, kAnyFactor);
     const double square = as_it_is.disagreement(1.0);
     const double own = in_long_run_[i] / in_long_run_[of_sister.value_or(i)];
@@ -352,6 +352,16 @@ class Finder {
       tell({profile.name, each.kind, after - before, meant.disagreement(each.factor) / square},
            each);
     }
+  }
+
+  /// Whether a reading along the slide is the only one of its declared surface: no other needs to
+  /// agree with it.
+  [[nodiscard]] bool is_a_surface_alone(const Profile& profile) const {
+    return profile.setup.kind == Kind::slide && profile.surface &&
+           std::ranges::none_of(fit_.linear.observations, [&](const Observation* each) {
+             const Profile& other = *each->profile;
+             return &other != &profile && (!other.surface || other.surface == profile.surface);
+           });
   }
 
   static constexpr double kAnyFactor = 1e3;  // between noises of unlike profiles

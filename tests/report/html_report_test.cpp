@@ -98,7 +98,8 @@ TEST(HtmlReport, HasTheDeclaredModelsNumbersWhereTheyDiffer) {
 TEST(HtmlReport, SaysInTheFirstSentenceWhatDominatesAndWhetherTheRunOutAgrees) {
   EXPECT_THAT(
       html_report(sample_analysis()),
-      HasSubstr("Squareness, 2.800 ± 0.020 µm/m, dominates; the run-out agrees in amount; the model "));
+      HasSubstr(
+          "Squareness, 2.800 ± 0.020 µm/m, dominates; the run-out agrees in amount; the model "));
 }
 
 TEST(HtmlReport, PutsWhatHarmsMostFirst) {

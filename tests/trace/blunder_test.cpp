@@ -107,6 +107,26 @@ TEST(Blunder, AShortTraceIsInNoOtherUnit) {
   }
 }
 
+// A convex and a concave straightedge: forms of their own, not one in two signs.
+TEST(Blunder, NoneIsSeenInReadingsOfDifferentSurfaces) {
+  const std::vector<double> x = cases::spaced(0.0, 400.0, 200);
+  std::vector<Profile> readings;
+  for (const auto& [name, bow] : {std::pair{"convex", 5e-4}, std::pair{"concave", -5e-4}}) {
+    std::mt19937_64 engine(readings.size());
+    std::normal_distribution<double> noise(0.0, kTraceNoise);
+    std::vector<double> z;
+    for (const double each : x) z.push_back(bow * std::pow(each / 200.0 - 1.0, 2) + noise(engine));
+    readings.push_back(cases::profile(name, Kind::slide, x, z));
+  }
+  const auto of_slide = [&] {
+    return find_blunders(fit_declared(
+        cases::problem(Lever::paper, 0, {cases::effect("straightness", 4)}), readings));
+  };
+  EXPECT_FALSE(of_slide().empty());  // of one slide one of them is the wrong way round
+  for (Profile& reading : readings) reading.surface = reading.name;
+  EXPECT_TRUE(of_slide().empty());
+}
+
 TEST(Blunder, OfTwoCutsEitherMayHaveTheWrongSign) {
   const auto blunders = found({cut("a", 1), cut("b", 2, -1.0)});
   ASSERT_EQ(blunders.size(), 2U);
