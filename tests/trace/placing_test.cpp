@@ -121,16 +121,16 @@ TEST(Placing, ACupOfOneTraceOfASurfaceIsALobe) {
 
 // A step of 0.2 µm at r = 4 mm of one of two discs.
 TEST(Placing, AStepOfASurfaceIsInAllItsTraces) {
-  constexpr double kJump = 0.2e-3, kJumpAt = 4.0;
-  const std::vector<Profile> profiles =
-      two_discs([](double x, double /*azimuth*/) { return std::abs(x) < kJumpAt ? kJump : 0.0; });
+  constexpr double kDiscStep = 0.2e-3, kDiscRadius = 4.0;
+  const std::vector<Profile> profiles = two_discs(
+      [](double x, double /*azimuth*/) { return std::abs(x) < kDiscRadius ? kDiscStep : 0.0; });
   const Closed result = closed(problem_of(), profiles);
   SCOPED_TRACE(story(result));
   ASSERT_THAT(named(result), ElementsAre("step"));
   const std::vector<std::string> traces = traces_of(profiles, "first");
   EXPECT_EQ(result.rounds[0].profiles, traces);
   expect_within_4u(result.rounds[0].parameters, "step[" + joined(traces, ",") + "].height_um",
-                   kJump / kMicrometre);
+                   kDiscStep / kMicrometre);
 }
 
 TEST(Placing, LobesNeedSeveralAzimuths) {
