@@ -221,7 +221,7 @@ double share_of_noise(const Model& model, const Solution& fit, const ModelTerm& 
 void explain_noise_of_causes(const Model& model, const Solution& fit, ModelResult& out) {
   constexpr double kMatters = 0.1;  // of U
   for (const ModelTerm& term : model.terms) {
-    if (!term.effect->noise_of_cause(0)) continue;
+    if (!term.effect->description().measured) continue;
     const std::string name = term.name + "." + term.effect->parameters().front().name;
     const FittedParameter* size = out.find(name);
     if (!size || !size->value || !size->expanded_uncertainty) continue;

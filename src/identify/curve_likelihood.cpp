@@ -93,16 +93,19 @@ CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
   target -= basis * (basis.transpose() * target).eval();
   information_ = curve.transpose() * curve;
   products_ = curve.transpose() * target;
-  kinks_.resize(own, std::max<Eigen::Index>(own - 2, 0));
-  for (Eigen::Index k = 0; k < kinks_.cols(); ++k) kinks_.col(k) = kink_form(knots_, k + 1);
+  kinks_ = kink_forms(knots_);
 }
 
-Eigen::VectorXd kink_form(const Knots& knots, Eigen::Index knot) {
+Eigen::MatrixXd kink_forms(const Knots& knots) {
   const Eigen::ArrayXd x = knots.positions_mm.array();
-  const double at = x[knot], first = x[0], last = x[x.size() - 1];
-  const Eigen::VectorXd heights = ((x - first) / (at - first)).min((last - x) / (last - at));
-  Eigen::MatrixXd spline = Eigen::MatrixXd::Identity(x.size(), x.size());
-  for (Eigen::Index i = 1; i + 1 < x.size(); ++i)  // of even knots
+  const Eigen::Index count = x.size();
+  const double first = x[0], last = x[count - 1];
+  Eigen::MatrixXd heights(count, std::max<Eigen::Index>(count - 2, 0));
+  for (Eigen::Index k = 0; k < heights.cols(); ++k)
+    heights.col(k) =
+        ((x - first) / (x[k + 1] - first)).min((last - x) / (last - x[k + 1])).matrix();
+  Eigen::MatrixXd spline = Eigen::MatrixXd::Identity(count, count);
+  for (Eigen::Index i = 1; i + 1 < count; ++i)  // of even knots
     spline.row(i).segment(i - 1, 3) << 1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0;
   return spline.lu().solve(heights);
 }

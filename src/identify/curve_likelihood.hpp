@@ -11,9 +11,9 @@ namespace slideway {
 /// Lower triangular root of the correlation of the knots.
 Eigen::MatrixXd correlation_root(const Knots& knots, double length_mm, double roughness);
 
-/// A kink of height 1, 0 at both ends of the travel: the coefficients of the spline through it at
-/// the knots.
-Eigen::VectorXd kink_form(const Knots& knots, Eigen::Index knot);
+/// A kink of height 1 at each knot but the ends, 0 at both ends of the travel: the coefficients of
+/// the spline through it at the knots, side by side.
+Eigen::MatrixXd kink_forms(const Knots& knots);
 
 /// The data's information A on the knots of a curve and its product b with the values, when the
 /// curve is 0 and everything else is free.
@@ -26,7 +26,7 @@ class CurveData {
   [[nodiscard]] const Knots& knots() const { return knots_; }
   [[nodiscard]] const Eigen::MatrixXd& information() const { return information_; }
   [[nodiscard]] const Eigen::VectorXd& products() const { return products_; }
-  /// kink_form() of each knot but the ends, side by side.
+  /// kink_forms().
   [[nodiscard]] const Eigen::MatrixXd& kinks() const { return kinks_; }
   /// (A + S) by #knots: how everything moves with the knots.
   [[nodiscard]] const Eigen::MatrixXd& carried() const { return carried_; }

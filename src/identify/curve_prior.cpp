@@ -33,7 +33,8 @@ Eigen::MatrixXd curve_prior_rows(const Knots& knots, const CurvePrior& prior) {
   Eigen::MatrixXd root =
       prior.amplitude_mm * correlation_root(knots, prior.length_mm, prior.roughness);
   if (prior.kink) {
-    const Eigen::VectorXd kink = prior.kink->height_mm * kink_form(knots, prior.kink->knot);
+    const Eigen::VectorXd kink =
+        prior.kink->height_mm * kink_forms(knots).col(prior.kink->knot - 1);
     const Eigen::MatrixXd covariance = root * root.transpose() + kink * kink.transpose();
     root = covariance.llt().matrixL();
   }

@@ -330,11 +330,12 @@ class Finder {
     for (std::size_t j = 0; j < noise_.size(); ++j)
       if (j != i) all_but_it.push_back(j);
     const Profile& profile = *fit_.linear.observations[i]->profile;
+    if (is_a_surface_alone(profile)) return;
     const SubsetEstimate others(priors_beside(profile.name), compressed_, all_but_it,
                                 gates.rank_tolerance);
     Observation observation = recorded(i, list);
     const Prediction as_it_is = prediction(observation, others, noise);
-    if (as_it_is.directions() == 0 || is_a_surface_alone(profile)) return;
+    if (as_it_is.directions() == 0) return;
     const auto [before, size_before] = as_it_is.best(1.0, kAnyFactor);
     const double square = as_it_is.disagreement(1.0);
     const double own = in_long_run_[i] / in_long_run_[of_sister.value_or(i)];
