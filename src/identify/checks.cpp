@@ -130,9 +130,10 @@ void explain_other_form(const Model& model, const Solution& fit, ModelResult& ou
   const std::string degree = form.effect->parameters().back().name.substr(1);
   out.notes.push_back(
       "the data refute degree " + degree + " of the " + form.name +
-      ": a curve beside it is likelier by a factor of e^" + significant(*fit.other_form, 2) +
-      "; every uncertainty is widened by what that curve could have put into the parameters, and "
-      "the coefficients describe no slide. Declare form = \"curve\", or a higher degree");
+      ": a curve beside it is likelier by a factor of e^" +
+      significant(fit.other_form->log_likelihood_ratio, 2) +
+      "; every uncertainty is widened by that curve, and the coefficients are those of the nearest "
+      "polynomial, not the slide's. Declare form = \"curve\", or a higher degree");
 }
 
 /// Nothing but a second reading tells a slow noise of the first from a curve that may have any

@@ -110,7 +110,7 @@ std::vector<Conformity> conformity_of(const Problem& problem, const FittedModel&
     (is_angle ? each.limit_um_per_m : each.limit_um) = limit;
     each.verdict = conformity_verdict(value, limit);
   };
-  if (flatness_um) decide("flatness", flatness(fitted), *flatness_um, false);
+  if (flatness_um) decide(kFlatness, flatness(fitted), *flatness_um, false);
   if (straightness_um) decide("straightness", straightness(summary), *straightness_um, false);
   if (squareness_um_per_m) decide("squareness", squareness(summary), *squareness_um_per_m, true);
   return out;

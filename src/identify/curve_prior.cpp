@@ -6,7 +6,6 @@
 
 #include "curve_likelihood.hpp"
 #include "slideway/base/units.hpp"
-#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/fit.hpp"
 
 namespace slideway {
@@ -92,56 +91,6 @@ Linearisation beside_curve(const Model& model, const Linearisation& linear,
   out.prior_residuals = linear.prior_residuals.head(declared);
   out.curve_rows = 0;
   return out;
-}
-
-namespace {
-
-/// The declared polynomial form of a slide, or null where the model has none, or a curve.
-const DeclaredEffect* declared_polynomial(const Problem& problem, const Model& model) {
-  if (curve_term(model)) return nullptr;
-  const auto found = std::ranges::find_if(problem.effects, [](const DeclaredEffect& each) {
-    return motion_error_of(each.name) == MotionError::straightness;
-  });
-  return found == problem.effects.end() ? nullptr : &*found;
-}
-
-DeclaredEffect as_curve(const DeclaredEffect& polynomial, const TravelRange& range) {
-  constexpr double kPieces = 24.0;  // of a curve that tells slow structure
-  DeclaredEffect out{polynomial.name, polynomial.options, {}};
-  out.options.degree.reset();
-  out.options.form = Form::curve;
-  out.options.resolution_mm = std::max(range.slide_max - range.slide_min, 1e-9) / kPieces;
-  return out;
-}
-
-}  // namespace
-
-void allow_for_other_form(const Problem& problem, FittedModel& fitted) {
-  Solution& fit = fitted.fit;
-  const Model& model = fitted.model;
-  const DeclaredEffect* const polynomial = declared_polynomial(problem, model);
-  if (!polynomial) return;
-  Model with = model;
-  append_term(with, as_curve(*polynomial, model.range), model.range);
-  const ModelTerm& curve = with.terms.back();
-  const Knots knots = *curve.effect->knots();
-  Estimate estimate = fit.estimate;
-  estimate.amplitudes.conservativeResizeLike(Eigen::VectorXd::Zero(with.amplitudes()));
-  estimate.curve = first_curve_prior(with, knots);
-  Linearisation linear = linearise(with, estimate);
-  linear.residuals = fit.linear.residuals;
-  for (Eigen::MatrixXd& columns : linear.columns)  // the polynomial has offset and slope
-    columns.middleCols(curve.first_amplitude, knots.first).setZero();
-  const CurveData data(curve, linear, fit.noise, estimate);
-  const std::vector<Hypothesis> likely = likely_priors(data, 0.0);
-  const Hypothesis* const best = likeliest(likely);
-  if (!best || best->log_likelihood < -std::log(model.gates.lack_of_fit_p)) return;
-  fit.other_form = best->log_likelihood;
-  Eigen::MatrixXd moved(fit.uncertainty.basis.rows(), data.carried().cols());
-  moved << data.carried().topRows(model.amplitudes()), data.carried().bottomRows(model.shapes());
-  const Eigen::MatrixXd moments =
-      second_moments(data, likely, Eigen::VectorXd::Zero(knots.positions_mm.size()));
-  fit.uncertainty.add(moved * moments * moved.transpose(), compress(fit.linear, fit.noise));
 }
 
 }  // namespace slideway

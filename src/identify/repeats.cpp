@@ -121,15 +121,15 @@ std::vector<Noise> noises_of_means(const Linearisation& all,
   return out;
 }
 
-void set_common(const Linearisation& common, const Gates& gates, PureErrorCheck& out) {
-  const Eigen::VectorXd& mean = common.residuals.front();
-  const Observation& observation = *common.observations.front();
+/// Rms of the slow part of low-band values, in µm or µrad.
+void set_rms(const Observation& observation, const Eigen::VectorXd& values, const Gates& gates,
+             std::optional<double>& um, std::optional<double>& urad) {
   const Eigen::MatrixXd slow =
-      orthonormal(slow_cosines(mean.size(), slow_cosine_count(mean.size(), gates)));
-  const double rms = (slow.transpose() * mean).norm() /
+      orthonormal(slow_cosines(values.size(), slow_cosine_count(values.size(), gates)));
+  const double rms = (slow.transpose() * values).norm() /
                      std::sqrt(static_cast<double>(observation.low_band.samples()));
   const bool height = observation.profile->setup.quantity == Quantity::height;
-  (height ? out.common_um : out.common_urad) = rms / (height ? kMicrometre : kMicroradian);
+  (height ? um : urad) = rms / (height ? kMicrometre : kMicroradian);
 }
 
 }  // namespace
@@ -236,7 +236,10 @@ std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gat
     check.F = found.ratio;
     check.p_value = found.p_value;
     if (found.significant(gates)) check.verdict = RepeatFit::lack_of_fit;
-    set_common(common[g], finer, check);
+    const Observation& first = *common[g].observations.front();
+    set_rms(first, common[g].residuals.front(), finer, check.common_um, check.common_urad);
+    if (const auto deviation = deviation_from_repeats(linear, groups[g].front(), odd, gates))
+      set_rms(first, deviation->residual, finer, check.apart_um, check.apart_urad);
     out.push_back(std::move(check));
   }
   return out;

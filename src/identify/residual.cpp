@@ -160,11 +160,14 @@ bool ProfileResidual::Evaluate(const double* const* parameters, double* residual
 }
 
 CompressedResidual::CompressedResidual(const Model& model, const ProfileTriangle& of_values)
-    : upper_(of_values.upper().topRows(of_values.upper().cols() - 1)) {
+    : upper_(of_values.free().topRows(of_values.columns())) {
+  constexpr double kTakenByLevelling = 1e-9;  // of a column, what is left of it: rounding
+  for (Eigen::Index j = 0; j < of_values.columns(); ++j)
+    if (upper_.col(j).norm() <= kTakenByLevelling * std::sqrt(of_values.squares()[j]))
+      upper_.col(j).setZero();
   set_num_residuals(static_cast<int>(upper_.rows()));
-  std::vector<int32_t>& sizes = *mutable_parameter_block_sizes();
-  if (of_values.levelling() > 0) sizes.push_back(static_cast<int32_t>(of_values.levelling()));
-  for (const ModelTerm& term : model.terms) sizes.push_back(term.effect->amplitudes());
+  for (const ModelTerm& term : model.terms)
+    mutable_parameter_block_sizes()->push_back(term.effect->amplitudes());
 }
 
 bool CompressedResidual::Evaluate(const double* const* parameters, double* residuals,

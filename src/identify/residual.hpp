@@ -67,7 +67,8 @@ class ProfileResidual final : public ceres::CostFunction {
   Eigen::VectorXd values_;                     // white
 };
 
-/// The same of a profile without loss whose terms all stay: R [ν; a] - Qᵀ W y, compressed.
+/// The same of a profile without loss whose terms all stay, compressed: R a - Qᵀ W y with the
+/// levelling eliminated. Parameter blocks: amplitudes of every term.
 class CompressedResidual final : public ceres::CostFunction {
  public:
   CompressedResidual(const Model& model, const ProfileTriangle& of_values);

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "residual.hpp"
 #include "slideway/identify/shape_grid.hpp"
@@ -96,7 +97,13 @@ class FitProblem {
     return summary;
   }
 
-  [[nodiscard]] const Unknowns& unknowns() const { return unknowns_; }
+  /// What has been found: the eliminated levelling follows from the rest.
+  [[nodiscard]] Estimate estimate(const Model& model) {
+    const Eigen::VectorXd amplitudes = unknowns_.estimate(model).amplitudes;
+    for (const auto& [i, triangle] : eliminated_)
+      unknowns_.levelling[i] = triangle.levelled(amplitudes);
+    return unknowns_.estimate(model);
+  }
 
  private:
   static std::vector<double*> blocks_of(Unknowns::Term& term) {
@@ -106,23 +113,26 @@ class FitProblem {
 
   void add_profile(const Model& model, const Observation& observation, const Noise& noise,
                    const Eigen::MatrixXd& columns, std::size_t i) {
+    const bool is_linear = model.shapes() == 0 && observation.profile->loss == Loss::none;
     std::vector<double*> blocks;
-    if (unknowns_.levelling[i].size() > 0) blocks.push_back(unknowns_.levelling[i].data());
+    if (!is_linear && unknowns_.levelling[i].size() > 0)
+      blocks.push_back(unknowns_.levelling[i].data());
     for (Unknowns::Term& term : unknowns_.terms) {
       const std::vector<double*> own = blocks_of(term);
       blocks.insert(blocks.end(), own.begin(), own.end());
     }
+    if (is_linear) eliminated_.try_emplace(i, observation, noise, columns, observation.values);
     if (blocks.empty()) return;
     ceres::CostFunction* cost = nullptr;
-    if (model.shapes() == 0 && observation.profile->loss == Loss::none)
-      cost = new CompressedResidual(
-          model, ProfileTriangle(observation, noise, columns, observation.values));
+    if (is_linear)
+      cost = new CompressedResidual(model, eliminated_.at(i));
     else
       cost = new ProfileResidual(model, observation, noise, columns);
     problem_.AddResidualBlock(cost, nullptr, blocks);
   }
 
   Unknowns unknowns_;
+  std::map<std::size_t, ProfileTriangle> eliminated_;  // per fitted observation that is linear
   ceres::Problem problem_;
 };
 
@@ -225,7 +235,7 @@ SolveSummary solve(const Model& model, Linearisation& linear, const std::vector<
   out.converged = summary.termination_type == ceres::CONVERGENCE;
   out.message = summary.message;
   const std::optional<CurvePrior> curve = out.estimate.curve;
-  out.estimate = problem.unknowns().estimate(model);
+  out.estimate = problem.estimate(model);
   out.estimate.curve = curve;
   settle_residuals(model, out.estimate, linear);
   count_by_loss(linear, noise);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "form_columns.hpp"
 #include "reported.hpp"
 #include "residual.hpp"
 
@@ -89,30 +90,37 @@ class Locus {
         const Setup& setup)
       : model_(model), term_(term), fit_(fit), reported_(reported), setup_(setup) {}
 
-  /// f_j at slide coordinates x; on a face x is turned into the radius.
+  /// f_j at slide coordinates x.
   [[nodiscard]] Eigen::MatrixXd columns(const Eigen::VectorXd& x) const {
-    const bool is_face = setup_.kind == Kind::face;
-    Setup setup = setup_;
-    const Eigen::VectorXd positions =
-        is_face ? Eigen::VectorXd(x.array() - setup.spindle_position_mm) : x;
-    setup.center_mm = 0.0;
-    setup.first_mm = positions[0];
-    setup.last_mm = positions[positions.size() - 1];
-    Eigen::MatrixXd out(x.size(), term_.effect->amplitudes());
-    term_.effect->columns(
-        {{positions.data(), static_cast<std::size_t>(positions.size())}, setup, model_.machine},
-        shapes_of(term_, fit_.estimate.shapes), out);
-    return out;
+    return form_columns(model_, term_, shapes_of(term_, fit_.estimate.shapes), setup_, x);
+  }
+
+  /// What the nearest polynomials leave of a curve beside them (OtherForm), per knot; no columns
+  /// where there is none.
+  [[nodiscard]] Eigen::MatrixXd left_of_curve(const Eigen::VectorXd& x) const {
+    const auto& form = fit_.other_form;
+    if (!form) return Eigen::MatrixXd::Zero(x.size(), 0);
+    return form_columns(model_, form->curve, {}, setup_, x)
+               .middleCols(form->curve.effect->knots()->first, form->nearest.cols()) -
+           columns(x) * form->nearest;
   }
 
   [[nodiscard]] double value(const Eigen::RowVectorXd& weighted) const {
     return weighted.dot(fit_.estimate.amplitudes.segment(term_.first_amplitude, weighted.size()));
   }
 
-  [[nodiscard]] Spread spread(const Eigen::RowVectorXd& weighted) const {
+  /// Of a weighted sum of the amplitudes, and the same of left_of_curve().
+  [[nodiscard]] Spread spread(const Eigen::RowVectorXd& weighted,
+                              const Eigen::RowVectorXd& left) const {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(fit_.uncertainty.basis.rows());
     row.segment(term_.first_amplitude, weighted.size()) = weighted;
-    return reported_.spread(row);
+    Spread out = reported_.spread(row);
+    if (left.size() == 0) return out;
+    const OtherForm& form = *fit_.other_form;
+    const double more = (left * form.moments * (left + 2.0 * row * form.moved).transpose()).value();
+    out.standard_uncertainty =
+        std::sqrt(std::max(out.standard_uncertainty * out.standard_uncertainty + more, 0.0));
+    return out;
   }
 
   /// Whether a weighted sum is the same along every direction that the data leave open.
@@ -129,13 +137,19 @@ class Locus {
   [[nodiscard]] std::vector<QuantityValue> deviations(const Eigen::VectorXd& x,
                                                       const SlideRange& travel) const {
     if (x.size() == 0) return {};
-    const Eigen::MatrixXd own = columns(x),
-                          ends = columns(Eigen::Vector2d(travel.least, travel.greatest));
+    const Eigen::Vector2d both(travel.least, travel.greatest);
+    const Eigen::MatrixXd own = columns(x), ends = columns(both), left = left_of_curve(x),
+                          left_at_ends = left_of_curve(both);
     std::vector<QuantityValue> out(static_cast<std::size_t>(x.size()));
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       const double share = (x[i] - travel.least) / (travel.greatest - travel.least);
-      const Eigen::RowVectorXd row = own.row(i) - (1.0 - share) * ends.row(0) - share * ends.row(1);
-      Reported::set(value(row), spread(row), kMicrometre, out[static_cast<std::size_t>(i)]);
+      const auto from_line = [&](const Eigen::MatrixXd& at, const Eigen::MatrixXd& at_ends) {
+        return Eigen::RowVectorXd(at.row(i) - (1.0 - share) * at_ends.row(0) -
+                                  share * at_ends.row(1));
+      };
+      const Eigen::RowVectorXd row = from_line(own, ends);
+      Reported::set(value(row), spread(row, from_line(left, left_at_ends)), kMicrometre,
+                    out[static_cast<std::size_t>(i)]);
     }
     return out;
   }
@@ -147,12 +161,6 @@ class Locus {
   const Reported& reported_;
   Setup setup_;
 };
-
-Setup on_slide() {
-  Setup setup;
-  setup.kind = Kind::slide;
-  return setup;
-}
 
 /// Slide coordinates of the readings, of a bridge those of its feet; at most kMostStations.
 Eigen::VectorXd station_positions(const Model& model) {
@@ -245,6 +253,27 @@ void add_error(const ReferenceLine& line, const Eigen::VectorXd& x, const Spread
 
 }  // namespace
 
+Setup on_slide() {
+  Setup setup;
+  setup.kind = Kind::slide;
+  return setup;
+}
+
+Eigen::MatrixXd form_columns(const Model& model, const ModelTerm& term,
+                             std::span<const double> shapes, Setup setup,
+                             const Eigen::VectorXd& x) {
+  const Eigen::VectorXd positions =
+      setup.kind == Kind::face ? Eigen::VectorXd(x.array() - setup.spindle_position_mm) : x;
+  setup.center_mm = 0.0;
+  setup.first_mm = positions[0];
+  setup.last_mm = positions[positions.size() - 1];
+  Eigen::MatrixXd out(x.size(), term.effect->amplitudes());
+  term.effect->columns(
+      {{positions.data(), static_cast<std::size_t>(positions.size())}, setup, model.machine},
+      shapes, out);
+  return out;
+}
+
 ReferenceLine least_squares_line(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
   ReferenceLine line{ReferenceLineKind::least_squares};
   const Eigen::VectorXd centred = x.array() - x.mean();
@@ -295,8 +324,9 @@ std::optional<Straightness> identified_straightness(const Model& model, const So
                             heights[i].expanded_uncertainty});
   const Eigen::VectorXd form =
       forms * fit.estimate.amplitudes.segment(term->first_amplitude, columns.cols());
+  const Eigen::MatrixXd left = slide.left_of_curve(x);
   for (const ReferenceLine& line : reference_lines(x, form))
-    add_error(line, x, slide.spread(line.sensitivity * columns), out);
+    add_error(line, x, slide.spread(line.sensitivity * columns, line.sensitivity * left), out);
   return out;
 }
 

@@ -145,7 +145,8 @@ class Certificate {
     XmlNode statement = list.append_child("dcc:statement");
     say(statement, "dcc:name", "Conformity of " + each.what);
     add(statement, "dcc:norm", "ISO 14253-1");
-    say(statement, "dcc:declaration", each.what + " " + verdict_text(each.verdict));
+    say(statement, "dcc:declaration",
+        each.what + " " + verdict_text(each.verdict) + condition(each.if_no));
     const double value = (each.value_um ? each.value_um : each.value_um_per_m).value_or(INFINITY);
     const double limit = (each.limit_um ? each.limit_um : each.limit_um_per_m).value_or(0.0);
     add(statement, "dcc:conformity",
@@ -228,14 +229,15 @@ class Certificate {
     bool any = false;
     if (result_.final && result_.final->straightness)
       for (const StraightnessError& error : result_.final->straightness->errors)
-        any |= add_quantity(
-            results, "Straightness error E_ZX, " + std::string(text_of(error.line)) + " line",
-            error, 1.0, "\\micro\\metre");
+        any |= add_quantity(results,
+                            "Straightness error E_ZX, " + std::string(text_of(error.line)) +
+                                " line" + condition(result_.final->straightness->if_no),
+                            error, 1.0, "\\micro\\metre");
     if (result_.final)
       for (const FittedParameter& p : result_.final->parameters)
         if (is_squareness(p))
-          any |= add_quantity(results, "Squareness of X to the spindle axis", p, kMicroradian,
-                              "\\micro\\radian");
+          any |= add_quantity(results, "Squareness of X to the spindle axis" + condition(p.if_no),
+                              p, kMicroradian, "\\micro\\radian");
     if (!any) throw DataError("neither straightness nor squareness is determined");
   }
 

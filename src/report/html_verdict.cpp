@@ -33,7 +33,8 @@ Html squareness_card(const FittedParameter& p) {
     return html_value(p, unit) + " " + name + element("br");
   };
   return in(1.0, "rad") + in(kMicroradian, "µm/m") + in(kArcsecond, "″ (arcsec)") +
-         small("± U, " + coverage_factor_of(p) + "; positive: the face falls from centre to rim");
+         small("± U, " + coverage_factor_of(p) + Html(condition(p.if_no)) +
+               "; positive: the face falls from centre to rim");
 }
 
 Html unseen_paragraph(const Summary& summary) {
@@ -223,7 +224,7 @@ Html html_conformity(const Result& result) {
     value.expanded_uncertainty = angle ? each.U_um_per_m : each.U_um;
     table.add({toleranced(each.what), html_value(value),
                html_number(angle ? each.limit_um_per_m : each.limit_um), angle ? "µm/m" : "µm",
-               bold(verdict_text(each.verdict))});
+               bold(verdict_text(each.verdict)) + condition(each.if_no)});
   }
   return table.html();
 }

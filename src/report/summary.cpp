@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::size_t kFewLetters = 38;               // names that leave room for a sentence
 constexpr std::size_t kShortNames = 30;               // and for its end
-constexpr std::size_t kBoxText = kLineWidth - 11;     // beside the label
 constexpr std::size_t kTwoLines = 2 * kBoxText - 20;  // with the badge, and words that do not break
 
 std::string in_expanded_uncertainties(double shift) {
@@ -154,7 +153,8 @@ std::string say_finding(const Analysis& analysis, Summary& out) {
         "the time limit ended the search before an effect could be named" + left_over(trace));
   switch (trace.verdict) {
     case TraceVerdict::nothing_missing:
-      return say(Alarm::good, "Nothing missing", "the model explains the profiles down to noise");
+      return say(Alarm::good, "Nothing missing",
+                 "the model explains the profiles down to " + noise_of(analysis.result.crosscheck));
     case TraceVerdict::explained:
       if (!trace.rounds.empty() && trace.rounds.front().accepted == kInstrument)
         return say(Alarm::warn, "Instrument",
@@ -221,37 +221,6 @@ std::string lead_of(const Result& result) {
   return effect_title(*leader) + " dominates";
 }
 
-/// Whether the run-out, two profiles or one that was held out speak against the model.
-bool is_contradicted(const Crosscheck& checks) {
-  const auto does = [](const auto& check) { return contradicts(check); };
-  return (checks.squareness && checks.squareness->verdict == Consistency::inconsistent) ||
-         std::ranges::any_of(checks.profiles, does) || std::ranges::any_of(checks.held_out, does);
-}
-
-/// What speaks against the numbers: they break a tolerance or disagree with a check.
-std::vector<std::string> objections(const Result& result) {
-  std::vector<std::string> out;
-  for (const Conformity& each : result.conformity)
-    if (each.verdict == ConformityVerdict::does_not_conform)
-      out.push_back(each.what + " does not conform");
-  const auto& angle = result.crosscheck.squareness;
-  if (angle && angle->verdict == Consistency::inconsistent)
-    out.emplace_back("the run-out contradicts the squareness");
-  for (const ProfileCheck& check : result.crosscheck.profiles) {
-    if (!contradicts(check)) continue;
-    const std::string who = joined(check.profiles, " and ") + " disagree in ";
-    const auto known =
-        std::ranges::find_if(out, [&](const std::string& each) { return each.starts_with(who); });
-    if (known == out.end())
-      out.push_back(who + check.what);
-    else
-      *known += " and " + check.what;
-  }
-  for (const HeldOutCheck& check : result.crosscheck.held_out)
-    if (contradicts(check)) out.push_back(check.profile + ", held out, does not fit");
-  return out;
-}
-
 /// Badge and sentence; what harms most comes first.
 void say_verdict(const Analysis& analysis, Summary& out) {
   const auto say = [&](Alarm alarm, const char* badge, const char* sentence) {
@@ -270,7 +239,7 @@ void say_verdict(const Analysis& analysis, Summary& out) {
       (out.alarm == Alarm::good || out.alarm == Alarm::plain)) {
     out.badge = "Inconsistent";
     if (analysis.trace->verdict == TraceVerdict::nothing_missing)
-      finding = "the model explains what was fitted down to noise";
+      finding = "the model explains what was fitted down to " + noise_of(result.crosscheck);
   }
   std::vector<std::string> clauses = objections(result);
   if (!clauses.empty()) out.alarm = std::max(out.alarm, Alarm::warn);
@@ -282,61 +251,12 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   if (out.alarm != Alarm::bad && !lead.empty() && has_room) clauses.push_back(lead);
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::consistent)
-    clauses.emplace_back("the run-out agrees in amount");
+    clauses.emplace_back(shows_little(*angle) ? "the run-out does not contradict it"
+                                              : "the run-out agrees in amount");
   if (!harms) clauses.push_back(finding);
   out.verdict = joined(clauses, "; ");
   out.verdict_names_missing = analysis.trace && was_extended(analysis) &&
                               out.verdict.find(found(analysis)) != std::string::npos;
-}
-
-/// "" where nothing was compared.
-std::string agreement_of(const std::vector<ProfileCheck>& checks) {
-  std::optional<double> most;
-  for (const ProfileCheck& check : checks)
-    if (check.En) most = std::max(most.value_or(0.0), *check.En);
-  return most ? "the profiles agree, E_n up to " + en_text(*most) : "";
-}
-
-void say_crosscheck(const Result& result, Summary& out) {
-  const Crosscheck& checks = result.crosscheck;
-  std::vector<std::string> parts, consistent;
-  const auto& angle = checks.squareness;
-  if (angle && angle->En) {
-    QuantityValue indirect;
-    indirect.value = angle->indirect_rad;
-    indirect.expanded_uncertainty = angle->indirect_U_rad;
-    const bool is_consistent = angle->verdict != Consistency::inconsistent;
-    (is_consistent ? consistent : parts)
-        .push_back(std::string(is_consistent ? "consistent" : "INCONSISTENT") +
-                   " with the run-out, Eq. (21): " + value_text(indirect, kMicroradian) +
-                   " µm/m, E_n = " + en_text(*angle->En));
-  }
-  for (const ProfileCheck& check : checks.profiles)
-    if (contradicts(check))
-      parts.push_back("INCONSISTENT: " + check.what + " of " + joined(check.profiles, " and ") +
-                      (check.En ? ", E_n = " + en_text(*check.En) : ""));
-  for (const HeldOutCheck& check : checks.held_out) {
-    const bool fits = !contradicts(check);
-    (fits ? consistent : parts)
-        .push_back(check.profile + ", held out, " +
-                   (fits ? "fits" : "DOES NOT FIT at " + number(check.at_mm, 4) + " mm"));
-  }
-  const std::size_t contradictions = parts.size();
-  std::ranges::move(consistent, std::back_inserter(parts));
-  const std::string agreement = contradictions == 0 ? agreement_of(checks.profiles) : "";
-  if (!agreement.empty()) parts.push_back(agreement);
-  out.has_crosscheck = !parts.empty();
-  const std::string none = angle && !angle->reason.empty() ? ": " + angle->reason : "";
-  out.crosscheck = parts.empty() ? "none" + none : joined(parts, "; ");
-  out.checks = out.conformity.empty() ? out.crosscheck
-               : parts.empty()        ? out.conformity + "; no cross-check" + none
-                                      : out.conformity + "; " + out.crosscheck;
-  out.checks_in_brief = out.checks;
-  if (!agreement.empty() && parts.size() > 1 && code_points(out.checks) > kBoxText)
-    out.checks_in_brief.erase(out.checks.size() - agreement.size() - 2);  // "; "
-  if (contradictions > 1 && code_points(out.checks) > kBoxText)
-    out.checks_in_brief = (out.conformity.empty() ? "" : out.conformity + "; ") + parts.front() +
-                          "; " + std::to_string(contradictions - 1) + " more";
 }
 
 void say_missing(const Analysis& analysis, Summary& out) {
@@ -369,24 +289,25 @@ void say_missing(const Analysis& analysis, Summary& out) {
 Summary summary_of(const Analysis& analysis) {
   Summary out;
   std::vector<std::string> held;
-  for (const Conformity& each : analysis.result.conformity)
-    held.push_back(each.what + " " +
-                   (each.verdict == ConformityVerdict::does_not_conform
-                        ? "DOES NOT CONFORM"
-                        : verdict_text(each.verdict)) +
-                   (each.limit_um_per_m ? if_no_other_cause(analysis) : ""));
+  for (const Conformity& each : analysis.result.conformity) {
+    const bool fails = each.verdict == ConformityVerdict::does_not_conform;
+    held.push_back(each.what + " " + (fails ? "DOES NOT CONFORM" : verdict_text(each.verdict)) +
+                   condition(each.if_no));
+  }
   out.conformity = joined(held, "; ");
   say_verdict(analysis, out);
   out.straightness = straightness_of(analysis.result);
   out.squareness = squareness_of(analysis.result);
   const bool has_curve = out.straightness.starts_with("E_ZX ") && out.straightness.ends_with("µm");
+  const FittedParameter* const angle = squareness_parameter(analysis.result);
   out.result = out.straightness + (has_curve ? " (end points)" : "") + "; squareness " +
-               out.squareness + if_no_other_cause(analysis);
+               out.squareness + (angle ? condition(angle->if_no) : "");
   if (!analysis.result.final) out.result = "none: nothing was fitted";
   if (analysis.result.final && !analysis.result.final->converged)
     out.result = "not determined: the fit did not converge";
   out.unseen = moved_unseen(analysis);
-  out.same = same_as_straightness(analysis);
+  if (const auto& model = analysis.result.final; model && model->straightness)
+    out.same = effect_titles(model->straightness->if_no, ", ");
   say_crosscheck(analysis.result, out);
   say_missing(analysis, out);
   out.next = next_step(analysis);

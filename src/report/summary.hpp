@@ -4,9 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "slideway/report/layout.hpp"
 #include "slideway/trace/analysis.hpp"
 
 namespace slideway {
+
+inline constexpr std::size_t kBoxText = kLineWidth - 11;  // beside the label of a line of the box
 
 /// How much a verdict asks of who reads it.
 enum class Alarm { good, plain, warn, bad };
@@ -44,17 +47,33 @@ std::string cut_to_make(const NextCut& cut);
 /// The most that an effect which is just not seen moves the squareness; "": none is known.
 std::string moved_unseen(const Analysis& analysis);
 
-/// ", if no steady drift": what the squareness holds unseen, for it has the same columns; "": none.
-std::string if_no_other_cause(const Analysis& analysis);
-
-/// Effects that the straightness of a face holds unseen, for they have its columns; "": none has.
-std::string same_as_straightness(const Analysis& analysis);
+/// ", if no steady drift": of what a value holds unseen (FittedParameter::if_no); "": of nothing.
+std::string condition(const std::vector<std::string>& if_no);
 
 /// Whether what the loop has added moved no declared number worth an alarm. REQUIRES a loop.
 bool is_harmless(const Analysis& analysis);
 
 /// Whether a check speaks against the model.
 bool contradicts(const ProfileCheck& check);
+
+/// Whether U exceeds what a check compares, so that it shows little.
+bool shows_little(const SquarenessCheck& check);
+bool shows_little(const ProfileCheck& check);
+
+/// Whether repeats share far more than one reading differs from the next, and it is no lack of fit:
+/// a texture of the surface.
+bool is_texture(const PureErrorCheck& check);
+
+/// What the model explains the profiles down to: "noise".
+std::string noise_of(const Crosscheck& checks);
+
+/// Whether the run-out, two profiles or one that was held out speak against the model.
+bool is_contradicted(const Crosscheck& checks);
+
+/// What speaks against the numbers: they break a tolerance or disagree with a check.
+std::vector<std::string> objections(const Result& result);
+
+void say_crosscheck(const Result& result, Summary& out);
 
 /// "33.0 ± 5.4 and 35.4 ± 5.5 µm": what each profile says by itself, or "".
 std::string each_alone(const ProfileCheck& check);

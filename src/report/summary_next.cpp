@@ -119,22 +119,8 @@ std::string moved_unseen(const Analysis& analysis) {
          number(*worst->squareness_rad / kMicroradian, 2) + " µm/m: " + effect_title(worst->effect);
 }
 
-std::string if_no_other_cause(const Analysis& analysis) {
-  const FittedParameter* const angle = squareness_parameter(analysis.result);
-  if (!analysis.trace || !angle || !is_known(*angle)) return "";
-  const std::vector<std::string> same = same_columns_as(MotionError::squareness, *analysis.trace);
-  return same.empty() ? "" : ", if no " + effect_titles(same, " or ");
-}
-
-std::string same_as_straightness(const Analysis& analysis) {
-  const Result& result = analysis.result;
-  const bool has_face = std::ranges::any_of(result.inputs, [](const InputSummary& in) {
-    return in.kind == Kind::face && in.role == Role::fit;
-  });
-  if (!analysis.trace || !has_face || !result.final || !result.final->straightness ||
-      result.final->straightness->errors.empty())
-    return "";
-  return one_with(MotionError::straightness, *analysis.trace);
+std::string condition(const std::vector<std::string>& if_no) {
+  return if_no.empty() ? "" : ", if no " + effect_titles(if_no, " or ");
 }
 
 std::string next_step(const Analysis& analysis) {

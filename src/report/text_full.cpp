@@ -243,7 +243,8 @@ std::string squareness_check(const SquarenessCheck& check) {
       "; by the run-out, Eq. (21): " + angle(check.indirect_rad, check.indirect_U_rad) + "; ";
   if (check.En) out += "E_n = " + en_text(*check.En) + ": ";
   if (check.verdict == Consistency::consistent)
-    out += "consistent (E_n is not above 1); ";
+    out += "consistent (E_n is not above 1" +
+           std::string(shows_little(check) ? ", though U exceeds both" : "") + "); ";
   else if (check.verdict == Consistency::inconsistent)
     out += "INCONSISTENT (E_n is above 1); ";
   else
@@ -267,6 +268,7 @@ std::string crosscheck(const Crosscheck& checks) {
     std::vector<std::string> said{text(check.verdict)};
     if (check.En) said.insert(said.begin(), "E_n = " + en_text(*check.En));
     if (!check.value_um.empty()) said.insert(said.begin(), each_alone(check));
+    if (shows_little(check)) said.emplace_back("though U exceeds what is compared");
     out += note(check.what + " of " + joined(check.profiles, " and ") + ": " + joined(said));
   }
   for (const HeldOutCheck& check : checks.held_out)
@@ -276,10 +278,12 @@ std::string crosscheck(const Crosscheck& checks) {
                 " mm");
   for (const PureErrorCheck& check : checks.repeats)
     out += note("repeats " + joined(check.profiles, " and ") + ": what they have in common " +
-                (check.verdict == RepeatFit::fits ? "is no more than noise"
-                                                  : "is LACK OF FIT of the model") +
+                (check.verdict != RepeatFit::fits ? "is LACK OF FIT of the model"
+                 : is_texture(check)              ? "is a texture of the surface"
+                                                  : "is no more than noise") +
                 " (F = " + number(check.F, 3) + ", " + p_text(check.p_value) + ", " +
-                size_text(check.common_um, check.common_urad) + " rms)");
+                size_text(check.common_um, check.common_urad) + " rms; one reading is off it by " +
+                size_text(check.apart_um, check.apart_urad) + " rms)");
   return out.empty() ? "" : heading("Cross-check") + out;
 }
 

@@ -212,7 +212,8 @@ std::string tolerances(const Result& result) {
     value.expanded_uncertainty = angle ? each.U_um_per_m : each.U_um;
     const double limit = (angle ? each.limit_um_per_m : each.limit_um).value_or(NAN);
     out += item("Tolerance of " + toleranced(each.what) + ": " + value_text(value) + ", limit " +
-                number(limit, 4) + (angle ? " µm/m: " : " µm: ") + verdict_text(each.verdict));
+                number(limit, 4) + (angle ? " µm/m: " : " µm: ") + verdict_text(each.verdict) +
+                condition(each.if_no));
   }
   return out.empty() ? "" : "\n" + out;
 }

@@ -68,6 +68,7 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
       round.parameters =
           parameters_of(*out.result.final, term_name(round.accepted, round.profiles));
     doubt_what_is_uncertain(last->model, *out.result.final, *out.trace);
+    add_conditions(*out.trace, out.result);
     add_next_cut(problem, profiles, *last, limit, out);
   }
   if (options.with_details)

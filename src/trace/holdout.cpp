@@ -30,27 +30,28 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
   return upper_triangle(rest);
 }
 
+Eigen::MatrixXd below(const Eigen::MatrixXd& top, const Eigen::MatrixXd& bottom) {
+  Eigen::MatrixXd out(top.rows() + bottom.rows(), top.cols());
+  out << top, bottom;
+  return out;
+}
+
+/// Triangle of the rows of all blocks from each on, of none at the end.
+std::vector<Eigen::MatrixXd> triangles_from(const std::vector<Eigen::MatrixXd>& rows) {
+  std::vector<Eigen::MatrixXd> out(rows.size() + 1, Eigen::MatrixXd(0, rows.front().cols()));
+  for (std::size_t i = rows.size(); i-- > 0;) out[i] = upper_triangle(below(rows[i], out[i + 1]));
+  return out;
+}
+
 /// What some profiles say: model, and model with effect, fitted to their rows and the priors.
 struct FitOfOthers {
   LeastSquares without, with;
   Eigen::Index rank = 0;  // amplitudes of the effect that they tell from the model
 
+  /// @param kept        white_rows() of these profiles and the rows of the priors
   /// @param amplitudes  of the effect as all profiles have it
-  FitOfOthers(const Linearisation& linear, const std::vector<Eigen::MatrixXd>& rows,
-              std::size_t left_out, const Eigen::VectorXd& amplitudes) {
-    const Eigen::Index k = linear.prior_rows.cols(), priors = linear.prior_rows.rows();
-    const Eigen::Index a = amplitudes.size();
-    Eigen::Index next = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) next += i == left_out ? 0 : rows[i].rows();
-    Eigen::MatrixXd kept = Eigen::MatrixXd::Zero(next + priors, k + a + 1);
-    kept.bottomLeftCorner(priors, k) = linear.prior_rows;
-    kept.bottomRightCorner(priors, 1) = linear.prior_residuals;
-    next = 0;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      if (i == left_out) continue;
-      kept.middleRows(next, rows[i].rows()) = rows[i];
-      next += rows[i].rows();
-    }
+  FitOfOthers(const Eigen::MatrixXd& kept, const Eigen::VectorXd& amplitudes) {
+    const Eigen::Index a = amplitudes.size(), k = kept.cols() - a - 1;
     Eigen::MatrixXd targets(kept.rows(), 2);
     targets << kept.rightCols(1), kept.middleCols(k, a) * amplitudes;
     without = least_squares(kept.leftCols(k), targets);
@@ -94,13 +95,17 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
   std::vector<Eigen::MatrixXd> rows;
   for (std::size_t i = 0; i < count; ++i)
     rows.push_back(white_rows(linear, data, i, candidate.columns));
+  const std::vector<Eigen::MatrixXd> behind = triangles_from(rows);
+  Eigen::MatrixXd before = Eigen::MatrixXd::Zero(linear.prior_rows.rows(), k + a + 1);
+  before.leftCols(k) = linear.prior_rows;
+  before.rightCols(1) = linear.prior_residuals;
   PredictionError heights;
   bool shown_by_each = true;
   double support = 0.0, shown = 0.0, samples = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count; before = upper_triangle(below(before, rows[i])), ++i) {
     const auto model = rows[i].leftCols(k), effect = rows[i].middleCols(k, a);
     if (effect.isZero(0.0)) continue;
-    const FitOfOthers others(linear, rows, i, amplitudes);
+    const FitOfOthers others(below(before, behind[i + 1]), amplitudes);
     if (others.rank < whole.rank || !(others.expected() >= gates.holdout_share * whole.gain))
       continue;
     const Eigen::VectorXd carried = others.with.values.bottomRows(a);

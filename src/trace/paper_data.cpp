@@ -35,45 +35,50 @@ PaperProfile::PaperProfile(const Observation& observation, const Noise& noise,
   const Eigen::MatrixXd triangle = qr.matrixQR().topRows(top).triangularView<Eigen::Upper>();
   model = triangle.bottomRightCorner(own, columns.cols());
   inside = suspects.middleRows(top - own, own);
-  const auto rest = suspects.bottomRows(values - top);
-  outside = rest.transpose() * rest;
+  outside = suspects.bottomRows(values - top);
 }
 
-PaperData::PaperData(const std::vector<const PaperProfile*>& profiles,
-                     const Eigen::MatrixXd& prior_rows)
-    : gram_(Eigen::MatrixXd::Zero(profiles[0]->inside.cols(), profiles[0]->inside.cols())),
-      squares_(Eigen::VectorXd::Zero(gram_.cols())) {
+PaperData::PaperData(std::vector<const PaperProfile*> profiles, const Eigen::MatrixXd& prior_rows)
+    : profiles_(std::move(profiles)), squares_(Eigen::VectorXd::Zero(profiles_[0]->inside.cols())) {
   Eigen::Index rows = prior_rows.rows(), row = 0;
-  for (const PaperProfile* profile : profiles) rows += profile->model.rows();
+  for (const PaperProfile* profile : profiles_) rows += profile->model.rows();
   Eigen::MatrixXd model(rows, prior_rows.cols());
-  Eigen::MatrixXd suspects = Eigen::MatrixXd::Zero(rows, gram_.cols());
+  inside_ = Eigen::MatrixXd::Zero(rows, squares_.size());
   Eigen::VectorXd scale = prior_rows.colwise().squaredNorm().transpose();
-  for (const PaperProfile* profile : profiles) {
+  for (const PaperProfile* profile : profiles_) {
     const Eigen::Index count = profile->model.rows();
     model.middleRows(row, count) = profile->model;
-    suspects.middleRows(row, count) = profile->inside;
+    inside_.middleRows(row, count) = profile->inside;
     row += count;
     scale += profile->scale;
     squares_ += profile->squares;
-    gram_ += profile->outside;
     values_ += profile->values;
   }
   model.bottomRows(prior_rows.rows()) = prior_rows;
   for (Eigen::Index j = 0; j < model.cols(); ++j)
     if (model.col(j).norm() <= kSwallowed * std::sqrt(scale[j])) model.col(j).setZero();
   const Eigen::MatrixXd basis = orthonormal(std::move(model));
-  suspects -= basis * (basis.transpose() * suspects).eval();
-  gram_ += suspects.transpose() * suspects;
+  inside_.noalias() -= basis * (basis.transpose() * inside_).eval();
+}
+
+Eigen::MatrixXd PaperData::products(const std::vector<Eigen::Index>& columns,
+                                    const std::vector<Eigen::Index>& others) const {
+  const auto of = [&](const Eigen::MatrixXd& rows) -> Eigen::MatrixXd {
+    return rows(Eigen::all, columns).eval().transpose() * rows(Eigen::all, others).eval();
+  };
+  Eigen::MatrixXd out = of(inside_);
+  for (const PaperProfile* profile : profiles_) out += of(profile->outside);
+  return out;
 }
 
 Eigen::MatrixXd PaperData::left(const std::vector<Eigen::Index>& columns,
                                 const std::vector<Eigen::Index>& beside) const {
-  Eigen::MatrixXd out = gram_(columns, columns);
+  Eigen::MatrixXd out = products(columns, columns);
   if (!beside.empty()) {
     const Eigen::VectorXd unit = inverse_roots(squares_(beside));
-    const Eigen::MatrixXd cross = unit.asDiagonal() * gram_(beside, columns);
+    const Eigen::MatrixXd cross = unit.asDiagonal() * products(beside, columns);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        unit.asDiagonal() * gram_(beside, beside) * unit.asDiagonal());
+        unit.asDiagonal() * products(beside, beside) * unit.asDiagonal());
     const Eigen::Index known = (eigen.eigenvalues().array() > kMadeByOthers).count();
     const Eigen::MatrixXd taken =
         eigen.eigenvalues().tail(known).cwiseSqrt().cwiseInverse().asDiagonal() *
@@ -92,7 +97,7 @@ Eigen::MatrixXd PaperData::left(const std::vector<Eigen::Index>& columns,
 Eigen::Index PaperData::rank(const std::vector<Eigen::Index>& columns) const {
   const Eigen::VectorXd unit = inverse_roots(squares_(columns));
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-      unit.asDiagonal() * gram_(columns, columns) * unit.asDiagonal(), Eigen::EigenvaluesOnly);
+      unit.asDiagonal() * products(columns, columns) * unit.asDiagonal(), Eigen::EigenvaluesOnly);
   return (eigen.eigenvalues().array() > kMadeByOthers).count();
 }
 

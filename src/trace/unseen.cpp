@@ -35,6 +35,22 @@ std::vector<std::string> same_columns_as(MotionError error, const TraceResult& t
   return names;
 }
 
+void add_conditions(const TraceResult& trace, Result& result) {
+  const auto reads_face = [](const InputSummary& in) {
+    return in.kind == Kind::face && in.role == Role::fit;
+  };
+  if (!result.final || std::ranges::none_of(result.inputs, reads_face)) return;
+  const std::vector<std::string> squareness = same_columns_as(MotionError::squareness, trace),
+                                 straightness = same_columns_as(MotionError::straightness, trace);
+  for (FittedParameter& parameter : result.final->parameters)
+    if (motion_error_of(parameter.name) == MotionError::squareness && parameter.value)
+      parameter.if_no = squareness;
+  if (result.final->straightness && !result.final->straightness->errors.empty())
+    result.final->straightness->if_no = straightness;
+  for (Conformity& each : result.conformity)
+    if (each.what != kFlatness) each.if_no = each.limit_um_per_m ? squareness : straightness;
+}
+
 bool may_be_moved_unseen(const ModelResult& model, const TraceResult& trace) {
   const auto squareness = std::ranges::find_if(model.parameters, [](const auto& each) {
     return motion_error_of(each.name) == MotionError::squareness;

@@ -41,6 +41,31 @@ Eigen::MatrixXd differences(const FittedModel& fitted, const FittedModel& withou
   return out;
 }
 
+constexpr double kEffectOverReadings = 2.0;  // others of the model may take half of an effect
+
+/// By how much signals, a column each, are to be made smaller to be no larger together than so many
+/// times the levelled readings of any profile: what is larger hides behind the model by coincidence
+/// alone.
+double share_within_readings(const Linearisation& linear, const Eigen::MatrixXd& signals,
+                             double most = 1.0) {
+  double share = 1.0;
+  Eigen::Index row = 0;
+  for (const Observation* observation : linear.observations) {
+    const Eigen::MatrixXd own = signals.middleRows(row, observation->values.size());
+    row += own.rows();
+    const double size = levelled(*observation, own).norm();
+    if (size > 0.0)
+      share = std::min(share, most * levelled(*observation, observation->values).norm() / size);
+  }
+  return share;
+}
+
+/// What a candidate makes in the readings.
+Eigen::VectorXd signal_of(const Linearisation& linear, const Refined& refined) {
+  const Eigen::VectorXd signal = refined.columns * refined.projection.amplitudes;
+  return share_within_readings(linear, signal, kEffectOverReadings) * signal;
+}
+
 }  // namespace
 
 void Widening::add(const Eigen::MatrixXd& more) { append_columns(changes, more); }
@@ -54,8 +79,7 @@ void Widening::add_rivals(const FittedModel& fitted, const FittedModel& without,
   if (rivals.empty()) return;
   Eigen::MatrixXd signals(rivals.front()->refined.columns.rows(), std::ssize(rivals));
   for (std::size_t j = 0; j < rivals.size(); ++j)
-    signals.col(static_cast<Eigen::Index>(j)) =
-        rivals[j]->refined.columns * rivals[j]->refined.projection.amplitudes;
+    signals.col(static_cast<Eigen::Index>(j)) = signal_of(without.fit.linear, rivals[j]->refined);
   add(differences(fitted, without, response(without.fit, signals)));
 }
 
@@ -67,12 +91,13 @@ double Widening::variance(const Eigen::RowVectorXd& row) const {
 Widening widening(const Model& model, const Solution& fit, const Structure& structure,
                   const std::vector<TestedCandidate>& refused) {
   Widening out(fit.linear.prior_rows.cols());
-  out.process = response(fit, stack(fit.linear, structure.columns[0].cols(),
-                                    [&](std::size_t i) { return structure.columns[i]; })) *
-                structure.process.sizes.asDiagonal();
+  const Eigen::MatrixXd process = stack(fit.linear, structure.columns[0].cols(),
+                                        [&](std::size_t i) { return structure.columns[i]; }) *
+                                  structure.process.sizes.asDiagonal();
+  out.process = share_within_readings(fit.linear, process) * response(fit, process);
   for (const TestedCandidate& each : refused) {
     if (each.refined.delta_bic > -model.gates.delta_bic || !each.is_possible()) continue;
-    out.add(response(fit, each.refined.columns * each.refined.projection.amplitudes));
+    out.add(response(fit, signal_of(fit.linear, each.refined)));
   }
   return out;
 }

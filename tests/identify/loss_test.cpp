@@ -77,30 +77,30 @@ TEST_P(LossOfAProfile, IsOfThatProfileAlone) {
 INSTANTIATE_TEST_SUITE_P(Robust, LossOfAProfile, ::testing::Values(Loss::huber, Loss::cauchy));
 
 // What an orthogonal factorisation leaves out of a sum of squares does not depend on the
-// parameters.
-TEST(CompressedResidual, HasTheSquareOfTheValuesButForAConstant) {
+// parameters, where the levelling is the best for them.
+TEST(CompressedResidual, HasTheSquareOfTheLevelledValuesButForAConstant) {
   const std::vector<Profile> profiles{slide(0.0, Loss::none)};
   const Model model =
       build_model(cases::problem(Lever::paper, 0, {cases::effect("straightness", 3)}), profiles);
   const Observation& observation = model.observations[0];
   const Noise noise = Noise::white(kNoise, kValues);
   const Eigen::MatrixXd columns = fit(model).linear.columns[0];
-  const CompressedResidual residual(
-      model, ProfileTriangle(observation, noise, columns, observation.values));
-  ASSERT_EQ(residual.parameter_block_sizes().size(), 2U);
-  const auto left_out = [&](const Eigen::VectorXd& levelling, const Eigen::VectorXd& amplitudes) {
-    const double* parameters[] = {levelling.data(), amplitudes.data()};
+  const ProfileTriangle triangle(observation, noise, columns, observation.values);
+  const CompressedResidual residual(model, triangle);
+  ASSERT_EQ(residual.parameter_block_sizes().size(), 1U);
+  const auto left_out = [&](const Eigen::VectorXd& amplitudes) {
+    const double* parameters[] = {amplitudes.data()};
     Eigen::VectorXd out(residual.num_residuals());
     EXPECT_TRUE(residual.Evaluate(parameters, out.data(), nullptr));
+    const Eigen::VectorXd rest = observation.values - columns * amplitudes;
     Eigen::MatrixXd direct =
-        observation.values - observation.nuisances * levelling - columns * amplitudes;
+        rest - observation.nuisances * observation.nuisances.householderQr().solve(rest);
     noise.whiten(direct);
     return direct.squaredNorm() - out.squaredNorm();
   };
-  const Eigen::Index m = observation.nuisances.cols(), a = columns.cols();
-  const double at_zero = left_out(Eigen::VectorXd::Zero(m), Eigen::VectorXd::Zero(a));
-  EXPECT_NEAR(left_out(Eigen::VectorXd::Constant(m, kNoise), Eigen::VectorXd::Constant(a, kNoise)),
-              at_zero, 1e-6 * at_zero);
+  const Eigen::Index a = columns.cols();
+  const double at_zero = left_out(Eigen::VectorXd::Zero(a));
+  EXPECT_NEAR(left_out(Eigen::VectorXd::Constant(a, kNoise)), at_zero, 1e-6 * at_zero);
 }
 
 TEST(Covariance, IsTheOneOfCeres) {

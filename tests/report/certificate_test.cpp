@@ -167,5 +167,20 @@ TEST(Certificate, RefusesAResultInWhichNothingIsDetermined) {
   EXPECT_THAT(refusal(analysis), HasSubstr("neither straightness nor squareness"));
 }
 
+TEST(Certificate, SaysUnderWhichConditionAValueHolds) {
+  Analysis analysis = sample_analysis();
+  Conformity& angle = analysis.result.conformity.emplace_back();
+  angle.what = "squareness";
+  angle.value_um_per_m = 2.8;
+  angle.limit_um_per_m = 5.0;
+  angle.verdict = ConformityVerdict::conforms;
+  angle.if_no = {"linear_drift"};
+  for (FittedParameter& parameter : analysis.result.final->parameters)
+    if (parameter.name == "squareness.dbeta_xz") parameter.if_no = angle.if_no;
+  const std::string text = calibration_certificate(analysis);
+  EXPECT_THAT(text, HasSubstr("squareness conforms, if no steady drift"));
+  EXPECT_THAT(text, HasSubstr("Squareness of X to the spindle axis, if no steady drift"));
+}
+
 }  // namespace
 }  // namespace slideway::certificate_test

@@ -232,26 +232,16 @@ TEST(TextReport, HasNoLineOver80ColumnsWithLongNamesAndNumbers) {
 
 TEST(TextReport, SaysOnceWhatHasTheColumnsOfTheStraightnessOfAFace) {
   Result result = sample_result();
-  TraceResult trace;
-  trace.not_separable = {{"cup", "squareness.dbeta_xz, straightness.b2"},
-                         {"linear_drift", "squareness.dbeta_xz"},
-                         {"tool_wear", "vertical_straightness.c1"}};
+  EXPECT_THAT(short_text(result), Not(HasSubstr("whatever has its columns")));
+  result.final->straightness->if_no = {"cup"};
   const std::string sentence =
       "- The straightness holds whatever has its columns: cupped workpiece.";
-  for (const std::string& text : {full(result, trace), short_text(result, trace)}) {
+  for (const std::string& text : {full(result), short_text(result)}) {
     const std::string words = on_one_line(text);
     EXPECT_THAT(words, HasSubstr(sentence));
     EXPECT_EQ(words.find(sentence), words.rfind(sentence));
   }
-  EXPECT_THAT(html_report({result, trace}),
-              HasSubstr("holds whatever has its columns: cupped workpiece"));
-  result.inputs.erase(result.inputs.begin());  // the face
-  EXPECT_THAT(short_text(result, trace), Not(HasSubstr("whatever has its columns")));
-  result = sample_result();
-  result.final->straightness.reset();
-  EXPECT_THAT(short_text(result, trace), Not(HasSubstr("whatever has its columns")));
-  trace.not_separable.erase(trace.not_separable.begin());  // another cut separates them
-  EXPECT_THAT(short_text(sample_result(), trace), Not(HasSubstr("whatever has its columns")));
+  EXPECT_THAT(html_report({result}), HasSubstr("holds whatever has its columns: cupped workpiece"));
 }
 
 TEST(TextReport, CutsNoNameOfAParameterOrAnEffect) {

@@ -67,6 +67,10 @@ TEST_F(Measured, LatheBedHasNoWaveAtAnyDegree) {
       const Closed result = close_bed(degree, runs);
       SCOPED_TRACE(std::to_string(degree) + ": " + story(result));
       for (const TraceRound& round : result.rounds) EXPECT_EQ(round.accepted, "straightness");
+      // A form deviates from its line by a quarter of the travel times the range of its slope at
+      // most: of the run with the least range, 221 µrad over 1.19 m.
+      ASSERT_TRUE(result.final.straightness && result.final.straightness->expanded_uncertainty_um);
+      EXPECT_LT(*result.final.straightness->expanded_uncertainty_um, 0.25 * 221.0 * 1.19);
     }
 }
 

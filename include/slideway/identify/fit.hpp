@@ -13,6 +13,17 @@
 
 namespace slideway {
 
+/// A curve c beside the polynomial p of a slide that refutes its degree: the form is p + c. The
+/// coefficients are then those of the polynomial nearest to the form over the travel, equal to it
+/// at both ends.
+struct OtherForm {
+  double log_likelihood_ratio = 0.0;  // over no curve
+  ModelTerm curve;                    // its knots are the columns below
+  Eigen::MatrixXd moments;            // second moments of the knots, the prior integrated out
+  Eigen::MatrixXd nearest;            // amplitudes of the polynomial nearest to a curve, per knot
+  Eigen::MatrixXd moved;              // (amplitudes, shapes) per knot: what the fit is off by
+};
+
 /// A fitted model with all that later steps need of it.
 struct Solution {
   Estimate estimate;  // parameters the data leave free: at 0 (gauge)
@@ -25,9 +36,7 @@ struct Solution {
   Rank rank;
   NullDirections null;
   Uncertainty uncertainty;
-  /// ln of the likelihood ratio by which a curve beside the polynomial form of the slide refutes
-  /// its degree: allow_for_other_form().
-  std::optional<double> other_form;
+  std::optional<OtherForm> other_form;  // allow_for_other_form()
 };
 
 /// @throws UsageError  no profile is to be fitted
@@ -59,9 +68,8 @@ struct FittedModel {
 FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes = std::nullopt);
 
 /// Whether a curve beside the declared polynomial form of the slide, the noise as it is, is
-/// likelier than none by 1 / Gates::lack_of_fit_p. If so, its coefficients are not those of the
-/// slide, and all uncertainties allow for what the fit has put into its parameters: the second
-/// moments of the curve, its prior integrated out. Nothing where the model has no polynomial form.
+/// likelier than none by 1 / Gates::lack_of_fit_p. If so, all uncertainties allow for the second
+/// moments of that curve (OtherForm). Nothing where the model has no polynomial form.
 void allow_for_other_form(const Problem& problem, FittedModel& fitted);
 
 /// The same once more, the model taken to be complete: Model::complete.

@@ -33,6 +33,7 @@ struct FittedParameter : QuantityValue {
   std::string name, symbol, standard_name;
   bool identifiable = true;
   bool at_bound = false;
+  std::vector<std::string> if_no;  // effects that have its columns: it holds if none of them acts
 };
 
 /// A direction in parameter space: name -> coefficient.
@@ -140,8 +141,9 @@ struct Straightness {
   std::vector<StraightnessError> errors;                                  // one for each line
   std::vector<StraightnessStation> stations;                              // of slides, 50 at most
   StraightnessCurve curve;
-  std::optional<CurveForm> form;  // of form = "curve"
-  std::string reason;             // why there is none; then all else is empty
+  std::optional<CurveForm> form;   // of form = "curve"
+  std::vector<std::string> if_no;  // as of a parameter
+  std::string reason;              // why there is none; then all else is empty
 };
 
 enum class EvaluationType { type_a, type_b };  // GUM 3.3.4: by statistics, or otherwise

@@ -177,6 +177,7 @@ struct PureErrorCheck {
   std::vector<std::string> profiles;
   double F = 0.0, p_value = 1.0;
   std::optional<double> common_um, common_urad;  // rms of the slow part in common
+  std::optional<double> apart_um, apart_urad;    // the same of a reading less what is in common
   RepeatFit verdict = RepeatFit::fits;
 };
 
@@ -192,12 +193,16 @@ template <>
 inline constexpr std::array<std::string_view, 3> kTexts<ConformityVerdict>{
     "conforms", "does not conform", "can not be decided"};
 
+/// What a tolerance is of, where the model has no part in it.
+inline constexpr const char* kFlatness = "flatness";
+
 /// ISO 14253-1: a value held against its limit, with U as guard band.
 struct Conformity {
-  std::string what;  // "flatness"
+  std::string what;  // kFlatness, or an error of the carriages
   std::optional<double> value_um, U_um, limit_um;
   std::optional<double> value_um_per_m, U_um_per_m, limit_um_per_m;
   ConformityVerdict verdict = ConformityVerdict::undecided;
+  std::vector<std::string> if_no;  // as of the value: FittedParameter
 };
 
 /// Where the slide went while the fitted profiles were made, and what its errors acted on.

@@ -145,22 +145,25 @@ inline constexpr auto kRecord<Dominant> =
            field("by_correlation", &Dominant::by_correlation), field("by_fit", &Dominant::by_fit),
            field("agree", &Dominant::agree), field("doubt", &Dominant::doubt, "why none is named"));
 
+inline constexpr const char* kIfNo =
+    "effects that have the same columns in these data: it holds if none of them acts";
+
 template <>
-inline constexpr auto kRecord<FittedParameter> =
-    record("Parameter", "A parameter: value ± expanded_uncertainty, in `unit`.",
-           field("name", &FittedParameter::name), field("symbol", &FittedParameter::symbol),
-           field("standard_name", &FittedParameter::standard_name),
-           field("value", &FittedParameter::value, "none: not determined"),
-           field("unit", &FittedParameter::unit),
-           field("standard_uncertainty", &FittedParameter::standard_uncertainty),
-           field("expanded_uncertainty", &FittedParameter::expanded_uncertainty,
-                 "coverage_factor * standard_uncertainty, 95.45 % coverage"),
-           field("coverage_factor", &FittedParameter::coverage_factor,
-                 "Student's, for degrees_of_freedom"),
-           field("degrees_of_freedom", &FittedParameter::degrees_of_freedom,
-                 "none beside a coverage_factor: infinitely many"),
-           field("identifiable", &FittedParameter::identifiable),
-           field("at_bound", &FittedParameter::at_bound));
+inline constexpr auto kRecord<FittedParameter> = record(
+    "Parameter", "A parameter: value ± expanded_uncertainty, in `unit`.",
+    field("name", &FittedParameter::name), field("symbol", &FittedParameter::symbol),
+    field("standard_name", &FittedParameter::standard_name),
+    field("value", &FittedParameter::value, "none: not determined"),
+    field("unit", &FittedParameter::unit),
+    field("standard_uncertainty", &FittedParameter::standard_uncertainty),
+    field("expanded_uncertainty", &FittedParameter::expanded_uncertainty,
+          "coverage_factor * standard_uncertainty, 95.45 % coverage"),
+    field("coverage_factor", &FittedParameter::coverage_factor,
+          "Student's, for degrees_of_freedom"),
+    field("degrees_of_freedom", &FittedParameter::degrees_of_freedom,
+          "none beside a coverage_factor: infinitely many"),
+    field("identifiable", &FittedParameter::identifiable),
+    field("at_bound", &FittedParameter::at_bound), field("if_no", &FittedParameter::if_no, kIfNo));
 
 template <>
 inline constexpr auto kRecord<UndeterminedDirection> =
@@ -267,6 +270,7 @@ inline constexpr auto kRecord<Straightness> = record(
     field("stations", &Straightness::stations, "of slides"),
     field("errors", &Straightness::errors, "one for each reference line"),
     field("curve", &Straightness::curve), field("form", &Straightness::form, "of a curve"),
+    field("if_no", &Straightness::if_no, kIfNo),
     field("reason", &Straightness::reason, "why there is none"));
 
 template <>
@@ -344,7 +348,9 @@ inline constexpr auto kRecord<PureErrorCheck> = record(
     field("profiles", &PureErrorCheck::profiles), field("F", &PureErrorCheck::F),
     field("p_value", &PureErrorCheck::p_value),
     field("common_um", &PureErrorCheck::common_um, "rms of the slow part in common"),
-    field("common_urad", &PureErrorCheck::common_urad), field("verdict", &PureErrorCheck::verdict));
+    field("common_urad", &PureErrorCheck::common_urad),
+    field("apart_um", &PureErrorCheck::apart_um, "the same of a reading less what is in common"),
+    field("apart_urad", &PureErrorCheck::apart_urad), field("verdict", &PureErrorCheck::verdict));
 
 template <>
 inline constexpr auto kRecord<Crosscheck> =
@@ -353,12 +359,13 @@ inline constexpr auto kRecord<Crosscheck> =
            field("held_out", &Crosscheck::held_out), field("repeats", &Crosscheck::repeats));
 
 template <>
-inline constexpr auto kRecord<Conformity> = record(
-    "Conformity", "A value against its limit, with U as guard band (ISO 14253-1).",
-    field("what", &Conformity::what), field("value_um", &Conformity::value_um),
-    field("U_um", &Conformity::U_um), field("limit_um", &Conformity::limit_um),
-    field("value_um_per_m", &Conformity::value_um_per_m),
-    field("U_um_per_m", &Conformity::U_um_per_m),
-    field("limit_um_per_m", &Conformity::limit_um_per_m), field("verdict", &Conformity::verdict));
+inline constexpr auto kRecord<Conformity> =
+    record("Conformity", "A value against its limit, with U as guard band (ISO 14253-1).",
+           field("what", &Conformity::what), field("value_um", &Conformity::value_um),
+           field("U_um", &Conformity::U_um), field("limit_um", &Conformity::limit_um),
+           field("value_um_per_m", &Conformity::value_um_per_m),
+           field("U_um_per_m", &Conformity::U_um_per_m),
+           field("limit_um_per_m", &Conformity::limit_um_per_m),
+           field("verdict", &Conformity::verdict), field("if_no", &Conformity::if_no, kIfNo));
 
 }  // namespace slideway

@@ -16,6 +16,10 @@ const DetectionLimit* worst_unseen(const TraceResult& trace);
 /// Effects whose columns an error of the carriages makes, but for the one that is so by Eq. (16).
 std::vector<std::string> same_columns_as(MotionError error, const TraceResult& trace);
 
+/// Says with the squareness, the straightness of faces and their conformity which effects have the
+/// same columns.
+void add_conditions(const TraceResult& trace, Result& result);
+
 /// Whether such effects may move Δβxz by more than its U.
 bool may_be_moved_unseen(const ModelResult& model, const TraceResult& trace);
 

@@ -232,6 +232,8 @@ class Parameter:
     """none beside a coverage_factor: infinitely many"""
     identifiable: bool
     at_bound: bool
+    if_no: list[str]
+    """effects that have the same columns in these data: it holds if none of them acts"""
 
 
 @dataclass(frozen=True)
@@ -304,6 +306,8 @@ class Straightness:
     curve: StraightnessCurve
     form: CurveForm | None
     """of a curve"""
+    if_no: list[str]
+    """effects that have the same columns in these data: it holds if none of them acts"""
     reason: str
     """why there is none"""
 
@@ -501,6 +505,9 @@ class PureErrorCheck:
     common_um: float | None
     """rms of the slow part in common"""
     common_urad: float | None
+    apart_um: float | None
+    """the same of a reading less what is in common"""
+    apart_urad: float | None
     verdict: Literal["fits", "lack of fit"]
 
 
@@ -526,6 +533,8 @@ class Conformity:
     U_um_per_m: float | None
     limit_um_per_m: float | None
     verdict: Literal["conforms", "does not conform", "can not be decided"]
+    if_no: list[str]
+    """effects that have the same columns in these data: it holds if none of them acts"""
 
 
 @dataclass(frozen=True)

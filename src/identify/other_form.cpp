@@ -1,0 +1,90 @@
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "curve_likelihood.hpp"
+#include "form_columns.hpp"
+#include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/fit.hpp"
+#include "slideway/identify/linear_algebra.hpp"
+
+namespace slideway {
+namespace {
+
+/// The declared polynomial form of a slide, or null where the model has none, or a curve.
+const DeclaredEffect* declared_polynomial(const Problem& problem, const Model& model) {
+  if (curve_term(model)) return nullptr;
+  const auto found = std::ranges::find_if(problem.effects, [](const DeclaredEffect& each) {
+    return motion_error_of(each.name) == MotionError::straightness;
+  });
+  return found == problem.effects.end() ? nullptr : &*found;
+}
+
+DeclaredEffect as_curve(const DeclaredEffect& polynomial, const TravelRange& range) {
+  constexpr double kPieces = 24.0;  // of a curve that tells slow structure
+  DeclaredEffect out{polynomial.name, polynomial.options, {}};
+  out.options.degree.reset();
+  out.options.form = Form::curve;
+  out.options.resolution_mm = std::max(range.slide_max - range.slide_min, 1e-9) / kPieces;
+  return out;
+}
+
+/// Amplitudes of the polynomial of least squares, equal at both ends, for each knot of a curve.
+Eigen::MatrixXd nearest_polynomials(const Model& model, const ModelTerm& polynomial,
+                                    const Eigen::VectorXd& shapes, const ModelTerm& curve) {
+  constexpr Eigen::Index kPoints = 201;
+  constexpr double kWeightOfEnds = 1e4;
+  const SlideRange travel = measured_travel(model);
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, travel.least, travel.greatest);
+  const auto weighted = [&](Eigen::MatrixXd columns) {
+    columns.row(0) *= kWeightOfEnds;
+    columns.row(kPoints - 1) *= kWeightOfEnds;
+    return columns;
+  };
+  Eigen::MatrixXd powers =
+      weighted(form_columns(model, polynomial, shapes_of(polynomial, shapes), on_slide(), x));
+  const Eigen::VectorXd unit = powers.colwise().norm().cwiseMax(1e-300).cwiseInverse();
+  powers *= unit.asDiagonal();
+  const Knots knots = *curve.effect->knots();
+  const Eigen::MatrixXd forms = weighted(form_columns(model, curve, {}, on_slide(), x)
+                                             .middleCols(knots.first, knots.positions_mm.size()));
+  return unit.asDiagonal() * least_squares(powers, forms).values;
+}
+
+}  // namespace
+
+void allow_for_other_form(const Problem& problem, FittedModel& fitted) {
+  Solution& fit = fitted.fit;
+  const Model& model = fitted.model;
+  const DeclaredEffect* const declared = declared_polynomial(problem, model);
+  if (!declared) return;
+  Model with = model;
+  append_term(with, as_curve(*declared, model.range), model.range);
+  const ModelTerm& curve = with.terms.back();
+  const Knots knots = *curve.effect->knots();
+  Estimate estimate = fit.estimate;
+  estimate.amplitudes.conservativeResizeLike(Eigen::VectorXd::Zero(with.amplitudes()));
+  estimate.curve = first_curve_prior(with, knots);
+  Linearisation linear = linearise(with, estimate);
+  linear.residuals = fit.linear.residuals;
+  for (Eigen::MatrixXd& columns : linear.columns)  // the polynomial has offset and slope
+    columns.middleCols(curve.first_amplitude, knots.first).setZero();
+  const CurveData data(curve, linear, fit.noise, estimate);
+  const std::vector<Hypothesis> likely = likely_priors(data, 0.0);
+  const Hypothesis* const best = likeliest(likely);
+  if (!best || best->log_likelihood < -std::log(model.gates.lack_of_fit_p)) return;
+  const ModelTerm& polynomial = *model.find_term(MotionError::straightness);
+  OtherForm& form = fit.other_form.emplace();
+  form.log_likelihood_ratio = best->log_likelihood;
+  form.curve = curve;
+  form.moments = second_moments(data, likely, Eigen::VectorXd::Zero(knots.positions_mm.size()));
+  form.nearest = nearest_polynomials(model, polynomial, fit.estimate.shapes, curve);
+  form.moved.resize(fit.uncertainty.basis.rows(), data.carried().cols());
+  form.moved << data.carried().topRows(model.amplitudes()),
+      data.carried().bottomRows(model.shapes());
+  form.moved.middleRows(polynomial.first_amplitude, form.nearest.rows()) += form.nearest;
+  fit.uncertainty.add(form.moved * form.moments * form.moved.transpose(),
+                      compress(fit.linear, fit.noise));
+}
+
+}  // namespace slideway
