@@ -272,6 +272,14 @@ void Head::refuse_commas_for_both(const Line& row, const Dialect& dialect,
                     "none, say decimal = \".\")");
 }
 
+/// How many columns have a name; where none has, all. Separators at the end of a row make none.
+std::size_t columns_of(const std::vector<std::string>& names) {
+  std::size_t named = 0;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    named += names[i].empty() || names[i] == std::to_string(i + 1) ? 0 : 1;
+  return named > 0 ? named : names.size();
+}
+
 std::string in_words(const Dialect& dialect, const std::string& encoding, std::size_t header) {
   std::vector<std::string> parts;
   if (encoding == "utf-16") parts.emplace_back("UTF-16");
@@ -284,6 +292,13 @@ std::string in_words(const Dialect& dialect, const std::string& encoding, std::s
   parts.push_back(header == 0   ? "no header"
                   : header == 1 ? "1 header line"
                                 : std::to_string(header) + " header lines");
+  if (const std::size_t all = columns_of(dialect.names); dialect.columns.size() < all) {
+    std::vector<std::string> taken;
+    for (const std::size_t column : dialect.columns)
+      taken.push_back(printable(dialect.names[column]));
+    if (!taken.empty())
+      parts.push_back("columns " + joined(taken, " and ") + " of " + std::to_string(all));
+  }
   return joined(parts);
 }
 

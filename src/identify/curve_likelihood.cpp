@@ -41,17 +41,23 @@ std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, d
   for (double a = std::sqrt(kLeastInformation / most); a < last; a *= kAmplitudeStep)
     out.push_back({{a, length, roughness}, prior.log_evidence(a * a)});
   if (!(kink_mm > 0.0)) return out;
-  const CurvePosterior posterior(data, length, roughness);
-  for (std::size_t i = 0, smooth = out.size(); i < smooth; ++i) {
-    const Hypothesis without = out[i];
-    const Eigen::VectorXd more =
-        posterior.log_evidence_of_kinks(without.prior.amplitude_mm, kink_mm);
-    for (Eigen::Index k = 0; k < more.size(); ++k) {
-      Hypothesis& kinked = out.emplace_back(without);
-      kinked.prior.kink = {k + 1, kink_mm};
-      kinked.log_likelihood += more[k] - std::log(static_cast<double>(more.size()));
-    }
+  const Eigen::Index smooth = std::ssize(out);
+  Eigen::RowVectorXd amplitudes(smooth), without(smooth);
+  for (Eigen::Index i = 0; i < smooth; ++i) {
+    amplitudes[i] = out[static_cast<std::size_t>(i)].prior.amplitude_mm;
+    without[i] = out[static_cast<std::size_t>(i)].log_likelihood;
   }
+  Eigen::MatrixXd kinked =
+      CurvePosterior(data, length, roughness).log_evidence_of_kinks(amplitudes, kink_mm);
+  if (kinked.size() == 0) return out;
+  kinked.rowwise() += without;
+  kinked.array() -= std::log(static_cast<double>(kinked.rows()));
+  const double least = std::max(kinked.maxCoeff(), without.maxCoeff()) + std::log(kLikely);
+  for (Eigen::Index i = 0; i < smooth; ++i)
+    for (Eigen::Index k = 0; k < kinked.rows(); ++k)
+      if (kinked(k, i) > least)
+        out.push_back(
+            {{amplitudes[i], length, roughness, CurveKink{k + 1, kink_mm}}, kinked(k, i)});
   return out;
 }
 
@@ -94,6 +100,7 @@ CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
   information_ = curve.transpose() * curve;
   products_ = curve.transpose() * target;
   kinks_ = kink_forms(knots_);
+  informed_kinks_ = information_ * kinks_;
 }
 
 Eigen::MatrixXd kink_forms(const Knots& knots) {
@@ -150,9 +157,8 @@ CurvePosterior::CurvePosterior(const CurveData& data, double length_mm, double r
   axes_ = root * eigen.eigenvectors();
   products_ = axes_.transpose() * data.products();
   kinks_ = data.kinks();
-  const Eigen::MatrixXd informed = data.information() * kinks_;
-  kinks_on_axes_ = axes_.transpose() * informed;
-  kink_information_ = kinks_.cwiseProduct(informed).colwise().sum();
+  kinks_on_axes_ = axes_.transpose() * data.informed_kinks();
+  kink_information_ = kinks_.cwiseProduct(data.informed_kinks()).colwise().sum();
   kink_products_ = kinks_.transpose() * data.products();
 }
 
@@ -161,15 +167,17 @@ Eigen::VectorXd CurvePosterior::variances(double amplitude) const {
   return variance / (1.0 + variance * information_.array());
 }
 
-Eigen::VectorXd CurvePosterior::log_evidence_of_kinks(double amplitude_mm, double kink_mm) const {
-  const Eigen::VectorXd own = variances(amplitude_mm);
-  const Eigen::ArrayXd information =
-      (kink_information_ - kinks_on_axes_.cwiseAbs2().transpose() * own).array().max(0.0);
-  const Eigen::ArrayXd products =
-      kink_products_ - kinks_on_axes_.transpose() * own.cwiseProduct(products_);
+Eigen::MatrixXd CurvePosterior::log_evidence_of_kinks(const Eigen::RowVectorXd& amplitudes_mm,
+                                                      double kink_mm) const {
+  Eigen::MatrixXd own(information_.size(), amplitudes_mm.size());
+  for (Eigen::Index i = 0; i < own.cols(); ++i) own.col(i) = variances(amplitudes_mm[i]);
+  Eigen::MatrixXd information = -(kinks_on_axes_.cwiseAbs2().transpose() * own);
+  information.colwise() += kink_information_;
+  Eigen::MatrixXd products = -(kinks_on_axes_.transpose() * products_.asDiagonal() * own);
+  products.colwise() += kink_products_;
   const double variance = kink_mm * kink_mm;
-  const Eigen::ArrayXd wider = 1.0 + variance * information;
-  return 0.5 * (variance * products.square() / wider - wider.log());
+  const Eigen::ArrayXXd wider = 1.0 + variance * information.array().max(0.0);
+  return 0.5 * (variance * products.array().square() / wider - wider.log());
 }
 
 CurvePosterior::Kink CurvePosterior::kink_of(const CurvePrior& prior) const {

@@ -28,12 +28,14 @@ class CurveData {
   [[nodiscard]] const Eigen::VectorXd& products() const { return products_; }
   /// kink_forms().
   [[nodiscard]] const Eigen::MatrixXd& kinks() const { return kinks_; }
+  /// A times these.
+  [[nodiscard]] const Eigen::MatrixXd& informed_kinks() const { return informed_kinks_; }
   /// (A + S) by #knots: how everything moves with the knots.
   [[nodiscard]] const Eigen::MatrixXd& carried() const { return carried_; }
 
  private:
   Knots knots_;
-  Eigen::MatrixXd information_, carried_, kinks_;
+  Eigen::MatrixXd information_, carried_, kinks_, informed_kinks_;
   Eigen::VectorXd products_;
 };
 
@@ -60,9 +62,10 @@ class CurvePosterior {
   /// Directions that the data know better than the prior.
   [[nodiscard]] Eigen::MatrixXd determined(const CurvePrior& prior) const;
 
-  /// Log of the likelihood of a curve with a kink over that of the same curve without, for a kink
-  /// at each knot but the ends.
-  [[nodiscard]] Eigen::VectorXd log_evidence_of_kinks(double amplitude_mm, double kink_mm) const;
+  /// Log of the likelihood of a curve with a kink over that of the same curve without: a row for a
+  /// kink at each knot but the ends, a column for each amplitude.
+  [[nodiscard]] Eigen::MatrixXd log_evidence_of_kinks(const Eigen::RowVectorXd& amplitudes_mm,
+                                                      double kink_mm) const;
 
   /// Adds the second moments about `centre` of hypotheses that differ in amplitude and kink.
   void add_moments(std::span<const Hypothesis> hypotheses, std::span<const double> weights,

@@ -10,6 +10,11 @@ std::span<const Gate> gate_table() {
           "significance", &Gates::significance, "", 1e-6, 0.2,
           "An effect enters if the whole search finds as much in noise with a smaller probability.",
           "one false alarm in a hundred problems"},
+      Gate{"instrument_doubt", &Gates::instrument_doubt, "", 1e-6, 0.5,
+           "What surfaces share that one instrument has read is its error or has no name where as "
+           "much comes about by chance with a smaller probability; below significance it is its "
+           "error.",
+           "0.05: by convention, what is no more than a hint"},
       Gate{"delta_bic", &Gates::delta_bic, "", 2.0, 30.0,
            "An effect enters if it lowers the BIC by this much, and stays only so.",
            "Kass and Raftery (1995): above 10 the evidence is very strong"},

@@ -146,7 +146,7 @@ class Certificate {
     say(statement, "dcc:name", "Conformity of " + each.what);
     add(statement, "dcc:norm", "ISO 14253-1");
     say(statement, "dcc:declaration",
-        each.what + " " + verdict_text(each.verdict) + condition(each.if_no));
+        each.what + " " + verdict_text(each.verdict) + condition(result_, each));
     const double value = (each.value_um ? each.value_um : each.value_um_per_m).value_or(INFINITY);
     const double limit = (each.limit_um ? each.limit_um : each.limit_um_per_m).value_or(0.0);
     add(statement, "dcc:conformity",
@@ -229,10 +229,11 @@ class Certificate {
     bool any = false;
     if (result_.final && result_.final->straightness)
       for (const StraightnessError& error : result_.final->straightness->errors)
-        any |= add_quantity(results,
-                            "Straightness error E_ZX, " + std::string(text_of(error.line)) +
-                                " line" + condition(result_.final->straightness->if_no),
-                            error, 1.0, "\\micro\\metre");
+        any |=
+            add_quantity(results,
+                         "Straightness error E_ZX, " + std::string(text_of(error.line)) + " line" +
+                             parts_beside(result_) + condition(result_.final->straightness->if_no),
+                         error, 1.0, "\\micro\\metre");
     if (result_.final)
       for (const FittedParameter& p : result_.final->parameters)
         if (is_squareness(p))

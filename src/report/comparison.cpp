@@ -135,7 +135,7 @@ void add_checks(const Result& result, Facts& facts) {
     facts.emplace_back("tolerance of " + each.what,
                        in_short(each.limit_um ? each.limit_um : each.limit_um_per_m));
     facts.emplace_back("conformity of " + each.what,
-                       verdict_text(each.verdict) + condition(each.if_no));
+                       verdict_text(each.verdict) + condition(result, each));
   }
   if (result.closure) facts.emplace_back("closure between lines", text_of(result.closure->verdict));
   const Crosscheck& checks = result.crosscheck;

@@ -47,6 +47,11 @@ Html same_paragraph(const Summary& summary) {
   return element("br") + small("holds whatever has its columns: " + Html(summary.same));
 }
 
+Html beside_paragraph(const Result& result) {
+  const std::string parts = parts_beside(result);
+  return parts.empty() ? Html() : element("br") + small(parts.substr(std::string(", ").size()));
+}
+
 Html straightness_card(const Straightness& form) {
   if (form.errors.empty()) return form.reason;
   std::vector<Html> lines;
@@ -86,7 +91,8 @@ Html all_cards(const Analysis& analysis, const Summary& summary) {
                            squareness_card(p) + unseen_paragraph(summary));
     if (result.final->straightness)
       facts.emplace_back("Straightness error " + html_symbol("E_ZX"),
-                         straightness_card(*result.final->straightness) + same_paragraph(summary));
+                         straightness_card(*result.final->straightness) + beside_paragraph(result) +
+                             same_paragraph(summary));
   }
   if (!summary.conformity.empty()) facts.emplace_back("Tolerance", in_sentence(summary.conformity));
   if (const Html name = dominant_card(result.dominant); !name.empty())
@@ -224,7 +230,7 @@ Html html_conformity(const Result& result) {
     value.expanded_uncertainty = angle ? each.U_um_per_m : each.U_um;
     table.add({toleranced(each.what), html_value(value),
                html_number(angle ? each.limit_um_per_m : each.limit_um), angle ? "µm/m" : "µm",
-               bold(verdict_text(each.verdict)) + condition(each.if_no)});
+               bold(verdict_text(each.verdict)) + condition(result, each)});
   }
   return table.html();
 }

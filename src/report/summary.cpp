@@ -189,6 +189,23 @@ std::string straightness_of(const Result& result) {
   return "E_ZX is not determined" + (form.reason.empty() ? "" : ": " + form.reason);
 }
 
+}  // namespace
+
+std::string parts_beside(const Result& result) {
+  const std::vector<std::string> known = effect_names();
+  std::vector<std::string> parts;
+  for (const std::string& term : result.final->effects) {
+    const std::string name = term.substr(0, term.find('['));
+    if (std::ranges::count(known, name) == 0 || std::ranges::count(parts, name) > 0) continue;
+    const Description& effect = specimen(name).description();
+    if (effect.motion == MotionError::none && effect.standard_name.starts_with("E_ZX,"))
+      parts.push_back(name);
+  }
+  return parts.empty() ? "" : ", without " + effect_titles(parts, " and ");
+}
+
+namespace {
+
 std::string squareness_of(const Result& result) {
   if (const FittedParameter* const p = squareness_parameter(result))
     return is_known(*p) ? value_text(*p, kMicroradian) + " µm/m" : "not determined by these data";
@@ -204,7 +221,8 @@ std::string lead_of(const Result& result) {
   const bool has_form = way && way->end_point_um;
   const std::string straightness = straightness_of(result), squareness = squareness_of(result);
   if (!angle && has_form)
-    return "the slide is straight to " + straightness.substr(std::string("E_ZX ").size());
+    return "the slide is straight to " + straightness.substr(std::string("E_ZX ").size()) +
+           parts_beside(result);
   const Dominant& dominant = result.dominant;
   const auto& leader = dominant.by_fit ? dominant.by_fit : dominant.by_correlation;
   if (!dominant.doubt.empty() || !leader)
@@ -287,28 +305,29 @@ void say_missing(const Analysis& analysis, Summary& out) {
 }  // namespace
 
 Summary summary_of(const Analysis& analysis) {
+  const Result& result = analysis.result;
   Summary out;
   std::vector<std::string> held;
-  for (const Conformity& each : analysis.result.conformity) {
+  for (const Conformity& each : result.conformity) {
     const bool fails = each.verdict == ConformityVerdict::does_not_conform;
     held.push_back(each.what + " " + (fails ? "DOES NOT CONFORM" : verdict_text(each.verdict)) +
-                   condition(each.if_no));
+                   condition(result, each));
   }
   out.conformity = joined(held, "; ");
   say_verdict(analysis, out);
-  out.straightness = straightness_of(analysis.result);
-  out.squareness = squareness_of(analysis.result);
+  out.straightness = straightness_of(result);
+  out.squareness = squareness_of(result);
   const bool has_curve = out.straightness.starts_with("E_ZX ") && out.straightness.ends_with("µm");
-  const FittedParameter* const angle = squareness_parameter(analysis.result);
-  out.result = out.straightness + (has_curve ? " (end points)" : "") + "; squareness " +
-               out.squareness + (angle ? condition(angle->if_no) : "");
-  if (!analysis.result.final) out.result = "none: nothing was fitted";
-  if (analysis.result.final && !analysis.result.final->converged)
+  const FittedParameter* const angle = squareness_parameter(result);
+  out.result = out.straightness + (has_curve ? " (end points)" + parts_beside(result) : "") +
+               "; squareness " + out.squareness + (angle ? condition(angle->if_no) : "");
+  if (!result.final) out.result = "none: nothing was fitted";
+  if (result.final && !result.final->converged)
     out.result = "not determined: the fit did not converge";
   out.unseen = moved_unseen(analysis);
-  if (const auto& model = analysis.result.final; model && model->straightness)
+  if (const auto& model = result.final; model && model->straightness)
     out.same = effect_titles(model->straightness->if_no, ", ");
-  say_crosscheck(analysis.result, out);
+  say_crosscheck(result, out);
   say_missing(analysis, out);
   out.next = next_step(analysis);
   out.has_next = out.next != kNothingToDo;

@@ -54,6 +54,11 @@ std::string noise_of(const Crosscheck& checks) {
   return std::ranges::any_of(checks.repeats, is_texture) ? "a texture that repeats" : "noise";
 }
 
+std::string condition(const Result& result, const Conformity& conformity) {
+  const bool is_form = conformity.limit_um && conformity.what != kFlatness && result.final;
+  return (is_form ? parts_beside(result) : "") + condition(conformity.if_no);
+}
+
 bool is_contradicted(const Crosscheck& checks) {
   const auto does = [](const auto& check) { return contradicts(check); };
   return (checks.squareness && checks.squareness->verdict == Consistency::inconsistent) ||

@@ -213,7 +213,7 @@ std::string tolerances(const Result& result) {
     const double limit = (angle ? each.limit_um_per_m : each.limit_um).value_or(NAN);
     out += item("Tolerance of " + toleranced(each.what) + ": " + value_text(value) + ", limit " +
                 number(limit, 4) + (angle ? " µm/m: " : " µm: ") + verdict_text(each.verdict) +
-                condition(each.if_no));
+                condition(result, each));
   }
   return out.empty() ? "" : "\n" + out;
 }

@@ -25,7 +25,10 @@ RatedSet with_one_more(const CutSet& set, std::size_t cuts,
     rated[c].set.insert(std::ranges::upper_bound(rated[c].set, c), c);
     rated[c].worth = worth(rated[c].set);
   });
-  return *std::ranges::max_element(rated, {}, &RatedSet::worth);
+  const double best = std::ranges::max_element(rated, {}, &RatedSet::worth)->worth;
+  return *std::ranges::find_if(rated, [&](const RatedSet& each) {  // of equal ones the first
+    return each.worth >= best - kBetter * std::abs(best);
+  });
 }
 
 /// The set with one of its cuts exchanged, or as it is where that brings no more.

@@ -143,11 +143,14 @@ std::vector<SharedResidual> shared_residuals(const FittedModel& fitted) {
   return out;
 }
 
-void name_instrument(TraceResult& out) {
+void name_instrument(const Gates& gates, TraceResult& out) {
   TraceRound round;
   round.accepted = kInstrument;
+  const bool is_certain = std::ranges::any_of(out.instrument, &SharedResidual::significant);
+  if (!is_certain) round.ambiguous_with.emplace_back(kUnnamedRival);
   for (const SharedResidual& each : out.instrument) {
-    if (!each.significant) continue;
+    const double p_value = each.p_value * static_cast<double>(out.instrument.size());
+    if (is_certain ? !each.significant : p_value > gates.instrument_doubt) continue;
     std::ranges::copy(each.profiles, std::back_inserter(round.profiles));
     round.p_value = std::min(round.p_value, each.p_value);
   }
@@ -161,9 +164,10 @@ void name_instrument(TraceResult& out) {
       other.ambiguous_with.emplace_back(kInstrument);
   out.advice.insert(out.advice.begin(),
                     "profiles " + joined(round.profiles, ", ") +
-                        " are of different surfaces and share a residual: an error of the "
-                        "instrument, not of the slide; turn the instrument or the part by 180°, "
-                        "and read again");
+                        " are of different surfaces and share a residual: " +
+                        (is_certain ? "an error" : "probably an error") +
+                        " of the instrument, not of the slide; turn the instrument or the part by "
+                        "180°, and read again");
   out.rounds.push_back(std::move(round));
 }
 

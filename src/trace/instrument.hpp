@@ -20,7 +20,8 @@ namespace slideway {
 std::vector<SharedResidual> shared_residuals(const FittedModel& fitted);
 
 /// Names what is significant among out.instrument: a round `instrument`, and the rival of every
-/// accepted effect that acts in such a profile.
-void name_instrument(TraceResult& out);
+/// accepted effect that acts in such a profile. Where nothing is, what chance makes more rarely
+/// than Gates::instrument_doubt: with no name as its rival.
+void name_instrument(const Gates& gates, TraceResult& out);
 
 }  // namespace slideway

@@ -113,7 +113,7 @@ class Loop {
     if (!limit_.allows([&] { report_limits(selection, out); }))
       out.not_looked_at.emplace_back("detection limits");
     out.instrument = shared_residuals(extender_.base());
-    name_instrument(out);
+    name_instrument(gates, out);
     const std::string other_cause =
         form_of_another_cause(out,
                               check_squareness(extender_.base().model, problem_.runout,

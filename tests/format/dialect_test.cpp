@@ -86,7 +86,7 @@ const Written kDialects[] = {
      "Scan,0\nLength,1500.0 um\nStylus,Radius: 2.5\n\nx,z,\n0.25,-1.5,,\n1234.5,2000,,\n",
      "commas between columns, decimal point, 4 header lines"},
     {"UnitsRow", "X;Z;valid\n[mm];[mm];[1/0]\n0.25;-1.5;1\n1234.5;2000;1\n",
-     "semicolons between columns, decimal point, 2 header lines"},
+     "semicolons between columns, decimal point, 2 header lines, columns X and Z of 3"},
 };
 INSTANTIATE_TEST_SUITE_P(Text, Dialects, testing::ValuesIn(kDialects),
                          [](const auto& written) { return written.param.name; });

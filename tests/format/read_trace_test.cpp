@@ -33,7 +33,8 @@ TEST_F(ReadTrace, TellsFormatUnitsDecisionsAndHash) {
   EXPECT_EQ(file.trace.value_unit, "um");
   EXPECT_THAT(file.trace.positions, ElementsAre(0.5, 1.0));
   EXPECT_THAT(file.trace.decisions,
-              ElementsAre("Latin-1, semicolons between columns, decimal comma, 1 header line",
+              ElementsAre("Latin-1, semicolons between columns, decimal comma, 1 header line, "
+                          "columns x [mm] and Höhe [µm] of 3",
                           "1 value is missing: empty, nan, na or null"));
 }
 

@@ -96,5 +96,23 @@ TEST(Condition, IsBesideEachValueWhereverThatIsPrinted) {
   EXPECT_THAT(html_report(analysis), HasSubstr("conforms</b>, if no steady drift"));
 }
 
+TEST(Condition, OfAStraightnessNamesItsPartsThatHaveANameOfTheirOwn) {
+  Result result = sample_result();
+  EXPECT_THAT(words_of(result), Not(HasSubstr("without local form")));
+  result.final->effects.insert(result.final->effects.end(),
+                               {"local_form[cut1]", "local_form[cut2]", "thermal_drift", "mine"});
+  result.conformity = {{.what = "straightness",
+                        .value_um = 0.3,
+                        .U_um = 0.1,
+                        .limit_um = 1.0,
+                        .verdict = ConformityVerdict::conforms},
+                       {.what = kFlatness, .limit_um = 1.0}};
+  const std::string words = words_of(result);
+  EXPECT_THAT(words, HasSubstr("(end points), without local form;"));
+  EXPECT_THAT(words, HasSubstr("straightness conforms, without local form;"));
+  EXPECT_THAT(words, Not(HasSubstr("flatness cannot be decided, without")));
+  EXPECT_THAT(html_report({result}), HasSubstr("without local form"));
+}
+
 }  // namespace
 }  // namespace slideway::checks_test

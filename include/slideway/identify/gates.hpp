@@ -11,6 +11,7 @@ namespace slideway {
 struct Gates {
   // What a candidate must bring.
   double significance = 0.01;
+  double instrument_doubt = 0.05;
   double delta_bic = 10.0;
   double size = 5.0;
   double tie_bic = 10.0;
