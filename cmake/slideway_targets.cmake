@@ -55,7 +55,8 @@ endfunction()
 
 # slideway_test(room SOURCES a_test.cpp ... DEPENDS lib ... [SLOW Suite.Case ...])
 # One GoogleTest program per folder of tests, its cases registered as <room>/<Suite>.<Case>. It links
-# the room of its name if there is one. Cases under SLOW (patterns) get the label "slow".
+# the room of its name if there is one. Cases under SLOW (patterns) get the label "slow". Under
+# AddressSanitizer those are left out, and the others run in a few processes, <room>/part<n>.
 function(slideway_test room)
   cmake_parse_arguments(TEST "" "" "SOURCES;DEPENDS;SLOW" ${ARGN})
   add_executable(${room}_test ${TEST_SOURCES})
@@ -66,6 +67,16 @@ function(slideway_test room)
     SLIDEWAY_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   slideway_use_headers(${room}_test slideway_test_headers)
   list(JOIN TEST_SLOW ":" slow)
+  if(SLIDEWAY_SANITIZE MATCHES address)  # the start of a process takes longer than most cases
+    set(parts 4)
+    math(EXPR last "${parts} - 1")
+    foreach(part RANGE ${last})
+      add_test(NAME ${room}/part${part} COMMAND ${room}_test "--gtest_filter=-${slow}" --gtest_brief=1)
+      set_tests_properties(${room}/part${part} PROPERTIES TIMEOUT 1200
+        ENVIRONMENT "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part}")
+    endforeach()
+    return()
+  endif()
   gtest_discover_tests(${room}_test TEST_PREFIX ${room}/ NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
                        TEST_FILTER "-${slow}" PROPERTIES TIMEOUT 600)
   if(slow)

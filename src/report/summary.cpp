@@ -20,7 +20,7 @@ constexpr std::size_t kShortNames = 30;               // and for its end
 constexpr std::size_t kTwoLines = 2 * kBoxText - 20;  // with the badge, and words that do not break
 
 std::string in_expanded_uncertainties(double shift) {
-  return number(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " U";  // no -0
+  return number(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " times its U";  // no -0
 }
 
 /// Accepted effects: one of the same rivals that came in for one cut after the other is one, of all

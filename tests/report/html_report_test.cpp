@@ -77,9 +77,10 @@ TEST(HtmlReport, SaysWhatWasMissingAndWhatItHadBent) {
   const std::string page = html_report(sample_analysis());
   EXPECT_THAT(
       page,
-      HasSubstr("; the model lacked thermal drift, which had moved squareness Δβxz by 10 U."));
+      HasSubstr(
+          "; the model lacked thermal drift, which had moved squareness Δβxz by 10 times its U."));
   // (3.0 - 2.8)e-6 / 2e-8
-  EXPECT_THAT(page, HasSubstr("thermal drift, which moved squareness Δβxz by 10 U"));
+  EXPECT_THAT(page, HasSubstr("thermal drift, which moved squareness Δβxz by 10 times its U"));
   EXPECT_THAT(page, HasSubstr("(3.000 ± 0.020)\u00a0×\u00a010<sup>−6</sup>"));  // declared
   EXPECT_THAT(page, HasSubstr("the joint fit does not bear it out"));
   EXPECT_THAT(page, HasSubstr("measure a second feed"));
