@@ -192,7 +192,7 @@ std::string straightness_of(const Result& result) {
 }  // namespace
 
 std::string parts_beside(const Result& result) {
-  const std::vector<std::string> known = effect_names();
+  const std::vector<std::string>& known = effect_names();
   std::vector<std::string> parts;
   for (const std::string& term : result.final->effects) {
     const std::string name = term.substr(0, term.find('['));
