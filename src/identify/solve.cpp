@@ -123,12 +123,11 @@ class FitProblem {
     }
     if (is_linear) eliminated_.try_emplace(i, observation, noise, columns, observation.values);
     if (blocks.empty()) return;
-    ceres::CostFunction* cost = nullptr;
     if (is_linear)
-      cost = new CompressedResidual(model, eliminated_.at(i));
+      problem_.AddResidualBlock(new CompressedResidual(model, eliminated_.at(i)), nullptr, blocks);
     else
-      cost = new ProfileResidual(model, observation, noise, columns);
-    problem_.AddResidualBlock(cost, nullptr, blocks);
+      problem_.AddResidualBlock(new ProfileResidual(model, observation, noise, columns), nullptr,
+                                blocks);
   }
 
   Unknowns unknowns_;

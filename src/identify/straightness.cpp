@@ -137,20 +137,18 @@ class Locus {
   [[nodiscard]] std::vector<QuantityValue> deviations(const Eigen::VectorXd& x,
                                                       const SlideRange& travel) const {
     if (x.size() == 0) return {};
-    const Eigen::Vector2d both(travel.least, travel.greatest);
-    const Eigen::MatrixXd own = columns(x), ends = columns(both), left = left_of_curve(x),
-                          left_at_ends = left_of_curve(both);
+    const Eigen::VectorXd share = (x.array() - travel.least) / (travel.greatest - travel.least);
+    const auto from_line = [&](const Eigen::MatrixXd& at, const Eigen::MatrixXd& at_ends) {
+      return Eigen::MatrixXd(at - (1.0 - share.array()).matrix() * at_ends.row(0) -
+                             share * at_ends.row(1));
+    };
+    const Eigen::Vector2d ends(travel.least, travel.greatest);
+    const Eigen::MatrixXd rows = from_line(columns(x), columns(ends)),
+                          left = from_line(left_of_curve(x), left_of_curve(ends));
     std::vector<QuantityValue> out(static_cast<std::size_t>(x.size()));
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      const double share = (x[i] - travel.least) / (travel.greatest - travel.least);
-      const auto from_line = [&](const Eigen::MatrixXd& at, const Eigen::MatrixXd& at_ends) {
-        return Eigen::RowVectorXd(at.row(i) - (1.0 - share) * at_ends.row(0) -
-                                  share * at_ends.row(1));
-      };
-      const Eigen::RowVectorXd row = from_line(own, ends);
-      Reported::set(value(row), spread(row, from_line(left, left_at_ends)), kMicrometre,
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      Reported::set(value(rows.row(i)), spread(rows.row(i), left.row(i)), kMicrometre,
                     out[static_cast<std::size_t>(i)]);
-    }
     return out;
   }
 
@@ -252,27 +250,6 @@ void add_error(const ReferenceLine& line, const Eigen::VectorXd& x, const Spread
 }
 
 }  // namespace
-
-Setup on_slide() {
-  Setup setup;
-  setup.kind = Kind::slide;
-  return setup;
-}
-
-Eigen::MatrixXd form_columns(const Model& model, const ModelTerm& term,
-                             std::span<const double> shapes, Setup setup,
-                             const Eigen::VectorXd& x) {
-  const Eigen::VectorXd positions =
-      setup.kind == Kind::face ? Eigen::VectorXd(x.array() - setup.spindle_position_mm) : x;
-  setup.center_mm = 0.0;
-  setup.first_mm = positions[0];
-  setup.last_mm = positions[positions.size() - 1];
-  Eigen::MatrixXd out(x.size(), term.effect->amplitudes());
-  term.effect->columns(
-      {{positions.data(), static_cast<std::size_t>(positions.size())}, setup, model.machine},
-      shapes, out);
-  return out;
-}
 
 ReferenceLine least_squares_line(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
   ReferenceLine line{ReferenceLineKind::least_squares};

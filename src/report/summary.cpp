@@ -189,23 +189,6 @@ std::string straightness_of(const Result& result) {
   return "E_ZX is not determined" + (form.reason.empty() ? "" : ": " + form.reason);
 }
 
-}  // namespace
-
-std::string parts_beside(const Result& result) {
-  const std::vector<std::string>& known = effect_names();
-  std::vector<std::string> parts;
-  for (const std::string& term : result.final->effects) {
-    const std::string name = term.substr(0, term.find('['));
-    if (std::ranges::count(known, name) == 0 || std::ranges::count(parts, name) > 0) continue;
-    const Description& effect = specimen(name).description();
-    if (effect.motion == MotionError::none && effect.standard_name.starts_with("E_ZX,"))
-      parts.push_back(name);
-  }
-  return parts.empty() ? "" : ", without " + effect_titles(parts, " and ");
-}
-
-namespace {
-
 std::string squareness_of(const Result& result) {
   if (const FittedParameter* const p = squareness_parameter(result))
     return is_known(*p) ? value_text(*p, kMicroradian) + " µm/m" : "not determined by these data";

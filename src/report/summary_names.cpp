@@ -28,6 +28,19 @@ std::string effect_titles(const std::vector<std::string>& names, const std::stri
   return joined(out, separator);
 }
 
+std::string parts_beside(const Result& result) {
+  const std::vector<std::string>& known = effect_names();
+  std::vector<std::string> parts;
+  for (const std::string& term : result.final->effects) {
+    const std::string name = term.substr(0, term.find('['));
+    if (std::ranges::count(known, name) == 0 || std::ranges::count(parts, name) > 0) continue;
+    const Description& effect = specimen(name).description();
+    if (effect.motion == MotionError::none && effect.standard_name.starts_with("E_ZX,"))
+      parts.push_back(name);
+  }
+  return parts.empty() ? "" : ", without " + effect_titles(parts, " and ");
+}
+
 std::string parameter_title(const FittedParameter& parameter) {
   const std::size_t dot = parameter.name.rfind('.');
   if (dot == std::string::npos) return parameter.name;

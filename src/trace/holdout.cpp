@@ -36,10 +36,11 @@ Eigen::MatrixXd below(const Eigen::MatrixXd& top, const Eigen::MatrixXd& bottom)
   return out;
 }
 
-/// Triangle of the rows of all blocks from each on, of none at the end.
-std::vector<Eigen::MatrixXd> triangles_from(const std::vector<Eigen::MatrixXd>& rows) {
-  std::vector<Eigen::MatrixXd> out(rows.size() + 1, Eigen::MatrixXd(0, rows.front().cols()));
-  for (std::size_t i = rows.size(); i-- > 0;) out[i] = upper_triangle(below(rows[i], out[i + 1]));
+/// The triangle of what comes before each block: `first` and the blocks before it.
+template <typename Iterator>
+std::vector<Eigen::MatrixXd> triangles_before(Eigen::MatrixXd first, Iterator block, Iterator end) {
+  std::vector<Eigen::MatrixXd> out{std::move(first)};
+  for (; block != end; ++block) out.push_back(upper_triangle(below(out.back(), *block)));
   return out;
 }
 
@@ -95,17 +96,20 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
   std::vector<Eigen::MatrixXd> rows;
   for (std::size_t i = 0; i < count; ++i)
     rows.push_back(white_rows(linear, data, i, candidate.columns));
-  const std::vector<Eigen::MatrixXd> behind = triangles_from(rows);
-  Eigen::MatrixXd before = Eigen::MatrixXd::Zero(linear.prior_rows.rows(), k + a + 1);
-  before.leftCols(k) = linear.prior_rows;
-  before.rightCols(1) = linear.prior_residuals;
+  Eigen::MatrixXd priors = Eigen::MatrixXd::Zero(linear.prior_rows.rows(), k + a + 1);
+  priors.leftCols(k) = linear.prior_rows;
+  priors.rightCols(1) = linear.prior_residuals;
+  const std::vector<Eigen::MatrixXd> before =
+      triangles_before(std::move(priors), rows.begin(), rows.end());
+  const std::vector<Eigen::MatrixXd> behind =
+      triangles_before(Eigen::MatrixXd(0, k + a + 1), rows.rbegin(), rows.rend());
   PredictionError heights;
   bool shown_by_each = true;
   double support = 0.0, shown = 0.0, samples = 0.0;
-  for (std::size_t i = 0; i < count; before = upper_triangle(below(before, rows[i])), ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const auto model = rows[i].leftCols(k), effect = rows[i].middleCols(k, a);
     if (effect.isZero(0.0)) continue;
-    const FitOfOthers others(below(before, behind[i + 1]), amplitudes);
+    const FitOfOthers others(below(before[i], behind[count - 1 - i]), amplitudes);
     if (others.rank < whole.rank || !(others.expected() >= gates.holdout_share * whole.gain))
       continue;
     const Eigen::VectorXd carried = others.with.values.bottomRows(a);
