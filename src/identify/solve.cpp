@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <boost/random/sobol.hpp>
 #include <cmath>
 #include <map>
 
@@ -13,6 +14,11 @@
 
 namespace slideway {
 namespace {
+
+constexpr std::size_t kManyShapes =
+    3;  // with as many, one after the other may end in a local minimum
+constexpr int kStarts =
+    8;  // so many find Gauss 1 to 3 of NIST in ranges of 1.5 to 3 times their starts
 
 ceres::Solver::Options solver_options() {
   ceres::Solver::Options options;
@@ -210,17 +216,44 @@ void scan_shapes(const Model& model, const std::vector<Noise>& noise, Estimate& 
   if (model.shapes() == 0) return;
   const Linearisation linear = linearise(model, estimate);
   const EliminatedResidual eliminated(model, linear, noise);
+  std::vector<std::vector<double>> axes;
   for (const ModelTerm& term : model.terms)
-    for (int s = 0; s < static_cast<int>(term.effect->shapes().size()); ++s) {
-      double& shape = estimate.shapes[term.first_shape + s];
-      double least = INFINITY, best = shape;
-      for (const double value : shape_grid(model, term, s)) {
-        shape = value;
-        const double cost = eliminated.cost(estimate.shapes);
-        if (cost < least) least = cost, best = value;
+    for (int s = 0; s < static_cast<int>(term.effect->shapes().size()); ++s)
+      axes.push_back(shape_grid(model, term, s));
+  // One shape after the other, until none moves: from the shapes as they are and, where several may
+  // lie in each other's way, from other places of their ranges.
+  const auto descend = [&](Eigen::VectorXd& shapes) {
+    double least = eliminated.cost(shapes);
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (std::size_t s = 0; s < axes.size(); ++s) {
+        double best = shapes[s];
+        for (const double value : axes[s]) {
+          shapes[s] = value;
+          const double cost = eliminated.cost(shapes);
+          if (cost < least) least = cost, best = value, moved = true;
+        }
+        shapes[s] = best;
       }
-      shape = best;
     }
+    return least;
+  };
+  double least = descend(estimate.shapes);
+  if (axes.size() < kManyShapes) return;
+  estimate.shapes = eliminated_optimum(model, linear, noise, estimate.shapes);
+  least = eliminated.cost(estimate.shapes);
+  boost::random::sobol places(axes.size());
+  const auto last = static_cast<double>(places.max());
+  for (int start = 0; start < kStarts; ++start) {
+    Eigen::VectorXd shapes(std::ssize(axes));
+    for (std::size_t s = 0; s < axes.size(); ++s)
+      shapes[s] = axes[s][static_cast<std::size_t>(static_cast<double>(places()) / last *
+                                                   static_cast<double>(axes[s].size() - 1))];
+    descend(shapes);
+    shapes = eliminated_optimum(model, linear, noise, shapes);
+    const double cost = eliminated.cost(shapes);
+    if (cost < least) least = cost, estimate.shapes = shapes;
+  }
 }
 
 SolveSummary solve(const Model& model, Linearisation& linear, const std::vector<Noise>& noise,

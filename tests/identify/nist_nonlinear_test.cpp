@@ -192,43 +192,12 @@ class FormulaEffect : public Effect {
   std::vector<Shape> shapes_;
 };
 
-/// A file of NIST: starts, certified values and deviations by number of b; the readings.
-struct NistFile {
-  std::map<int, std::vector<double>> certified;  // start 1, start 2, value, deviation
-  double residual_deviation = 0.0;
-  std::multimap<double, double> points;
-};
-
-std::vector<double> numbers_in(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<double> out;
-  for (double value; in >> value;) out.push_back(value);
-  return out;
-}
-
-NistFile read_nist(const std::filesystem::path& path) {
-  NistFile out;
-  std::ifstream in(path);
-  bool data = false;
-  for (std::string line; std::getline(in, line);) {
-    int b = 0, skip = 0;
-    if (std::sscanf(line.c_str(), " b%d = %n", &b, &skip) == 1 && skip > 0)
-      out.certified[b] = numbers_in(line.substr(skip));
-    if (line.starts_with("Residual Standard Deviation:"))
-      out.residual_deviation = std::stod(line.substr(line.find(':') + 1));
-    if (const std::vector<double> row = numbers_in(line); data && row.size() == 2)
-      out.points.emplace(row[1], row[0]);
-    data |= line.starts_with("Data:") && line.find('x') != std::string::npos;
-  }
-  return out;
-}
-
 class NistNonlinear : public ::testing::TestWithParam<NistFormula> {
  protected:
   void SetUp() override {
     const std::filesystem::path folder = measured_data() / "nist_strd_nonlinear";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no nist_strd_nonlinear";
-    file_ = read_nist(folder / (GetParam().name + ".dat"));
+    file_ = nist::read(folder / (GetParam().name + ".dat"));
     profiles_ = nist::profiles(file_.points);
     // The certified deviations hold for independent readings of one precision: it is declared.
     for (Profile& profile : profiles_) profile.standard_uncertainty = file_.residual_deviation;
@@ -262,7 +231,7 @@ class NistNonlinear : public ::testing::TestWithParam<NistFormula> {
     }
   }
 
-  NistFile file_;
+  nist::File file_;
   std::vector<Profile> profiles_;
 };
 

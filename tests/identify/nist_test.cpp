@@ -15,47 +15,12 @@
 namespace slideway {
 namespace {
 
-struct Certified {
-  std::vector<double> coefficients, deviations;
-  double residual_deviation = 0.0;
-};
-
 class NistLinear : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     folder_ = measured_data() / "nist_strd_linear";
     if (!std::filesystem::exists(folder_ / "certified.csv"))
       GTEST_SKIP() << "no nist_strd_linear; set SLIDEWAY_DATA";
-  }
-
-  [[nodiscard]] std::vector<std::vector<std::string>> rows(const std::string& file) const {
-    std::ifstream in(folder_ / file);
-    std::vector<std::vector<std::string>> out;
-    for (std::string line; std::getline(in, line);) {
-      if (line.empty() || line[0] == '#') continue;
-      std::istringstream fields(line);
-      out.emplace_back();
-      for (std::string field; std::getline(fields, field, ',');) out.back().push_back(field);
-    }
-    out.erase(out.begin());  // header
-    return out;
-  }
-
-  [[nodiscard]] Certified certified(const std::string& set) const {
-    Certified out;
-    for (const auto& row : rows("certified.csv")) {
-      if (row[0] != set) continue;
-      out.coefficients.push_back(std::stod(row[3]));
-      out.deviations.push_back(std::stod(row[4]));
-      out.residual_deviation = std::stod(row[6]);
-    }
-    return out;
-  }
-
-  [[nodiscard]] std::vector<Profile> profiles(const std::string& set) const {
-    std::multimap<double, double> points;
-    for (const auto& row : rows(set + ".csv")) points.emplace(std::stod(row[0]), std::stod(row[1]));
-    return nist::profiles(points);
   }
 
   std::filesystem::path folder_;
@@ -70,9 +35,9 @@ double wanted_digits(const std::string& set) {
 
 TEST_P(NistLinear, CoefficientsAndTheirUncertaintiesAreTheCertifiedOnes) {
   const std::string& set = GetParam();
-  const Certified answer = certified(set);
+  const nist::Certified answer = nist::certified(folder_, set);
   const int degree = static_cast<int>(answer.coefficients.size()) - 1;
-  std::vector<Profile> data = profiles(set);
+  std::vector<Profile> data = nist::profiles(nist::points(folder_, set));
   // The certified deviations hold for independent readings of one precision: it is declared.
   if (answer.residual_deviation > 0.0)
     for (Profile& profile : data) profile.standard_uncertainty = answer.residual_deviation;
