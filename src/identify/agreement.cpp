@@ -36,13 +36,17 @@ struct Alone : SubsetEstimate {
     const auto free =
         static_cast<double>(std::max(basis.cols() - of_priors.rows(), Eigen::Index{0}));
     double known = 0.0;
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+      const bool is_sister = std::ranges::any_of(
+          which, [&](std::size_t own) { return noise[own].pool == noise[i].pool; });
+      if (is_sister) known += std::max(0.0, noise[i].effective_values() - free);
+    }
     for (const std::size_t i : which) {
       const double spread = noise[i].log_long_run_variance();
       log_variance += spread / static_cast<double>(which.size());
       freedom += spread > 0.0 ? 2.0 / spread : HUGE_VAL;
-      known += noise[i].effective_values();
     }
-    if (std::isfinite(freedom)) freedom = std::max(1.0, std::min(freedom, known - free));
+    if (std::isfinite(freedom)) freedom = std::clamp(freedom, 1.0, std::max(1.0, known));
   }
 
   /// Lets columns take what they can of the rows: they say nothing of another side.

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "noise_bounds.hpp"
 #include "residual.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/text.hpp"
@@ -122,6 +123,21 @@ void explain_scaling(const Solution& fit, ModelResult& out) {
     text += "; multiplied by " + significant(std::sqrt(inflation), 2) +
             ", because the slow part of the residual is larger than noise";
   out.notes.push_back(std::move(text));
+}
+
+void explain_resolution(const Solution& fit, ModelResult& out) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < fit.noise.size(); ++i) {
+    const Observation& observation = *fit.linear.observations[i];
+    if (observation.profile->resolution > 0.0 && fit.noise[i].is_estimated() &&
+        fit.noise[i].standard_deviation() <
+            1.001 * least_noise(*observation.profile, observation.values))
+      names.push_back(observation.profile->name);
+  }
+  if (!names.empty())
+    out.notes.push_back(joined(names) +
+                        ": the residual is smaller than rounding to the resolution of the readings "
+                        "makes it; their noise is taken as that rounding's (GUM F.2.2.1)");
 }
 
 void explain_other_form(const Model& model, const Solution& fit, ModelResult& out) {
@@ -278,6 +294,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   if (const std::optional<double> gap = neglected_height(model, fit))
     out.neglected_um = *gap / kMicrometre;
   explain_scaling(fit, out);
+  explain_resolution(fit, out);
   explain_other_form(model, fit, out);
   explain_lone_curve(model, fit, out);
   explain_noise(fit, out);

@@ -77,15 +77,13 @@ QuantityValue straightness(const ModelResult& summary) {
 }
 
 QuantityValue squareness(const ModelResult& summary) {
-  for (const FittedParameter& parameter : summary.parameters) {
-    if (motion_error_of(parameter.name) != MotionError::squareness || !parameter.value) continue;
-    QuantityValue out = parameter;
-    out.value = std::abs(*parameter.value) / kMicroradian;
-    if (parameter.expanded_uncertainty)
-      out.expanded_uncertainty = *parameter.expanded_uncertainty / kMicroradian;
-    return out;
-  }
-  return {};
+  const FittedParameter* const parameter = summary.squareness();
+  if (!parameter || !parameter->value) return {};
+  QuantityValue out = *parameter;
+  out.value = std::abs(*parameter->value) / kMicroradian;
+  if (parameter->expanded_uncertainty)
+    out.expanded_uncertainty = *parameter->expanded_uncertainty / kMicroradian;
+  return out;
 }
 
 }  // namespace

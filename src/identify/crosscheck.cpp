@@ -12,12 +12,6 @@ namespace {
 constexpr double kRunoutCoverage = 2.0;
 constexpr double kConsistent = 1.0;  // E_n up to here is consistent
 
-const FittedParameter* squareness_of(const ModelResult& fit) {
-  for (const FittedParameter& parameter : fit.parameters)
-    if (motion_error_of(parameter.name) == MotionError::squareness) return &parameter;
-  return nullptr;
-}
-
 /// Largest distance from the spindle axis any fitted face reaches, mm.
 std::optional<double> travel(const Model& model) {
   std::optional<double> out;
@@ -50,7 +44,7 @@ SquarenessCheck check_squareness(const Model& model, const std::optional<Runout>
                                  const ModelResult& fit) {
   SquarenessCheck out;
   out.travel_mm = travel(model);
-  const FittedParameter* parameter = squareness_of(fit);
+  const FittedParameter* parameter = fit.squareness();
   if (parameter && parameter->identifiable) {
     out.fit_rad = parameter->value;
     out.fit_U_rad = parameter->expanded_uncertainty;

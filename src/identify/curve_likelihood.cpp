@@ -29,8 +29,7 @@ double matern(double roughness, double u) {
 /// Every amplitude of one length and roughness: with the correlation's root L and the coefficients
 /// L⁻¹ of the knots, a prior a² I. Beside each, a kink at every knot, all of them as likely as
 /// none.
-std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, double roughness,
-                                         double kink_mm) {
+std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, double roughness) {
   const Eigen::MatrixXd root = correlation_root(data.knots(), length, roughness);
   const Eigen::MatrixXd inner = root.transpose() * data.information() * root;
   const double most = inner.trace();
@@ -39,8 +38,8 @@ std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, d
   const IsotropicPrior prior(inner, root.transpose() * data.products());
   const double last = std::sqrt(kMostInformation / most);
   for (double a = std::sqrt(kLeastInformation / most); a < last; a *= kAmplitudeStep)
-    out.push_back({{a, length, roughness}, prior.log_evidence(a * a)});
-  if (!(kink_mm > 0.0)) return out;
+    out.push_back({{a, length, roughness, data.bow_mm()}, prior.log_evidence(a * a)});
+  if (!(data.bow_mm() > 0.0)) return out;
   const Eigen::Index smooth = std::ssize(out);
   Eigen::RowVectorXd amplitudes(smooth), without(smooth);
   for (Eigen::Index i = 0; i < smooth; ++i) {
@@ -48,7 +47,7 @@ std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, d
     without[i] = out[static_cast<std::size_t>(i)].log_likelihood;
   }
   Eigen::MatrixXd kinked =
-      CurvePosterior(data, length, roughness).log_evidence_of_kinks(amplitudes, kink_mm);
+      CurvePosterior(data, length, roughness).log_evidence_of_kinks(amplitudes, data.bow_mm());
   if (kinked.size() == 0) return out;
   kinked.rowwise() += without;
   kinked.array() -= std::log(static_cast<double>(kinked.rows()));
@@ -57,8 +56,18 @@ std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, d
     for (Eigen::Index k = 0; k < kinked.rows(); ++k)
       if (kinked(k, i) > least)
         out.push_back(
-            {{amplitudes[i], length, roughness, CurveKink{k + 1, kink_mm}}, kinked(k, i)});
+            {{amplitudes[i], length, roughness, data.bow_mm(), CurveKink{k + 1, data.bow_mm()}},
+             kinked(k, i)});
   return out;
+}
+
+/// Coefficients of the spline through heights at even knots, side by side.
+Eigen::MatrixXd spline_through(const Eigen::MatrixXd& heights) {
+  const Eigen::Index count = heights.rows();
+  Eigen::MatrixXd spline = Eigen::MatrixXd::Identity(count, count);
+  for (Eigen::Index i = 1; i + 1 < count; ++i)
+    spline.row(i).segment(i - 1, 3) << 1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0;
+  return spline.lu().solve(heights);
 }
 
 }  // namespace
@@ -76,7 +85,7 @@ Eigen::MatrixXd correlation_root(const Knots& knots, double length, double rough
 
 CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
                      const std::vector<Noise>& noise, const Estimate& estimate)
-    : knots_(*term.effect->knots()) {
+    : knots_(*term.effect->knots()), bow_mm_(estimate.curve->bow_mm) {
   Linearisation data = linear;
   const Eigen::Index declared = linear.prior_rows.rows() - linear.curve_rows;
   data.prior_rows = linear.prior_rows.topRows(declared);
@@ -99,6 +108,15 @@ CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
   target -= basis * (basis.transpose() * target).eval();
   information_ = curve.transpose() * curve;
   products_ = curve.transpose() * target;
+  bow_.form = bow_form(knots_);
+  const Eigen::VectorXd informed = information_ * bow_.form;
+  const double of_data = informed.dot(bow_.form), of_prior = 1.0 / (bow_mm_ * bow_mm_);
+  bow_.variance = 1.0 / (of_data + of_prior);
+  bow_.mean = bow_.variance * products_.dot(bow_.form);
+  bow_.moved = bow_.variance * informed;
+  bow_.determined = of_data > of_prior;
+  products_ -= bow_.mean * informed;
+  information_ -= bow_.moved * informed.transpose();
   kinks_ = kink_forms(knots_);
   informed_kinks_ = information_ * kinks_;
 }
@@ -111,13 +129,16 @@ Eigen::MatrixXd kink_forms(const Knots& knots) {
   for (Eigen::Index k = 0; k < heights.cols(); ++k)
     heights.col(k) =
         ((x - first) / (x[k + 1] - first)).min((last - x) / (last - x[k + 1])).matrix();
-  Eigen::MatrixXd spline = Eigen::MatrixXd::Identity(count, count);
-  for (Eigen::Index i = 1; i + 1 < count; ++i)  // of even knots
-    spline.row(i).segment(i - 1, 3) << 1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0;
-  return spline.lu().solve(heights);
+  return spline_through(heights);
 }
 
-std::vector<Hypothesis> likely_priors(const CurveData& data, double kink_mm) {
+Eigen::VectorXd bow_form(const Knots& knots) {
+  const Eigen::ArrayXd x = knots.positions_mm.array();
+  const double first = x[0], last = x[x.size() - 1], half = 0.5 * (last - first);
+  return spline_through(((x - first) * (last - x) / (half * half)).matrix());
+}
+
+std::vector<Hypothesis> likely_priors(const CurveData& data) {
   const Eigen::VectorXd& x = data.knots().positions_mm;
   const double travel = x[x.size() - 1] - x[0];
   std::vector<CurvePrior> shapes;
@@ -127,7 +148,7 @@ std::vector<Hypothesis> likely_priors(const CurveData& data, double kink_mm) {
       shapes.push_back({0.0, std::min(length, 2.0 * travel), roughness});
   std::vector<std::vector<Hypothesis>> found(shapes.size());
   parallel_for(shapes.size(), [&](std::size_t i) {
-    found[i] = along_amplitudes(data, shapes[i].length_mm, shapes[i].roughness, kink_mm);
+    found[i] = along_amplitudes(data, shapes[i].length_mm, shapes[i].roughness);
   });
   std::vector<Hypothesis> out;
   double smooth = -INFINITY, best = -INFINITY;
@@ -154,12 +175,14 @@ CurvePosterior::CurvePosterior(const CurveData& data, double length_mm, double r
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(root.transpose() * data.information() *
                                                              root);
   information_ = eigen.eigenvalues().cwiseMax(0.0);
-  axes_ = root * eigen.eigenvectors();
-  products_ = axes_.transpose() * data.products();
-  kinks_ = data.kinks();
-  kinks_on_axes_ = axes_.transpose() * data.informed_kinks();
-  kink_information_ = kinks_.cwiseProduct(data.informed_kinks()).colwise().sum();
-  kink_products_ = kinks_.transpose() * data.products();
+  const Eigen::MatrixXd axes = root * eigen.eigenvectors();
+  products_ = axes.transpose() * data.products();
+  kinks_on_axes_ = axes.transpose() * data.informed_kinks();
+  kink_information_ = data.kinks().cwiseProduct(data.informed_kinks()).colwise().sum();
+  kink_products_ = data.kinks().transpose() * data.products();
+  bow_ = data.bow();
+  axes_ = bow_.beside(axes);
+  kinks_ = bow_.beside(data.kinks());
 }
 
 Eigen::VectorXd CurvePosterior::variances(double amplitude) const {
@@ -193,26 +216,31 @@ CurvePosterior::Kink CurvePosterior::kink_of(const CurvePrior& prior) const {
 }
 
 Eigen::VectorXd CurvePosterior::mean(const CurvePrior& prior) const {
-  Eigen::VectorXd out = axes_ * variances(prior.amplitude_mm).cwiseProduct(products_);
+  Eigen::VectorXd out =
+      bow_.mean * bow_.form + axes_ * variances(prior.amplitude_mm).cwiseProduct(products_);
   if (!prior.kink) return out;
   const Kink kink = kink_of(prior);
   return out + kink.height * kink.moves;
 }
 
 Eigen::MatrixXd CurvePosterior::covariance(const CurvePrior& prior) const {
-  Eigen::MatrixXd out = axes_ * variances(prior.amplitude_mm).asDiagonal() * axes_.transpose();
+  Eigen::MatrixXd out = axes_ * variances(prior.amplitude_mm).asDiagonal() * axes_.transpose() +
+                        bow_.variance * bow_.form * bow_.form.transpose();
   if (!prior.kink) return out;
   const Kink kink = kink_of(prior);
   return out + kink.variance * kink.moves * kink.moves.transpose();
 }
 
-Eigen::MatrixXd CurvePosterior::determined(const CurvePrior& prior) const {
-  std::vector<Eigen::Index> which;
-  for (Eigen::Index i = 0; i < information_.size(); ++i)
-    if (prior.amplitude_mm * prior.amplitude_mm * information_[i] > 1.0) which.push_back(i);
+Eigen::MatrixXd CurvePosterior::determined(const CurvePrior& prior, Eigen::Index most) const {
   const bool has_kink = prior.kink && kink_of(prior).determined > 1.0;
-  Eigen::MatrixXd out(axes_.rows(), std::ssize(which) + (has_kink ? 1 : 0));
-  out.leftCols(std::ssize(which)) = axes_(Eigen::all, which);
+  most -= (bow_.determined ? 1 : 0) + (has_kink ? 1 : 0);
+  std::vector<Eigen::Index> which;
+  for (Eigen::Index i = information_.size() - 1; i >= 0 && std::ssize(which) < most; --i)
+    if (prior.amplitude_mm * prior.amplitude_mm * information_[i] > 1.0) which.push_back(i);
+  const Eigen::Index of_axes = std::ssize(which), of_bow = bow_.determined ? 1 : 0;
+  Eigen::MatrixXd out(axes_.rows(), of_axes + of_bow + (has_kink ? 1 : 0));
+  out.leftCols(of_axes) = axes_(Eigen::all, which);
+  if (bow_.determined) out.col(of_axes) = bow_.form;
   if (has_kink) out.rightCols(1) = kinks_.col(prior.kink->knot - 1);
   return out;
 }
@@ -221,13 +249,16 @@ void CurvePosterior::add_moments(std::span<const Hypothesis> hypotheses,
                                  std::span<const double> weights, const Eigen::VectorXd& centre,
                                  Eigen::MatrixXd& out) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(information_.size());
+  const Eigen::VectorXd bow = bow_.mean * bow_.form;
+  double all = 0.0;
   Eigen::MatrixXd apart(axes_.rows(), 2 * std::ssize(hypotheses));
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
     const CurvePrior& prior = hypotheses[h].prior;
     const Eigen::VectorXd own = variances(prior.amplitude_mm);
     sum += weights[h] * own;
+    all += weights[h];
     auto pair = apart.middleCols(2 * static_cast<Eigen::Index>(h), 2);
-    pair.col(0) = axes_ * own.cwiseProduct(products_) - centre;
+    pair.col(0) = bow + axes_ * own.cwiseProduct(products_) - centre;
     pair.col(1).setZero();
     if (prior.kink) {
       const Kink kink = kink_of(prior);
@@ -236,7 +267,8 @@ void CurvePosterior::add_moments(std::span<const Hypothesis> hypotheses,
     }
     pair *= std::sqrt(weights[h]);
   }
-  out += axes_ * sum.asDiagonal() * axes_.transpose() + apart * apart.transpose();
+  out += axes_ * sum.asDiagonal() * axes_.transpose() + apart * apart.transpose() +
+         all * bow_.variance * bow_.form * bow_.form.transpose();
 }
 
 namespace {

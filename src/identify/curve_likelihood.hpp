@@ -15,8 +15,23 @@ Eigen::MatrixXd correlation_root(const Knots& knots, double length_mm, double ro
 /// the spline through it at the knots, side by side.
 Eigen::MatrixXd kink_forms(const Knots& knots);
 
+/// A parabola of height 1 at the middle of the travel and 0 at its ends, likewise.
+Eigen::VectorXd bow_form(const Knots& knots);
+
+/// The bow of a curve, given the rest c of its knots: form (mean - moved · c), with a variance.
+struct CurveBow {
+  Eigen::VectorXd form, moved;
+  double mean = 0.0, variance = 0.0;
+  bool determined = false;  // the data know it better than its prior
+
+  /// Forms of the rest, side by side, with the bow that goes with each.
+  [[nodiscard]] Eigen::MatrixXd beside(const Eigen::MatrixXd& forms) const {
+    return forms - form * (moved.transpose() * forms);
+  }
+};
+
 /// The data's information A on the knots of a curve and its product b with the values, when the
-/// curve is 0 and everything else is free.
+/// curve is 0 and everything else, its bow as well, is free.
 class CurveData {
  public:
   /// @param linear  at the estimate; the prior of the curve is left aside
@@ -24,6 +39,8 @@ class CurveData {
             const Estimate& estimate);
 
   [[nodiscard]] const Knots& knots() const { return knots_; }
+  [[nodiscard]] double bow_mm() const { return bow_mm_; }  // standard deviation of its height
+  [[nodiscard]] const CurveBow& bow() const { return bow_; }
   [[nodiscard]] const Eigen::MatrixXd& information() const { return information_; }
   [[nodiscard]] const Eigen::VectorXd& products() const { return products_; }
   /// kink_forms().
@@ -35,6 +52,8 @@ class CurveData {
 
  private:
   Knots knots_;
+  double bow_mm_ = 0.0;
+  CurveBow bow_;
   Eigen::MatrixXd information_, carried_, kinks_, informed_kinks_;
   Eigen::VectorXd products_;
 };
@@ -45,9 +64,9 @@ struct Hypothesis {
   double log_likelihood = 0.0;
 };
 
-/// Those of the grid that the data do not rule out, by roughness, length and amplitude.
-/// @param kink_mm  standard deviation of the height of a kink; 0: there is none
-std::vector<Hypothesis> likely_priors(const CurveData& data, double kink_mm);
+/// Those of the grid that the data do not rule out, by roughness, length and amplitude; with kinks
+/// about as high as a bow, if it has a height.
+std::vector<Hypothesis> likely_priors(const CurveData& data);
 
 /// The likeliest, or null.
 const Hypothesis* likeliest(const std::vector<Hypothesis>& hypotheses);
@@ -59,8 +78,9 @@ class CurvePosterior {
 
   [[nodiscard]] Eigen::VectorXd mean(const CurvePrior& prior) const;
   [[nodiscard]] Eigen::MatrixXd covariance(const CurvePrior& prior) const;
-  /// Directions that the data know better than the prior.
-  [[nodiscard]] Eigen::MatrixXd determined(const CurvePrior& prior) const;
+  /// Directions that the data know better than the prior, so many at most: those that they know
+  /// best.
+  [[nodiscard]] Eigen::MatrixXd determined(const CurvePrior& prior, Eigen::Index most) const;
 
   /// Log of the likelihood of a curve with a kink over that of the same curve without: a row for a
   /// kink at each knot but the ends, a column for each amplitude.
@@ -81,9 +101,10 @@ class CurvePosterior {
   [[nodiscard]] Kink kink_of(const CurvePrior& prior) const;
   [[nodiscard]] Eigen::VectorXd variances(double amplitude) const;
 
-  Eigen::MatrixXd axes_;
+  CurveBow bow_;
+  Eigen::MatrixXd axes_;  // each with the bow that goes with it; as kinks_
   Eigen::VectorXd information_, products_;
-  Eigen::MatrixXd kinks_, kinks_on_axes_;             // CurveData::kinks(); axesᵀ A of them
+  Eigen::MatrixXd kinks_, kinks_on_axes_;             // axesᵀ A of CurveData::kinks()
   Eigen::VectorXd kink_information_, kink_products_;  // of a kink alone
 };
 

@@ -25,37 +25,45 @@ CurvePrior first_curve_prior(const Model& model, const Knots& knots) {
     const bool slope = observation->profile->setup.quantity == Quantity::slope;
     largest = std::max(largest, slope ? size * travel : size);
   }
-  return {largest > 0.0 ? largest : kMicrometre, travel / 4.0, 1.5};
-}
-
-Eigen::MatrixXd curve_prior_rows(const Knots& knots, const CurvePrior& prior) {
-  Eigen::MatrixXd root =
-      prior.amplitude_mm * correlation_root(knots, prior.length_mm, prior.roughness);
-  if (prior.kink) {
-    const Eigen::VectorXd kink =
-        prior.kink->height_mm * kink_forms(knots).col(prior.kink->knot - 1);
-    const Eigen::MatrixXd covariance = root * root.transpose() + kink * kink.transpose();
-    root = covariance.llt().matrixL();
-  }
-  return root.triangularView<Eigen::Lower>().solve(
-      Eigen::MatrixXd::Identity(root.rows(), root.cols()));
+  const double height = largest > 0.0 ? largest : kMicrometre;
+  return {height, travel / 4.0, 1.5, height};
 }
 
 namespace {
 
-double height_of_kink(const Model& model, const CurveData& data) {
-  return first_curve_prior(model, data.knots()).amplitude_mm;
+/// Rows R with RᵀR the inverse of a covariance C become those of C + (a form of this height) ⊗
+/// itself.
+void add_form(double height, const Eigen::VectorXd& form, Eigen::MatrixXd& rows) {
+  const Eigen::VectorXd white = height * (rows * form);
+  const double size = white.squaredNorm();
+  if (!(size > 0.0)) return;
+  rows -= (1.0 - 1.0 / std::sqrt(1.0 + size)) / size * white * (white.transpose() * rows).eval();
 }
 
 }  // namespace
 
+Eigen::MatrixXd curve_prior_rows(const Knots& knots, const CurvePrior& prior) {
+  const Eigen::MatrixXd root =
+      prior.amplitude_mm * correlation_root(knots, prior.length_mm, prior.roughness);
+  Eigen::MatrixXd rows = root.triangularView<Eigen::Lower>().solve(
+      Eigen::MatrixXd::Identity(root.rows(), root.cols()));
+  add_form(prior.bow_mm, bow_form(knots), rows);
+  if (prior.kink)
+    add_form(prior.kink->height_mm, kink_forms(knots).col(prior.kink->knot - 1), rows);
+  return rows;
+}
+
 CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,
                              const std::vector<Noise>& noise, const Estimate& estimate) {
   const CurveData data(*curve_term(model), linear, noise, estimate);
-  const std::vector<Hypothesis> likely = likely_priors(data, height_of_kink(model, data));
+  const std::vector<Hypothesis> likely = likely_priors(data);
   const Hypothesis* const best = likeliest(likely);
   const CurvePrior prior = best ? best->prior : *estimate.curve;
-  return {prior, CurvePosterior(data, prior.length_mm, prior.roughness).determined(prior)};
+  Eigen::Index values = 0;
+  for (const Observation* observation : linear.observations)
+    values += observation->values.size() - observation->nuisances.cols();
+  return {prior,
+          CurvePosterior(data, prior.length_mm, prior.roughness).determined(prior, values / 3)};
 }
 
 Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisation& linear,
@@ -64,7 +72,7 @@ Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisatio
   const CurveData data(*curve_term(model), linear, noise, estimate);
   const CurvePrior& prior = *estimate.curve;
   const CurvePosterior own(data, prior.length_mm, prior.roughness);
-  const std::vector<Hypothesis> likely = likely_priors(data, height_of_kink(model, data));
+  const std::vector<Hypothesis> likely = likely_priors(data);
   const Eigen::Index count = data.knots().positions_mm.size();
   Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(count, count);
   if (!likely.empty())
@@ -73,7 +81,7 @@ Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisatio
 }
 
 Linearisation beside_curve(const Model& model, const Linearisation& linear,
-                           const CurveEstimate& curve) {
+                           const CurveEstimate& curve, const Estimate& estimate) {
   const ModelTerm& term = *curve_term(model);
   const Eigen::Index first = term.first_amplitude + term.effect->knots()->first;
   const Eigen::Index own = curve.determined.rows(), free = curve.determined.cols();
@@ -85,7 +93,11 @@ Linearisation beside_curve(const Model& model, const Linearisation& linear,
         columns.rightCols(behind);
     return all;
   };
-  for (Eigen::MatrixXd& columns : out.columns) columns = replaced(columns);
+  for (std::size_t i = 0; i < out.columns.size(); ++i) {
+    out.residuals[i] +=
+        linear.columns[i].middleCols(first, own) * estimate.amplitudes.segment(first, own);
+    out.columns[i] = replaced(linear.columns[i]);
+  }
   const Eigen::Index declared = linear.prior_rows.rows() - linear.curve_rows;
   out.prior_rows = replaced(linear.prior_rows.topRows(declared));
   out.prior_residuals = linear.prior_residuals.head(declared);

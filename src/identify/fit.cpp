@@ -103,9 +103,10 @@ void find_null_directions(const Model& model, const Compressed& compressed, Solu
 void find_uncertainty(const Model& model, const Compressed& compressed, Solution& fit) {
   const double inflation = fit.uncertainty.inflation;
   fit.uncertainty = assess(fit.linear, compressed, fit.noise, fit.rank.basis, inflation);
-  if (fit.estimate.curve)
-    fit.uncertainty.add(covariance_of_curve_prior(model, fit.linear, fit.noise, fit.estimate),
-                        compressed);
+  if (!fit.estimate.curve) return;
+  fit.uncertainty.has_curve = true;
+  fit.uncertainty.add(covariance_of_curve_prior(model, fit.linear, fit.noise, fit.estimate),
+                      compressed);
 }
 
 /// Rank, gauge and uncertainty at the estimate.
@@ -152,7 +153,8 @@ FitNoise noise_of(const Model& model, const Linearisation& linear) {
 /// @return whether both are what they were
 bool settle(const Model& model, Solution& fit, Estimate& estimate,
             std::optional<CurveEstimate>& curve) {
-  FitNoise noise = noise_of(model, curve ? beside_curve(model, fit.linear, *curve) : fit.linear);
+  FitNoise noise =
+      noise_of(model, curve ? beside_curve(model, fit.linear, *curve, estimate) : fit.linear);
   const bool settled = has_settled(fit.noise, noise.profiles);
   fit.noise = std::move(noise.profiles);
   fit.uncertainty.inflation = noise.inflation;

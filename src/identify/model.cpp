@@ -54,11 +54,11 @@ SlideRange slide_range(const Profile& profile, const Machine& machine) {
   return range;
 }
 
-SlideRange measured_travel(const Model& model) {
+SlideRange measured_travel(const Model& model, const ModelTerm* term) {
   SlideRange out{INFINITY, -INFINITY};
   for (const Observation& observation : model.observations) {
     const Profile& profile = *observation.profile;
-    if (profile.role != Role::fit) continue;
+    if (profile.role != Role::fit || (term && !term->acts_on(profile))) continue;
     const SlideRange own = slide_range(profile, model.machine);
     const double foot = profile.setup.base_mm.value_or(0.0) / 2.0;
     out.least = std::min(out.least, own.least - foot);

@@ -17,8 +17,12 @@ bool is_rounding(const Eigen::VectorXd& residual, const Eigen::VectorXd& values)
 Noise rounding_noise(const Observation& observation, const Eigen::VectorXd& residual,
                      Eigen::Index taken);
 
-/// A noise brought between the rounding of the values and their range. Where a fit leaves a profile
+/// The least noise that a profile can have: that of rounding to the resolution of its readings, a
+/// rectangular distribution (GUM F.2.2.1), or to a double; never 0.
+double least_noise(const Profile& profile, const Eigen::VectorXd& values);
+
+/// A noise brought between least_noise() and the range of the values. Where a fit leaves a profile
 /// no value to spare, nothing else keeps the estimate from shrinking or growing without end.
-Noise bounded(const Noise& noise, const Eigen::VectorXd& values);
+Noise bounded(const Noise& noise, const Profile& profile, const Eigen::VectorXd& values);
 
 }  // namespace slideway

@@ -188,7 +188,8 @@ std::vector<Noise> estimated(const PartialEstimate& part, const Linearisation& l
                              const Eigen::MatrixXd& priors, const Gates& gates) {
   std::vector<Noise> out = estimate_noise(part.profiles, priors, gates);
   for (std::size_t k = 0; k < out.size(); ++k)
-    out[k] = bounded(out[k], linear.observations[part.which[k]]->values);
+    out[k] = bounded(out[k], *linear.observations[part.which[k]]->profile,
+                     linear.observations[part.which[k]]->values);
   return out;
 }
 
@@ -273,6 +274,18 @@ Linearisation fitted_alone(const Linearisation& all, std::size_t i) {
   return out;
 }
 
+/// What a profile fitted alone leaves of itself, or nothing where that is no value or rounding.
+std::optional<LinearProfile> beside_all(const Linearisation& alone,
+                                        const Observation& observation) {
+  Eigen::MatrixXd free = observation.nuisances;
+  append_columns(free, alone.columns[0]);
+  Eigen::MatrixXd basis = orthonormal(std::move(free));
+  const Eigen::Index n = observation.values.size();
+  if (basis.cols() >= n || is_rounding(alone.residuals[0], observation.values)) return std::nullopt;
+  return LinearProfile{std::move(basis), Eigen::MatrixXd(n, 0), alone.residuals[0],
+                       observation.profile->standard_uncertainty};
+}
+
 }  // namespace
 
 Eigen::Index slow_cosine_count(Eigen::Index n, const Gates& gates) {
@@ -347,18 +360,16 @@ std::vector<Noise> noise_of_each(const Linearisation& all, const std::vector<Noi
   const std::size_t count = all.observations.size();
   const std::vector<std::size_t> pools = pools_of(all);
   std::vector<Noise> out(count);
-  std::vector<Linearisation> alone(count);
-  std::vector<std::optional<LinearProfile>> fine(count);
+  std::vector<std::optional<LinearProfile>> left(count);
   parallel_for(count, [&](std::size_t i) {
-    alone[i] = fitted_alone(all, i);
-    fine[i] = fine_band(alone[i], 0, gates, {});
+    const Linearisation alone = fitted_alone(all, i);
+    left[i] = fine_band(alone, 0, gates, {});
+    if (!left[i]) left[i] = beside_all(alone, *all.observations[i]);
   });
   PartialEstimate beside;
   for (std::size_t i = 0; i < count; ++i) {
-    beside.add(i, fine[i], *all.observations[i], pools[i]);
-    if (fine[i]) continue;
-    out[i] = noise_beside(alone[i], gates).front();
-    out[i].pool = count + i;
+    beside.add(i, left[i], *all.observations[i], pools[i]);
+    if (!left[i]) out[i] = joint[i];
   }
   const std::vector<Noise> found = estimated(beside, all, Eigen::MatrixXd(0, 0), gates);
   for (std::size_t k = 0; k < found.size(); ++k) out[beside.which[k]] = found[k];

@@ -64,13 +64,13 @@ void allow_for_other_form(const Problem& problem, FittedModel& fitted) {
   const Knots knots = *curve.effect->knots();
   Estimate estimate = fit.estimate;
   estimate.amplitudes.conservativeResizeLike(Eigen::VectorXd::Zero(with.amplitudes()));
-  estimate.curve = first_curve_prior(with, knots);
+  estimate.curve = CurvePrior{};  // neither bow nor kink: the polynomial has the one
   Linearisation linear = linearise(with, estimate);
   linear.residuals = fit.linear.residuals;
   for (Eigen::MatrixXd& columns : linear.columns)  // the polynomial has offset and slope
     columns.middleCols(curve.first_amplitude, knots.first).setZero();
   const CurveData data(curve, linear, fit.noise, estimate);
-  const std::vector<Hypothesis> likely = likely_priors(data, 0.0);
+  const std::vector<Hypothesis> likely = likely_priors(data);
   const Hypothesis* const best = likeliest(likely);
   if (!best || best->log_likelihood < -std::log(model.gates.lack_of_fit_p)) return;
   const ModelTerm& polynomial = *model.find_term(MotionError::straightness);

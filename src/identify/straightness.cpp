@@ -161,11 +161,11 @@ class Locus {
 };
 
 /// Slide coordinates of the readings, of a bridge those of its feet; at most kMostStations.
-Eigen::VectorXd station_positions(const Model& model) {
+Eigen::VectorXd station_positions(const Model& model, const ModelTerm& term) {
   std::vector<double> x;
   for (const Observation* observation : fitted_observations(model)) {
     const Profile& profile = *observation->profile;
-    if (profile.setup.kind != Kind::slide) continue;
+    if (profile.setup.kind != Kind::slide || !term.acts_on(profile)) continue;
     const Stations stations = profile.stations(model.machine);
     const double foot = profile.setup.base_mm.value_or(0.0) / 2.0;
     for (Eigen::Index i = 0; i < stations.size(); ++i)
@@ -269,42 +269,90 @@ std::vector<ReferenceLine> reference_lines(const Eigen::VectorXd& positions,
           least_squares_line(positions, heights), minimum_zone(positions, heights)};
 }
 
-std::optional<Straightness> identified_straightness(const Model& model, const Solution& fit,
-                                                    const MoreVariance& more) {
-  const ModelTerm* term = model.find_term(MotionError::straightness);
-  if (!term) return std::nullopt;
-  const SlideRange travel = measured_travel(model);
+namespace {
+
+/// The error is no smaller than the size of any deviation, so with its U it reaches as far as each
+/// of them with its own, mm. Where the form is small against its U, the points that happen to be
+/// the highest and the lowest say little of that.
+double least_uncertainty(const StraightnessCurve& curve) {
+  double highest = 0.0, lowest = 0.0, reach = 0.0;
+  for (std::size_t i = 0; i < curve.deviation_um.size(); ++i) {
+    highest = std::max(highest, curve.deviation_um[i]);
+    lowest = std::min(lowest, curve.deviation_um[i]);
+    reach = std::max(reach, std::abs(curve.deviation_um[i]) + curve.expanded_uncertainty_um[i]);
+  }
+  return std::max(0.0, reach - (highest - lowest)) * kMicrometre;
+}
+
+std::optional<Straightness> straightness_of(const Model& model, const ModelTerm& term,
+                                            const Solution& fit, const MoreVariance& more) {
+  const SlideRange travel = measured_travel(model, &term);
   if (!(travel.greatest > travel.least)) return std::nullopt;
   Straightness out;
-  if (!is_determined(*term, fit)) {
+  if (!is_determined(term, fit)) {
     out.reason = "these data do not tell the straightness from another effect";
     return out;
   }
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, travel.least, travel.greatest);
   const Reported reported(fit, more);
-  const Locus slide(model, *term, fit, reported, on_slide());
+  const Locus slide(model, term, fit, reported, on_slide());
   const Eigen::MatrixXd columns = slide.columns(x), forms = least_squares_deviations(x) * columns;
   if (forms.norm() <= kRounding * columns.norm()) {
     out.reason = "a straightness of degree 1 is a line, which deviates from no line";
     return out;
   }
-  if (const auto& prior = fit.estimate.curve; prior && term == curve_term(model))
+  if (const auto& prior = fit.estimate.curve; prior && &term == curve_term(model))
     out.form = CurveForm{prior->length_mm, prior->amplitude_mm / kMicrometre, prior->roughness};
   out.curve.position_mm.assign(x.begin(), x.end());
   append(slide.deviations(x, travel), out.curve.deviation_um, out.curve.expanded_uncertainty_um);
   if (const Setup* const face = one_face(model))
-    add_tip(Locus(model, *term, fit, reported, *face), x, travel, out.curve);
-  const Eigen::VectorXd stations = station_positions(model);
+    add_tip(Locus(model, term, fit, reported, *face), x, travel, out.curve);
+  const Eigen::VectorXd stations = station_positions(model, term);
   const std::vector<QuantityValue> heights = slide.deviations(stations, travel);
   for (std::size_t i = 0; i < heights.size(); ++i)
     out.stations.push_back({stations[static_cast<Eigen::Index>(i)], *heights[i].value,
                             heights[i].expanded_uncertainty});
   const Eigen::VectorXd form =
-      forms * fit.estimate.amplitudes.segment(term->first_amplitude, columns.cols());
+      forms * fit.estimate.amplitudes.segment(term.first_amplitude, columns.cols());
   const Eigen::MatrixXd left = slide.left_of_curve(x);
-  for (const ReferenceLine& line : reference_lines(x, form))
-    add_error(line, x, slide.spread(line.sensitivity * columns, line.sensitivity * left), out);
+  const double least_U = least_uncertainty(out.curve);
+  for (const ReferenceLine& line : reference_lines(x, form)) {
+    Spread spread = slide.spread(line.sensitivity * columns, line.sensitivity * left);
+    spread.standard_uncertainty =
+        std::max(spread.standard_uncertainty, least_U / coverage_factor(spread.degrees_of_freedom));
+    add_error(line, x, spread, out);
+  }
   return out;
+}
+
+/// |E_ZX| and its U; infinite where it is not determined.
+double reach(const Straightness& form) {
+  return form.end_point_um && form.expanded_uncertainty_um
+             ? *form.end_point_um + *form.expanded_uncertainty_um
+             : INFINITY;
+}
+
+}  // namespace
+
+std::optional<Straightness> identified_straightness(const Model& model, const Solution& fit,
+                                                    const MoreVariance& more) {
+  std::optional<Straightness> worst;
+  std::vector<StraightnessOfPart> each;
+  for (const ModelTerm& term : model.terms) {
+    if (term.effect->description().motion != MotionError::straightness) continue;
+    std::optional<Straightness> form = straightness_of(model, term, fit, more);
+    if (!form) continue;
+    each.push_back({term.profiles, form->end_point_um, form->expanded_uncertainty_um});
+    if (worst && !(reach(*form) > reach(*worst))) continue;
+    worst = std::move(form);
+    worst->profiles = term.profiles;
+  }
+  if (!worst) return worst;
+  if (each.size() > 1)
+    worst->each = std::move(each);
+  else
+    worst->profiles.clear();
+  return worst;
 }
 
 }  // namespace slideway

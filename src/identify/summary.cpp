@@ -4,6 +4,7 @@
 #include "checks.hpp"
 #include "reported.hpp"
 #include "residual.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/budget.hpp"
 #include "slideway/identify/straightness.hpp"
 #include "slideway/signal/correlation.hpp"
@@ -263,6 +264,19 @@ const FittedParameter* ModelResult::find(const std::string& name) const {
   for (const FittedParameter& parameter : parameters)
     if (parameter.name == name) return &parameter;
   return nullptr;
+}
+
+const FittedParameter* ModelResult::squareness() const {
+  const FittedParameter* worst = nullptr;
+  double most = -INFINITY;
+  for (const FittedParameter& each : parameters) {
+    if (motion_error_of(each.name) != MotionError::squareness) continue;
+    const double reach = each.value && each.expanded_uncertainty
+                             ? std::abs(*each.value) + *each.expanded_uncertainty
+                             : INFINITY;
+    if (reach > most) most = reach, worst = &each;
+  }
+  return worst;
 }
 
 }  // namespace slideway

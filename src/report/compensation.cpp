@@ -105,6 +105,8 @@ void add_straightness(const Analysis& analysis, Compensation& out) {
   const ModelResult& model = *analysis.result.final;
   const TravelSummary& travel = *analysis.result.travel;
   if (!model.straightness) return leave_out("the model has no straightness");
+  if (!model.straightness->each.empty())
+    return leave_out("profiles have forms of their own; accepted: one for all of them");
   const StraightnessCurve& curve = model.straightness->curve;
   if (curve.position_mm.size() < 4)
     return leave_out(model.straightness->reason.empty() ? "the report holds no form"

@@ -20,7 +20,7 @@ constexpr std::size_t kShortNames = 30;               // and for its end
 constexpr std::size_t kTwoLines = 2 * kBoxText - 20;  // with the badge, and words that do not break
 
 std::string in_expanded_uncertainties(double shift) {
-  return number(std::round(100.0 * shift) / 100.0 + 0.0, 2) + " times its U";  // no -0
+  return number(std::round(100.0 * std::abs(shift)) / 100.0, 2) + " times its U";
 }
 
 /// Accepted effects: one of the same rivals that came in for one cut after the other is one, of all
@@ -189,16 +189,26 @@ std::string straightness_of(const Result& result) {
   return "E_ZX is not determined" + (form.reason.empty() ? "" : ": " + form.reason);
 }
 
+/// Of several squarenesses which this is.
+std::string of_several(const FittedParameter& squareness, const ModelResult& model) {
+  const auto count = std::ranges::count_if(model.parameters, is_squareness);
+  const std::size_t first = squareness.name.find('['), last = squareness.name.find(']');
+  if (count < 2 || last == std::string::npos) return "";
+  return " of " + squareness.name.substr(first + 1, last - first - 1) + ", the largest of " +
+         std::to_string(count);
+}
+
 std::string squareness_of(const Result& result) {
-  if (const FittedParameter* const p = squareness_parameter(result))
-    return is_known(*p) ? value_text(*p, kMicroradian) + " µm/m" : "not determined by these data";
+  if (const FittedParameter* const p = result.final ? result.final->squareness() : nullptr)
+    return is_known(*p) ? value_text(*p, kMicroradian) + " µm/m" + of_several(*p, *result.final)
+                        : "not determined by these data";
   const auto is_face = [](const InputSummary& in) { return in.kind == Kind::face; };
   return std::ranges::any_of(result.inputs, is_face) ? "not in the model" : "needs a face";
 }
 
 /// The error that dominates, with its size; "" where nothing was determined.
 std::string lead_of(const Result& result) {
-  const FittedParameter* const angle = squareness_parameter(result);
+  const FittedParameter* const angle = result.final->squareness();
   const bool has_angle = angle != nullptr && is_known(*angle);
   const auto& way = result.final->straightness;
   const bool has_form = way && way->end_point_um;
@@ -301,7 +311,7 @@ Summary summary_of(const Analysis& analysis) {
   out.straightness = straightness_of(result);
   out.squareness = squareness_of(result);
   const bool has_curve = out.straightness.starts_with("E_ZX ") && out.straightness.ends_with("µm");
-  const FittedParameter* const angle = squareness_parameter(result);
+  const FittedParameter* const angle = result.final ? result.final->squareness() : nullptr;
   out.result = out.straightness + (has_curve ? " (end points)" + parts_beside(result) : "") +
                "; squareness " + out.squareness + (angle ? condition(angle->if_no) : "");
   if (!result.final) out.result = "none: nothing was fitted";

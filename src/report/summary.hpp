@@ -85,9 +85,6 @@ void say_crosscheck(const Result& result, Summary& out);
 std::string each_alone(const ProfileCheck& check);
 bool contradicts(const HeldOutCheck& check);
 
-/// Null where it is not in the model.
-const FittedParameter* squareness_parameter(const Result& result);
-
 /// An effect's plain name; "unnamed" is "something without a name".
 std::string effect_title(const std::string& name);
 // An accepted effect, with the profiles it is confined to, and its rivals.
@@ -103,6 +100,8 @@ bool is_squareness(const FittedParameter& parameter);
 /// Whether an effect is the pitch that the form of the vertical guideway makes.
 bool is_vertical(const std::string& effect);
 
+/// "the slide coordinate", of a variable that several profiles share; "" if it is none.
+std::string variable_of(const Unnamed& left);
 /// What has no name, as a curve over a variable or in a profile: "a curve in cut3 alone".
 std::string likeness(const Unnamed& left);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
@@ -66,6 +67,7 @@ bool is_contradicted(const Crosscheck& checks) {
 }
 
 std::vector<std::string> objections(const Result& result) {
+  constexpr int kNamedPairs = 2;  // of profiles that disagree; more are counted
   std::vector<std::string> out;
   for (const Conformity& each : result.conformity)
     if (each.verdict == ConformityVerdict::does_not_conform)
@@ -73,8 +75,18 @@ std::vector<std::string> objections(const Result& result) {
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::inconsistent)
     out.emplace_back("the run-out contradicts the squareness");
+  std::map<std::string, std::pair<int, int>> pairs;  // that disagree, of all, by what
   for (const ProfileCheck& check : result.crosscheck.profiles) {
-    if (!contradicts(check)) continue;
+    auto& [apart, all] = pairs[check.what];
+    apart += contradicts(check) ? 1 : 0;
+    ++all;
+  }
+  for (const auto& [what, count] : pairs)
+    if (count.first > kNamedPairs)
+      out.push_back(std::to_string(count.first) + " of " + std::to_string(count.second) +
+                    " pairs of profiles disagree in " + what);
+  for (const ProfileCheck& check : result.crosscheck.profiles) {
+    if (!contradicts(check) || pairs[check.what].first > kNamedPairs) continue;
     const std::string who = joined(check.profiles, " and ") + " disagree in ";
     const auto known =
         std::ranges::find_if(out, [&](const std::string& each) { return each.starts_with(who); });

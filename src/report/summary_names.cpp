@@ -31,6 +31,9 @@ std::string effect_titles(const std::vector<std::string>& names, const std::stri
 std::string parts_beside(const Result& result) {
   const std::vector<std::string>& known = effect_names();
   std::vector<std::string> parts;
+  std::string of;
+  if (const auto& form = result.final->straightness; form && !form->profiles.empty())
+    of = ", of " + joined(form->profiles) + ", the largest of " + std::to_string(form->each.size());
   for (const std::string& term : result.final->effects) {
     const std::string name = term.substr(0, term.find('['));
     if (std::ranges::count(known, name) == 0 || std::ranges::count(parts, name) > 0) continue;
@@ -38,7 +41,7 @@ std::string parts_beside(const Result& result) {
     if (effect.motion == MotionError::none && effect.standard_name.starts_with("E_ZX,"))
       parts.push_back(name);
   }
-  return parts.empty() ? "" : ", without " + effect_titles(parts, " and ");
+  return of + (parts.empty() ? "" : ", without " + effect_titles(parts, " and "));
 }
 
 std::string parameter_title(const FittedParameter& parameter) {
@@ -71,14 +74,20 @@ bool is_vertical(const std::string& effect) {
   return motion_error_of(effect) == MotionError::vertical_straightness;
 }
 
-std::string likeness(const Unnamed& left) {
+std::string variable_of(const Unnamed& left) {
   constexpr const char* kVariables[][2] = {{"r", "the slide coordinate"},
                                            {"t", "the cutting time"},
                                            {"s", "the cutting distance"},
                                            {"X", "the trace position"},
                                            {"t_read", "the reading time"}};
   for (const auto& [symbol, variable] : kVariables)
-    if (left.clock == symbol) return std::string("a curve over ") + variable;
+    if (left.clock == symbol) return variable;
+  return "";
+}
+
+std::string likeness(const Unnamed& left) {
+  if (const std::string variable = variable_of(left); !variable.empty())
+    return "a curve over " + variable;
   return left.clock == "per profile" ? "a curve of its own in every profile"
                                      : "a curve in " + left.clock;
 }

@@ -67,6 +67,10 @@ bool is_lone_curve(const Result& result) {
          std::ranges::count(result.inputs, Role::fit, &InputSummary::role) == 1;
 }
 
+std::string over(const std::string& variable) {
+  return variable.empty() ? "" : " over " + variable;
+}
+
 /// What the closed loop leaves to do; "": nothing.
 std::string next_of_loop(const Analysis& analysis) {
   const TraceResult& trace = *analysis.trace;
@@ -74,7 +78,7 @@ std::string next_of_loop(const Analysis& analysis) {
   if (trace.unfinished) return "run it again with a longer time limit";
   if (!trace.advice.empty()) return with_titles(trace.advice.front());
   if (trace.verdict == TraceVerdict::unnamed && trace.unnamed && !trace.unnamed->forms.empty())
-    return "formulas of " + trace.unnamed->clock +
+    return "formulas" + over(variable_of(*trace.unnamed)) +
            " describe what is left: --full prints each as a candidate to look for";
   if (trace.verdict == TraceVerdict::unnamed)
     return "look at the residual on the page: where the structure is, and over what it repeats";
@@ -102,12 +106,6 @@ std::string each_alone(const ProfileCheck& check) {
 
 std::string cut_to_make(const NextCut& cut) {
   return cut.what + ", by slideway plan; " + with_titles(cut.reason);
-}
-
-const FittedParameter* squareness_parameter(const Result& result) {
-  if (!result.final) return nullptr;
-  const auto found = std::ranges::find_if(result.final->parameters, is_squareness);
-  return found == result.final->parameters.end() ? nullptr : &*found;
 }
 
 std::string moved_unseen(const Analysis& analysis) {

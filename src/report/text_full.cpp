@@ -271,6 +271,12 @@ std::string crosscheck(const Crosscheck& checks) {
     if (shows_little(check)) said.emplace_back("though U exceeds what is compared");
     out += note(check.what + " of " + joined(check.profiles, " and ") + ": " + joined(said));
   }
+  if (!checks.profiles.empty())
+    out += note(
+        "E_n of profiles: the largest difference of their two curves over its U, the U that " +
+        (checks.profiles.size() == 1 ? std::string("holds along the whole curve")
+                                     : "holds for all " + std::to_string(checks.profiles.size()) +
+                                           " comparisons together and along the whole curve"));
   for (const HeldOutCheck& check : checks.held_out)
     out += note(check.profile + ", held out: " + text(check.verdict) + " (chi-square " +
                 number(check.chi2, 3) + ", " + p_text(check.p_value) + "), off by up to " +

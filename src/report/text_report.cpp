@@ -155,8 +155,20 @@ std::string model_heading(const ModelResult& model) {
 
 std::string stations(const Result& result) {
   if (!result.final || !result.final->straightness) return "";
-  const std::vector<StraightnessStation>& all = result.final->straightness->stations;
-  if (all.size() < 2) return "";
+  const Straightness& form = *result.final->straightness;
+  std::string forms;
+  if (!form.each.empty()) {
+    TextTable table({"form of", "E_ZX ± U, µm"}, {TextColumn::text, TextColumn::text});
+    for (const StraightnessOfPart& part : form.each)
+      table.add({joined(part.profiles),
+                 part.end_point_um && part.expanded_uncertainty_um
+                     ? with_uncertainty(*part.end_point_um, *part.expanded_uncertainty_um)
+                     : "not determined"});
+    forms =
+        heading("Straightness of each form, from the line through the end points") + table.text();
+  }
+  const std::vector<StraightnessStation>& all = form.stations;
+  if (all.size() < 2) return forms;
   const std::size_t count = std::min(kStations, all.size());
   std::vector<std::string> x{"x, mm"}, deviation{"E_ZX, µm"}, U{"± U, µm"};
   for (std::size_t i = 0; i < count; ++i) {
@@ -169,7 +181,9 @@ std::string stations(const Result& result) {
   TextTable table(std::move(x), std::vector<TextColumn>(count + 1, TextColumn::number));
   table.add(std::move(deviation));
   table.add(std::move(U));
-  return heading("Station heights from the line through the end points" +
+  return forms +
+         heading("Station heights" + (form.profiles.empty() ? "" : " of " + joined(form.profiles)) +
+                 " from the line through the end points" +
                  (count < all.size()
                       ? " (" + std::to_string(count) + " of " + std::to_string(all.size()) + ")"
                       : std::string())) +

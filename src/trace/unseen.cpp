@@ -52,12 +52,8 @@ void add_conditions(const TraceResult& trace, Result& result) {
 }
 
 bool may_be_moved_unseen(const ModelResult& model, const TraceResult& trace) {
-  const auto squareness = std::ranges::find_if(model.parameters, [](const auto& each) {
-    return motion_error_of(each.name) == MotionError::squareness;
-  });
-  if (squareness == model.parameters.end() || !squareness->value ||
-      !squareness->expanded_uncertainty)
-    return false;
+  const FittedParameter* const squareness = model.squareness();
+  if (!squareness || !squareness->value || !squareness->expanded_uncertainty) return false;
   const DetectionLimit* const worst = worst_unseen(trace);
   return worst != nullptr && (*worst->squareness_rad > *squareness->expanded_uncertainty ||
                               !same_columns_as(MotionError::squareness, trace).empty());

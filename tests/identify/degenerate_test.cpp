@@ -77,15 +77,20 @@ TEST(Degenerate, ATiltThatTheLowBandDoesNotShowIsNotDetermined) {
 }
 
 TEST(Degenerate, NoiseLiesBetweenRoundingAndRangeOfItsValues) {
+  Profile profile;
   const Eigen::VectorXd values = Eigen::VectorXd::LinSpaced(20, 1.0, 3.0);
   const auto size = [&](double deviation) {
-    return bounded(Noise::white(deviation, 20), values).standard_deviation();
+    return bounded(Noise::white(deviation, 20), profile, values).standard_deviation();
   };
   EXPECT_EQ(size(0.1), 0.1);
   EXPECT_NEAR(size(1e125), 2.0, 1e-12);       // the range; 1e-12: rounding of a factor of 1e-250
   EXPECT_NEAR(size(1e-140), 2.1e-13, 1e-14);  // 1e-13 of the root mean square, 2.08
   EXPECT_NEAR(size(std::nan("")), 2.1e-13, 1e-14);
-  EXPECT_GT(bounded(Noise::white(0.0, 3), Eigen::Vector3d::Zero()).standard_deviation(), 0.0);
+  profile.resolution = 0.06;
+  EXPECT_DOUBLE_EQ(size(1e-140), 0.06 / std::sqrt(12.0));  // GUM F.2.2.1
+  profile.resolution = 0.0;
+  EXPECT_GT(bounded(Noise::white(0.0, 3), profile, Eigen::Vector3d::Zero()).standard_deviation(),
+            0.0);
 }
 
 // Three values have no slow cosine of their own, and nothing may be known of the size of their

@@ -56,6 +56,23 @@ TEST_F(ReadProfile, ConvertsToMillimetresAndCompletesTheSetup) {
               ElementsAre("text: commas between columns, decimal point, 1 header line"));
 }
 
+TEST_F(ReadProfile, SeesTheResolutionOfTheReadings) {
+  const auto resolution = [&](const std::string& values) {
+    std::string text = "x,z\n";
+    for (std::size_t at = 0, x = 0; at < values.size(); ++x) {
+      const std::size_t end = std::min(values.find(' ', at), values.size());
+      text += std::to_string(x) + ',' + values.substr(at, end - at) + '\n';
+      at = end + 1;
+    }
+    return read(text).resolution;
+  };
+  EXPECT_DOUBLE_EQ(resolution("-276 -271 -265 -258"), 1e-3);
+  EXPECT_NEAR(resolution("0.1 0.3 0.7 0.2"), 1e-4, 1e-15);
+  EXPECT_NEAR(resolution("10.2 10.7 11.2 9.7"), 5e-4, 1e-15);  // steps of half a micrometre
+  EXPECT_EQ(resolution("0.123456789012 1.987654321098 3.1415926535897"), 0.0);
+  EXPECT_EQ(resolution("2 2 2"), 0.0);
+}
+
 TEST_F(ReadProfile, LeavesOutWhatIsMasked) {
   source_.mask = {{1.5, 3.0}, {9.0, 20.0}};
   read("x_mm,z_um\n0,1\n1,2\n2,3\n3,4\n4,5\n9.5,6\n");

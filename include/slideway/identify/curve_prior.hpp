@@ -26,12 +26,15 @@ struct CurveKink {
 
 /// Covariance of the curve at two places a distance d apart, Matérn's: a² M_ν(d / ℓ) with
 ///   M_3/2(u) = (1 + √3 u) exp(-√3 u),  M_5/2(u) = (1 + √5 u + 5/3 u²) exp(-√5 u).
-/// At ν = 3/2 the curve has a slope everywhere, and the slope has kinks.
+/// At ν = 3/2 the curve has a slope everywhere, and the slope has kinks. Beside that a bow, a
+/// parabola over the travel, whose size is not estimated from the rest of the curve: readings that
+/// cannot tell it from a drift leave it open.
 struct CurvePrior {
-  double amplitude_mm = 0.0;                     // a, the standard deviation about b_0 + b_1 x
-  double length_mm = 0.0;                        // ℓ
-  double roughness = 1.5;                        // ν
-  std::optional<CurveKink> kink = std::nullopt;  // beside that, with a variance of its own
+  double amplitude_mm = 0.0;  // a, the standard deviation about b_0 + b_1 x and the bow
+  double length_mm = 0.0;     // ℓ
+  double roughness = 1.5;     // ν
+  double bow_mm = 0.0;        // standard deviation of the height of the bow
+  std::optional<CurveKink> kink = std::nullopt;  // with a variance of its own
 
   bool operator==(const CurvePrior&) const = default;
 };
@@ -39,7 +42,8 @@ struct CurvePrior {
 /// The term of a model whose amplitudes are a curve, or null.
 const ModelTerm* curve_term(const Model& model);
 
-/// What a fit begins with: as large as the readings, as long as a quarter of the travel.
+/// What a fit begins with: as large as the readings, its bow as well, as long as a quarter of the
+/// travel.
 CurvePrior first_curve_prior(const Model& model, const Knots& knots);
 
 /// Rows R of the knots' amplitudes with RᵀR the inverse of their covariance.
@@ -48,7 +52,8 @@ Eigen::MatrixXd curve_prior_rows(const Knots& knots, const CurvePrior& prior);
 /// What the data say of a curve under a noise, everything else in the model left free.
 struct CurveEstimate {
   CurvePrior prior;            // of the largest restricted likelihood
-  Eigen::MatrixXd determined;  // #knots by q: what the data say more of than the prior does
+  Eigen::MatrixXd determined;  // #knots by q: what the data say more of than the prior does; at
+                               // most a third as many as there are values: the rest tell the noise
 };
 
 /// The restricted likelihood is evaluated on a grid: ν of 3/2 and 5/2, lengths from two
@@ -67,9 +72,9 @@ Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisatio
                                           const std::vector<Noise>& noise,
                                           const Estimate& estimate);
 
-/// The linearisation with a curve's columns replaced by those that the data determine, left free:
-/// what the noise is estimated beside.
+/// The linearisation at a straight slide, with a curve's columns replaced by those that the data
+/// determine, left free: what the noise is estimated beside.
 Linearisation beside_curve(const Model& model, const Linearisation& linear,
-                           const CurveEstimate& curve);
+                           const CurveEstimate& curve, const Estimate& estimate);
 
 }  // namespace slideway

@@ -93,7 +93,8 @@ struct Model {
 };
 
 /// What the fitted profiles measured of the slide, a bridge from foot to foot. REQUIRES one.
-SlideRange measured_travel(const Model& model);
+/// @param term  those it acts on alone; null: all
+SlideRange measured_travel(const Model& model, const ModelTerm* term = nullptr);
 
 /// Builds effects (with an inner basis for the travel of the profiles) and the low bands. The
 /// profiles must outlive the model.

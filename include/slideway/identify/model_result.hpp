@@ -134,16 +134,25 @@ struct CurveForm {
   double roughness = 0.0;     // ν
 };
 
-/// Straightness of the slide the fit has found, E_ZX, with its uncertainty.
+/// E_ZX of one of several forms.
+struct StraightnessOfPart {
+  std::vector<std::string> profiles;  // whose form it is
+  std::optional<double> end_point_um, expanded_uncertainty_um;
+};
+
+/// Straightness of the slide the fit has found, E_ZX, with its uncertainty. Where profiles have
+/// forms of their own, that of the worst: one that is not determined, else the largest with its U.
 struct Straightness {
   std::optional<double> end_point_um, least_squares_um, minimum_zone_um;  // by reference line
   std::optional<double> expanded_uncertainty_um;                          // of end_point_um
   std::vector<StraightnessError> errors;                                  // one for each line
   std::vector<StraightnessStation> stations;                              // of slides, 50 at most
   StraightnessCurve curve;
-  std::optional<CurveForm> form;   // of form = "curve"
-  std::vector<std::string> if_no;  // as of a parameter
-  std::string reason;              // why there is none; then all else is empty
+  std::optional<CurveForm> form;         // of form = "curve"
+  std::vector<std::string> if_no;        // as of a parameter
+  std::string reason;                    // why there is none; then all else is empty
+  std::vector<std::string> profiles;     // of several forms: whose this one is
+  std::vector<StraightnessOfPart> each;  // of several forms: all of them
 };
 
 enum class EvaluationType { type_a, type_b };  // GUM 3.3.4: by statistics, or otherwise
@@ -188,6 +197,9 @@ struct ModelResult {
   std::vector<std::string> notes;  // how uncertainties were scaled, plausibility, what was done
 
   [[nodiscard]] const FittedParameter* find(const std::string& name) const;
+  /// The squareness, or null where it is not in the model. Of several the worst: one that is not
+  /// determined, else the largest with its U.
+  [[nodiscard]] const FittedParameter* squareness() const;
 };
 
 }  // namespace slideway

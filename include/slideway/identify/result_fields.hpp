@@ -261,6 +261,13 @@ inline constexpr auto kRecord<CurveForm> =
            field("roughness", &CurveForm::roughness, "its exponent: 1.5 or 2.5"));
 
 template <>
+inline constexpr auto kRecord<StraightnessOfPart> =
+    record("StraightnessOfPart", "E_ZX of one of several forms.",
+           field("profiles", &StraightnessOfPart::profiles, "whose form it is"),
+           field("end_point_um", &StraightnessOfPart::end_point_um),
+           field("expanded_uncertainty_um", &StraightnessOfPart::expanded_uncertainty_um));
+
+template <>
 inline constexpr auto kRecord<Straightness> = record(
     "Straightness", "Straightness error of the slide, E_ZX, ISO 230-1.",
     field("end_point_um", &Straightness::end_point_um),
@@ -271,7 +278,9 @@ inline constexpr auto kRecord<Straightness> = record(
     field("errors", &Straightness::errors, "one for each reference line"),
     field("curve", &Straightness::curve), field("form", &Straightness::form, "of a curve"),
     field("if_no", &Straightness::if_no, kIfNo),
-    field("reason", &Straightness::reason, "why there is none"));
+    field("reason", &Straightness::reason, "why there is none"),
+    field("profiles", &Straightness::profiles, "of several forms: whose this one is, the worst"),
+    field("each", &Straightness::each, "of several forms: all of them"));
 
 template <>
 inline constexpr auto kRecord<BudgetLine> =

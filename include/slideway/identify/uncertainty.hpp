@@ -35,6 +35,8 @@ struct Uncertainty {
   std::vector<Eigen::MatrixXd> information;  // G_i, r by r, per fitted observation
   std::vector<double> size_freedom;          // per fitted observation; 0: its size is known
   std::vector<Eigen::MatrixXd> nuisance_covariances;  // levelling, per fitted observation
+  bool has_curve = false;  // whose prior is estimated from the same data: no better known than the
+                           // noise
 
   /// Adds a covariance of (amplitudes, shapes), whatever the inflation.
   /// @param compressed  of the model that assess() had

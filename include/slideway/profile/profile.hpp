@@ -60,7 +60,9 @@ struct Profile {
   bool free_offset = true;           // what levelling left undetermined: nuisances of this profile
   bool free_tilt = true;
   std::optional<double> standard_uncertainty;  // of one sample, mm or rad
-  std::optional<LowBandOptions> low_band;      // its own; none: that of the problem
+  double resolution =
+      0.0;  // of the readings, mm or rad: they differ by multiples of it; 0: not seen
+  std::optional<LowBandOptions> low_band;  // its own; none: that of the problem
   Loss loss = Loss::none;
   std::vector<std::string> notes;   // what was done to the data on the way in
   std::vector<std::string> doubts;  // what is more likely a slip in the problem than so

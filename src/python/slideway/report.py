@@ -291,6 +291,16 @@ class CurveForm:
 
 
 @dataclass(frozen=True)
+class StraightnessOfPart:
+    """E_ZX of one of several forms."""
+
+    profiles: list[str]
+    """whose form it is"""
+    end_point_um: float | None
+    expanded_uncertainty_um: float | None
+
+
+@dataclass(frozen=True)
 class Straightness:
     """Straightness error of the slide, E_ZX, ISO 230-1."""
 
@@ -310,6 +320,10 @@ class Straightness:
     """effects that have the same columns in these data: it holds if none of them acts"""
     reason: str
     """why there is none"""
+    profiles: list[str]
+    """of several forms: whose this one is, the worst"""
+    each: list[StraightnessOfPart]
+    """of several forms: all of them"""
 
 
 @dataclass(frozen=True)
