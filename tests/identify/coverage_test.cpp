@@ -99,10 +99,10 @@ TEST_P(Coverage, OfA95PercentIntervalIs95Percent) {
   }
 }
 
-const auto name_of = [](const auto& test) { return test.param.name; };
+const auto kNameOf = [](const auto& test) { return test.param.name; };
 
-INSTANTIATE_TEST_SUITE_P(Faces, Coverage, ::testing::ValuesIn(simulations::of_faces()), name_of);
-INSTANTIATE_TEST_SUITE_P(Slides, Coverage, ::testing::ValuesIn(simulations::of_slides()), name_of);
+INSTANTIATE_TEST_SUITE_P(Faces, Coverage, ::testing::ValuesIn(simulations::of_faces()), kNameOf);
+INSTANTIATE_TEST_SUITE_P(Slides, Coverage, ::testing::ValuesIn(simulations::of_slides()), kNameOf);
 
 }  // namespace
 }  // namespace slideway
