@@ -10,6 +10,10 @@
 
 namespace slideway {
 
+namespace {
+constexpr Eigen::Index kValuesPerDirection = 3;  // of a curve: fewer leave too little for a noise
+}  // namespace
+
 const ModelTerm* curve_term(const Model& model) {
   const auto found = std::ranges::find_if(
       model.terms, [](const ModelTerm& term) { return term.effect->knots().has_value(); });
@@ -62,8 +66,8 @@ CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,
   Eigen::Index values = 0;
   for (const Observation* observation : linear.observations)
     values += observation->values.size() - observation->nuisances.cols();
-  return {prior,
-          CurvePosterior(data, prior.length_mm, prior.roughness).determined(prior, values / 3)};
+  return {prior, CurvePosterior(data, prior.length_mm, prior.roughness)
+                     .determined(prior, values / kValuesPerDirection)};
 }
 
 Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisation& linear,

@@ -15,10 +15,10 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kManyShapes =
-    3;  // with as many, one after the other may end in a local minimum
-constexpr int kStarts =
-    8;  // so many find Gauss 1 to 3 of NIST in ranges of 1.5 to 3 times their starts
+// One shape after the other may end in a local minimum where there are many. So many starts find
+// Gauss 1 to 3 of NIST in ranges of 1.5 to 3 times their starts.
+constexpr std::size_t kManyShapes = 3;
+constexpr int kStarts = 8;
 
 ceres::Solver::Options solver_options() {
   ceres::Solver::Options options;
@@ -223,8 +223,9 @@ void scan_shapes(const Model& model, const std::vector<Noise>& noise, Estimate& 
   // One shape after the other, until none moves: from the shapes as they are and, where several may
   // lie in each other's way, from other places of their ranges.
   const auto descend = [&](Eigen::VectorXd& shapes) {
-    double least = eliminated.cost(shapes);
-    for (bool moved = true; moved;) {
+    double least = INFINITY;
+    bool moved = false;
+    do {
       moved = false;
       for (std::size_t s = 0; s < axes.size(); ++s) {
         double best = shapes[s];
@@ -235,13 +236,12 @@ void scan_shapes(const Model& model, const std::vector<Noise>& noise, Estimate& 
         }
         shapes[s] = best;
       }
-    }
-    return least;
+    } while (moved && axes.size() > 1);
   };
-  double least = descend(estimate.shapes);
+  descend(estimate.shapes);
   if (axes.size() < kManyShapes) return;
   estimate.shapes = eliminated_optimum(model, linear, noise, estimate.shapes);
-  least = eliminated.cost(estimate.shapes);
+  double least = eliminated.cost(estimate.shapes);
   boost::random::sobol places(axes.size());
   const auto last = static_cast<double>(places.max());
   for (int start = 0; start < kStarts; ++start) {

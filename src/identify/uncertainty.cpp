@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
@@ -79,14 +80,14 @@ Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
   const double variance = (c * covariance * c.transpose()).value();
   Spread spread{std::sqrt(std::max(inflation * variance, 0.0)), std::nullopt};
   if (!(variance > 0.0)) return spread;
-  const auto part_of = [&](std::size_t i) { return (c * information[i] * c.transpose()).value(); };
-  double whole = variance;
-  for (std::size_t i = 0; has_curve && i < information.size(); ++i)
-    whole = (i == 0 ? 0.0 : whole) + part_of(i);
+  std::vector<double> parts;  // of the variance, by profile
+  for (const Eigen::MatrixXd& of_profile : information)
+    parts.push_back((c * of_profile * c.transpose()).value());
+  const double whole = has_curve ? std::accumulate(parts.begin(), parts.end(), 0.0) : variance;
   double spread_of_log = 0.0;
   for (std::size_t i = 0; i < size_freedom.size(); ++i) {
     if (size_freedom[i] == 0.0) continue;
-    const double share = part_of(i) / whole;
+    const double share = parts[i] / whole;
     spread_of_log += 2.0 * share * share / size_freedom[i];
   }
   const double freedom = 2.0 / spread_of_log;

@@ -83,20 +83,20 @@ constexpr std::size_t kForResolution = 1024;  // readings that are looked at
 constexpr int kMostDecimals = 9;
 constexpr double kWhole = 1e-4;  // off a whole number: what conversion to our units and back leaves
 
-/// The step of a digital indication: all values differ by whole multiples of it. 0 where they have
-/// more decimals than an instrument shows.
-double resolution_of(std::span<const double> values) {
+/// The step of a digital indication, in our unit: in the file's all values differ by whole
+/// multiples of it. 0 where they have more decimals than an instrument shows.
+double resolution_of(std::span<const double> values, const UnitScale& to_ours) {
   values = values.first(std::min(values.size(), kForResolution));
   double last_decimal = 1.0;
   for (int decimals = 0; decimals <= kMostDecimals; ++decimals, last_decimal /= 10.0) {
     std::int64_t step = 0;
     const bool whole = std::ranges::all_of(values, [&](double value) {
-      const double steps = (value - values[0]) / last_decimal;
+      const double steps = (value - values[0]) * to_ours.divisor / to_ours.factor / last_decimal;
       if (!(std::abs(steps - std::round(steps)) < kWhole && std::abs(steps) < 1e15)) return false;
       step = std::gcd(step, std::llround(steps));
       return true;
     });
-    if (whole) return static_cast<double>(step) * last_decimal;
+    if (whole) return to_ours(static_cast<double>(step) * last_decimal);
   }
   return 0.0;
 }
@@ -287,15 +287,8 @@ void Intake::finish() {
       std::ranges::reverse(*series);
     notes.emplace_back("trace runs backwards in the file: reversed");
   }
-  if (block_ == 1 && convert_) {
-    const UnitScale& to_ours = convert_->value;
-    std::vector<double> given(
-        profile_->values.begin(),
-        profile_->values.begin() +
-            static_cast<std::ptrdiff_t>(std::min(profile_->values.size(), kForResolution)));
-    for (double& value : given) value *= to_ours.divisor / to_ours.factor;
-    profile_->resolution = to_ours(resolution_of(given));
-  }
+  if (block_ == 1 && convert_)
+    profile_->resolution = resolution_of(profile_->values, convert_->value);
   if (!times_.empty())
     profile_->setup.reading_times =
         std::make_shared<const ReadingTimes>(ReadingTimes{profile_->positions, std::move(times_)});

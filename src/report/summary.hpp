@@ -52,8 +52,9 @@ std::string condition(const std::vector<std::string>& if_no);
 /// The same of what a conformity holds, and of a straightness parts_beside().
 std::string condition(const Result& result, const Conformity& conformity);
 
-/// ", without local form": parts of E_ZX that the model has under a name of their own, which the
-/// value of the straightness leaves out; "": there are none. REQUIRES a fit.
+/// ", of C5, the largest of 8, without local form": of several forms whose the straightness is, and
+/// parts of E_ZX that the model has under a name of their own, which the value leaves out; "":
+/// there are neither. REQUIRES a fit.
 std::string parts_beside(const Result& result);
 
 /// Whether what the loop has added moved no declared number worth an alarm. REQUIRES a loop.

@@ -109,6 +109,7 @@ Simulation simulation(const Faces& faces) {
           .problem = declared(faces),
           .truth = truth(faces),
           .correlated = faces.noise_correlation_mm > 0.0,
+          .determined = static_cast<std::size_t>(faces.degree),
           .prepare = [faces]() -> Measure {
             std::vector<turning::Face> surfaces;
             for (const OneCut& one : faces.cuts) surfaces.push_back(cut(faces, one));

@@ -83,6 +83,9 @@ Simulation simulation(const Slide& slide) {
     out.truth["straightness.b" + std::to_string(k)] = kStraightness[k];
   for (const auto& [name, value] : slide.parameters)
     out.truth[slide.more->name + '.' + name] = value;
+  // Heights leave b0 open, slopes b1 as well.
+  const std::size_t open = slide.readings.front().base_mm > 0.0 ? 2 : 1;
+  out.determined = static_cast<std::size_t>(slide.degree) + 1 - open + slide.parameters.size();
   for (const Reading& reading : slide.readings)
     out.correlated = out.correlated || reading.correlation_mm > 0.0;
   out.prepare = [slide]() -> Measure {

@@ -20,6 +20,7 @@ struct Simulation {
   Problem problem;                      // without profiles
   std::map<std::string, double> truth;  // of every parameter, in its unit
   bool correlated = false;              // the noise along a profile
+  std::size_t determined = 0;           // parameters and combinations that the data determine
   std::function<Measure()> prepare;     // cuts the faces
 };
 
