@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "reported.hpp"
 #include "slideway/base/distribution.hpp"
@@ -13,6 +14,7 @@
 #include "slideway/identify/noise_model.hpp"
 #include "slideway/identify/subset_estimate.hpp"
 #include "slideway/identify/uncertainty.hpp"
+#include "tube_formula.hpp"
 
 namespace slideway {
 namespace {
@@ -21,18 +23,21 @@ constexpr std::size_t kMostPairwise = 8;  // profiles: 28 pairs a reader still r
 constexpr Eigen::Index kCurvePoints = 101;
 constexpr double kOutside = 1e-6;  // of a row: less along a null direction is rounding
 constexpr const char* kAllOthers = "all others";
+constexpr const char* kTogether = "effects taken together";
 
 using Profiles = std::vector<std::size_t>;  // of the fitted ones
 
 /// A side of a comparison, with what is known of its noise.
 struct Alone : SubsetEstimate {
+  Profiles profiles;
   Eigen::MatrixXd of_priors;  // #priors by #basis: their rows along the basis
   double freedom = 0.0;       // of the noise
-  double log_variance = 0.0;  // of the noise's size
 
   Alone(const Linearisation& linear, const std::vector<Noise>& noise, const Compressed& all,
         const Profiles& which, double tolerance)
-      : SubsetEstimate(linear, all, which, tolerance), of_priors(linear.prior_rows * basis) {
+      : SubsetEstimate(linear, all, which, tolerance),
+        profiles(which),
+        of_priors(linear.prior_rows * basis) {
     const auto free =
         static_cast<double>(std::max(basis.cols() - of_priors.rows(), Eigen::Index{0}));
     double known = 0.0;
@@ -43,7 +48,6 @@ struct Alone : SubsetEstimate {
     }
     for (const std::size_t i : which) {
       const double spread = noise[i].log_long_run_variance();
-      log_variance += spread / static_cast<double>(which.size());
       freedom += spread > 0.0 ? 2.0 / spread : HUGE_VAL;
     }
     if (std::isfinite(freedom)) freedom = std::clamp(freedom, 1.0, std::max(1.0, known));
@@ -147,38 +151,6 @@ std::vector<Curve> curves(const Model& model, const Solution& fit, std::size_t a
   return out;
 }
 
-/// Length of the path of unit vectors that a curve's rows are on, each up to its sign.
-double path_length(const Eigen::MatrixXd& rows, const Eigen::VectorXd& variance, double least) {
-  double length = 0.0;
-  Eigen::RowVectorXd before(0);
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    if (!(variance[i] > least)) continue;
-    const Eigen::RowVectorXd unit = rows.row(i) / std::sqrt(variance[i]);
-    if (before.size() > 0) length += std::min((unit - before).norm(), (unit + before).norm());
-    before = unit;
-  }
-  return length;
-}
-
-/// Factor that the standardised deviation of a curve exceeds somewhere with a given probability
-/// (tube formula: Sun and Loader 1994, Eq. 2.3).
-double simultaneous_factor(double length, double freedom, double outside) {
-  const auto probability = [&](double c) {
-    const double of_path = std::isfinite(freedom) ? std::pow(1.0 + c * c / freedom, -0.5 * freedom)
-                                                  : std::exp(-0.5 * c * c);
-    const double of_point =
-        std::isfinite(freedom) ? student_tail(freedom, c) : 0.5 * std::erfc(c / std::sqrt(2.0));
-    return length / kPi * of_path + 2.0 * of_point;
-  };
-  double low = 0.0, high = 1.0;
-  while (probability(high) > outside) low = high, high *= 2.0;
-  for (int step = 0; step < 60; ++step) {
-    const double middle = 0.5 * (low + high);
-    (probability(middle) > outside ? low : high) = middle;
-  }
-  return high;
-}
-
 /// Two sides of a comparison, and what they are called.
 struct Pair {
   const Alone& a;
@@ -236,26 +208,65 @@ void add_straightness(const Curve& curve, const Alone& side, const Eigen::Vector
   out.U_um.push_back(coverage_factor(freedom) * (range * side.basis).norm() / kMicrometre);
 }
 
-/// χ² of the data of two sides being one, and its tail probability.
-void set_chi_square(const Pair& pair, ProfileCheck& out) {
-  const Eigen::MatrixXd of_a = pair.a.of_data(), of_b = pair.b.of_data();
-  const Eigen::Index k = of_a.cols() - 1;
-  Eigen::MatrixXd rows(of_a.rows() + of_b.rows(), k + 1);
-  rows << of_a, of_b;
-  const auto left = [&](const Eigen::MatrixXd& of) {
-    return least_squares(of.leftCols(k), of.rightCols(1)).squares[0];
-  };
-  const auto rank = [&](const Eigen::MatrixXd& of) {
-    return static_cast<double>(orthonormal(of.leftCols(k)).cols());
-  };
-  const double count = rank(of_a) + rank(of_b) - rank(rows);
-  if (count < 1.0) return;
-  const double found = std::max(0.0, left(rows) - left(of_a) - left(of_b));
-  const double spread = 0.5 * std::min(pair.a.log_variance + pair.b.log_variance, 2.0);
-  const double mean = count * std::exp(0.5 * spread);
-  const double variance = 2.0 * mean * mean / count + mean * mean * std::expm1(spread);
-  out.chi2 = found / count;
-  out.p_value = gamma_tail(mean * mean / variance, found * mean / variance);
+/// Variance of the logarithm of the size of the noise of some profiles together: pools err
+/// independently.
+double log_variance(const std::vector<Noise>& noise, const std::vector<const Alone*>& sides) {
+  std::map<std::size_t, double> of_pools;  // the sums over their profiles
+  double count = 0.0;
+  for (const Alone* side : sides)
+    for (const std::size_t i : side->profiles) {
+      of_pools[noise[i].pool] += std::sqrt(noise[i].log_long_run_variance());
+      count += 1.0;
+    }
+  double out = 0.0;
+  for (const auto& [pool, sum] : of_pools) out += std::pow(sum / count, 2);
+  return out;
+}
+
+/// χ² of the data of several sides being one, near a gamma variable as in LackOfFit.
+struct Oneness {
+  double chi2 = 0.0, count = 0.0;   // over its degrees of freedom
+  double shape = 0.0, scale = 1.0;  // of the gamma variable
+
+  Oneness(const std::vector<Noise>& noise, const std::vector<const Alone*>& sides) {
+    const Eigen::Index k = sides.front()->rows.cols() - 1;
+    const auto left = [&](const Eigen::MatrixXd& of) {
+      return least_squares(of.leftCols(k), of.rightCols(1)).squares[0];
+    };
+    const auto rank = [&](const Eigen::MatrixXd& of) {
+      return static_cast<double>(orthonormal(of.leftCols(k)).cols());
+    };
+    Eigen::MatrixXd all(k + 1, 0);
+    double apart = 0.0;
+    for (const Alone* side : sides) {
+      const Eigen::MatrixXd own = side->of_data();
+      append_columns(all, own.transpose());
+      apart += left(own);
+      count += rank(own);
+    }
+    const Eigen::MatrixXd rows = all.transpose();
+    count -= rank(rows);
+    if (count < 1.0) return;
+    chi2 = std::max(0.0, left(rows) - apart) / count;
+    const double spread = std::min(log_variance(noise, sides), 1.0);
+    const double mean = std::exp(0.5 * spread);
+    const double variance = mean * mean * (2.0 / count + std::expm1(spread));
+    shape = mean * mean / variance;
+    scale = variance / mean;
+  }
+
+  [[nodiscard]] double p_value() const { return gamma_tail(shape, chi2 / scale); }
+
+  /// E_n where noise is to exceed 1 with a given probability.
+  [[nodiscard]] double en(double outside) const {
+    return std::sqrt(2.0 * chi2 / (scale * chi_squared_quantile(2.0 * shape, 1.0 - outside)));
+  }
+};
+
+void set_chi_square(const Oneness& oneness, ProfileCheck& out) {
+  if (oneness.count < 1.0) return;
+  out.chi2 = oneness.chi2;
+  out.p_value = oneness.p_value();
 }
 
 /// The pairs to be compared, with the curves that both sides determine. The noise is that of
@@ -263,7 +274,7 @@ void set_chi_square(const Pair& pair, ProfileCheck& out) {
 class ProfileComparison {
  public:
   ProfileComparison(const Model& model, const Solution& fit, const std::vector<Noise>& noise)
-      : model_(model), fit_(fit) {
+      : model_(model), fit_(fit), noise_(noise) {
     const Compressed compressed = compress(fit.linear, noise);
     const std::size_t count = fit.linear.observations.size();
     const bool pairwise = count <= kMostPairwise;
@@ -291,29 +302,48 @@ class ProfileComparison {
   }
 
   [[nodiscard]] std::vector<ProfileCheck> checks() const {
-    std::size_t comparisons = 0;
+    const std::optional<Oneness> all = of_all();
+    std::size_t comparisons = all ? 1 : 0;
     for (const Pair& pair : pairs_) comparisons += pair.curves.size();
     const Gates& gates = model_.gates;
     const double outside =
         -std::expm1(std::log1p(-gates.false_disagreement) / static_cast<double>(comparisons));
     Eigen::VectorXd joint(fit_.estimate.amplitudes.size() + fit_.estimate.shapes.size());
     joint << fit_.estimate.amplitudes, fit_.estimate.shapes;
+    const auto judge = [&](double en, ProfileCheck& check) {
+      check.En = en;
+      check.verdict = en <= gates.en_limit ? Consistency::consistent : Consistency::inconsistent;
+    };
     std::vector<ProfileCheck> out;
     for (const Pair& pair : pairs_)
       for (const Curve& curve : pair.curves) {
         ProfileCheck check{pair.names, curve.what};
-        check.En = largest_en(pair, curve, outside);
-        check.verdict =
-            *check.En <= gates.en_limit ? Consistency::consistent : Consistency::inconsistent;
-        set_chi_square(pair, check);
+        judge(largest_en(pair, curve, outside), check);
+        set_chi_square(Oneness(noise_, {&pair.a, &pair.b}), check);
         if (curve.of_slide)
           for (const Alone* side : {&pair.a, &pair.b}) add_straightness(curve, *side, joint, check);
         out.push_back(std::move(check));
       }
+    if (!all) return out;
+    ProfileCheck& together = out.emplace_back();
+    for (const Observation* each : fit_.linear.observations)
+      together.profiles.push_back(each->profile->name);
+    together.what = kTogether;
+    judge(all->en(outside), together);
+    set_chi_square(*all, together);
     return out;
   }
 
  private:
+  /// Of three profiles or more at once: small differences of each pair add up.
+  [[nodiscard]] std::optional<Oneness> of_all() const {
+    if (alone_.size() < 3 || pairs_.empty()) return std::nullopt;
+    std::vector<const Alone*> sides;
+    for (const Alone& side : alone_) sides.push_back(&side);
+    Oneness out(noise_, sides);
+    return out.count < 1.0 ? std::nullopt : std::optional(out);
+  }
+
   void add(std::size_t i, std::size_t j, const Alone& other, const std::string& name) {
     Pair pair{alone_[i], other, {fit_.linear.observations[i]->profile->name, name}, {}};
     for (Curve& curve : curves(model_, fit_, i, j))
@@ -324,6 +354,7 @@ class ProfileComparison {
 
   const Model& model_;
   const Solution& fit_;
+  const std::vector<Noise>& noise_;
   std::vector<Alone> alone_, others_;
   std::vector<Pair> pairs_;
 };
@@ -336,7 +367,8 @@ std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit
   return ProfileComparison(model, fit, of_each).checks();
 }
 
-std::string odd_profile(const std::set<std::vector<std::string>>& pairs) {
+std::string odd_profile(std::set<std::vector<std::string>> pairs) {
+  std::erase_if(pairs, [](const std::vector<std::string>& names) { return names.size() > 2; });
   std::vector<std::string> common = pairs.empty() ? std::vector<std::string>() : *pairs.begin();
   std::erase(common, kAllOthers);
   for (const std::vector<std::string>& names : pairs)

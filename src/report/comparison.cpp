@@ -142,7 +142,7 @@ void add_checks(const Result& result, Facts& facts) {
   if (checks.squareness)
     facts.emplace_back("cross-check of squareness", text_of(checks.squareness->verdict));
   for (const ProfileCheck& each : checks.profiles)
-    facts.emplace_back(each.what + " of " + joined(each.profiles, " and "), text_of(each.verdict));
+    facts.emplace_back(each.what + " of " + who_of(each), text_of(each.verdict));
   for (const HeldOutCheck& each : checks.held_out)
     facts.emplace_back(each.profile + ", held out", text_of(each.verdict));
   for (const PureErrorCheck& each : checks.repeats)

@@ -115,7 +115,7 @@ Html held_out(const Crosscheck& checks) {
                    {html_symbol("E_n"), HtmlColumn::number},
                    {"verdict", HtmlColumn::text}});
   for (const ProfileCheck& check : checks.profiles)
-    among.add({check.what, joined(check.profiles, " and "), each_alone(check), html_en(check.En),
+    among.add({check.what, who_of(check), each_alone(check), html_en(check.En),
                bold(text_of(check.verdict))});
   HtmlTable repeats("What repeats have in common and the model lacks",
                     {{"profiles", HtmlColumn::text},

@@ -156,8 +156,8 @@ std::vector<Html> warnings(const Analysis& analysis) {
                   html_symbol("E_n") + " = " + html_en(angle->En) + " > 1: " + angle->reason + ".");
   for (const ProfileCheck& check : result.crosscheck.profiles)
     if (check.verdict == Consistency::inconsistent)
-      out.push_back(effect_title(check.what) + " of " + joined(check.profiles, " and ") +
-                    " disagree, " + html_symbol("E_n") + " = " + html_en(check.En) + ".");
+      out.push_back(effect_title(check.what) + " of " + who_of(check) + " disagree, " +
+                    html_symbol("E_n") + " = " + html_en(check.En) + ".");
   for (const HeldOutCheck& check : result.crosscheck.held_out)
     if (check.verdict == HeldOutVerdict::does_not_fit)
       out.push_back(check.profile + ", held out, does not fit: off by " +

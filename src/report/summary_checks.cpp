@@ -85,9 +85,13 @@ std::vector<std::string> objections(const Result& result) {
     if (count.first > kNamedPairs)
       out.push_back(std::to_string(count.first) + " of " + std::to_string(count.second) +
                     " pairs of profiles disagree in " + what);
+  const bool by_pairs = std::ranges::any_of(result.crosscheck.profiles, [](const auto& check) {
+    return contradicts(check) && check.profiles.size() == 2;
+  });
   for (const ProfileCheck& check : result.crosscheck.profiles) {
     if (!contradicts(check) || pairs[check.what].first > kNamedPairs) continue;
-    const std::string who = joined(check.profiles, " and ") + " disagree in ";
+    if (by_pairs && check.profiles.size() > 2) continue;  // it follows
+    const std::string who = who_of(check) + " disagree in ";
     const auto known =
         std::ranges::find_if(out, [&](const std::string& each) { return each.starts_with(who); });
     if (known == out.end())
@@ -117,7 +121,7 @@ void say_crosscheck(const Result& result, Summary& out) {
   }
   for (const ProfileCheck& check : checks.profiles)
     if (contradicts(check))
-      parts.push_back("INCONSISTENT: " + check.what + " of " + joined(check.profiles, " and ") +
+      parts.push_back("INCONSISTENT: " + check.what + " of " + who_of(check) +
                       (check.En ? ", E_n = " + en_text(*check.En) : ""));
   for (const HeldOutCheck& check : checks.held_out) {
     const bool fits = !contradicts(check);

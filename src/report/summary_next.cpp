@@ -52,8 +52,7 @@ std::string reconciled(const Crosscheck& checks) {
   if (const std::string odd = odd_profile(pairs); !odd.empty()) return apart(odd);
   for (const ProfileCheck& check : checks.profiles)
     if (contradicts(check))
-      return "find why " + joined(check.profiles, " and ") +
-             " disagree: their setups, cuts or readings";
+      return "find why " + who_of(check) + " disagree: their setups, cuts or readings";
   for (const HeldOutCheck& check : checks.held_out)
     if (contradicts(check)) return apart(check.profile);
   if (checks.squareness && checks.squareness->verdict == Consistency::inconsistent)
@@ -95,6 +94,10 @@ bool is_harmless(const Analysis& analysis) {
 bool contradicts(const ProfileCheck& check) { return check.verdict == Consistency::inconsistent; }
 bool contradicts(const HeldOutCheck& check) {
   return check.verdict == HeldOutVerdict::does_not_fit;
+}
+
+std::string who_of(const ProfileCheck& check) {
+  return check.profiles.size() > 2 ? "all profiles" : joined(check.profiles, " and ");
 }
 
 std::string each_alone(const ProfileCheck& check) {

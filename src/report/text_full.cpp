@@ -269,7 +269,7 @@ std::string crosscheck(const Crosscheck& checks) {
     if (check.En) said.insert(said.begin(), "E_n = " + en_text(*check.En));
     if (!check.value_um.empty()) said.insert(said.begin(), each_alone(check));
     if (shows_little(check)) said.emplace_back("though U exceeds what is compared");
-    out += note(check.what + " of " + joined(check.profiles, " and ") + ": " + joined(said));
+    out += note(check.what + " of " + who_of(check) + ": " + joined(said));
   }
   if (!checks.profiles.empty())
     out += note(

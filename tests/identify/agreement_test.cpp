@@ -46,7 +46,7 @@ std::vector<ProfileCheck> checks_of(const std::vector<Profile>& profiles,
 
 TEST(ProfileCheck, ComparesEveryPair) {
   const auto checks = checks_of({run("a", 5e-3, 1), run("b", 5e-3, 2), run("c", 5e-3, 3)});
-  ASSERT_EQ(checks.size(), 3U);
+  ASSERT_EQ(checks.size(), 4U);  // each pair, and all at once
   EXPECT_THAT(checks[1].profiles, ::testing::ElementsAre("a", "c"));
   EXPECT_EQ(checks[1].what, "straightness");
   for (const ProfileCheck& check : checks) EXPECT_EQ(check.verdict, Consistency::consistent);
@@ -55,7 +55,7 @@ TEST(ProfileCheck, ComparesEveryPair) {
 TEST(ProfileCheck, OneBowThatDiffersDisagreesWithBothOthers) {
   // The sags differ by 0.5 µm; u of one from 200 values is about 0.03 µm.
   const auto checks = checks_of({run("a", 5e-3, 1), run("b", 5e-3, 2), run("c", 7e-3, 3)});
-  ASSERT_EQ(checks.size(), 3U);
+  ASSERT_EQ(checks.size(), 4U);
   EXPECT_EQ(checks[0].verdict, Consistency::consistent);
   EXPECT_EQ(checks[1].verdict, Consistency::inconsistent);
   EXPECT_EQ(checks[2].verdict, Consistency::inconsistent);
@@ -74,6 +74,34 @@ TEST(ProfileCheck, FalseAlarmsStayNearTheirShare) {
     });
   }
   EXPECT_LE(alarms, 10);
+}
+
+// Eight bows, every second one of a = 7 σ more: χ² of 14 degrees of freedom with a non-centrality
+// of 8 (a/2)² n / (180 σ²) = 109. Of 29 comparisons each has 0.16 %, χ² > 34.7, which noise known
+// to be white would exceed in all of 20; it is an estimate, and may have a memory.
+TEST(ProfileCheck, SmallDifferencesOfManyAddUp) {
+  const auto seen = [](double a) {
+    std::pair<int, int> out;  // taken together, and in any pair
+    for (unsigned seed = 0; seed < 20; ++seed) {
+      std::vector<Profile> runs;
+      for (unsigned i = 0; i < 8; ++i)
+        runs.push_back(run("run" + std::to_string(i), 5e-3 + (i % 2) * a, 100 + 8 * seed + i));
+      std::vector<ProfileCheck> checks = checks_of(runs);
+      const ProfileCheck all = checks.back();
+      checks.pop_back();
+      EXPECT_EQ(all.what, "effects taken together");
+      EXPECT_EQ(all.profiles.size(), 8U);
+      out.first += all.verdict == Consistency::inconsistent;
+      out.second += std::ranges::any_of(checks, [](const ProfileCheck& check) {
+        return check.verdict == Consistency::inconsistent;
+      });
+    }
+    return out;
+  };
+  EXPECT_LE(seen(0.0).first, 1);  // two of 20 have a probability of 0.05 %
+  const auto [together, pairs] = seen(7.0 * kNoise);
+  EXPECT_GE(together, 17);  // fewer of 20: 0.3 % if it is seen in 95 %
+  EXPECT_GE(together, pairs);
 }
 
 /// Readings of a kinked slide by an instrument whose errors remember, the last with a bump of so
@@ -105,7 +133,7 @@ TEST(ProfileCheck, OfCurvesIsAsTheirNoise) {
   double mean = 0.0;
   for (unsigned seed = 0; seed < 40; ++seed) {
     const auto checks = checks_of_curves(0.0, seed);
-    ASSERT_EQ(checks.size(), 3U);
+    ASSERT_EQ(checks.size(), 4U);
     alarms += std::ranges::any_of(checks, [](const ProfileCheck& check) {
       return check.verdict == Consistency::inconsistent;
     });
@@ -173,6 +201,7 @@ TEST(ProfileCheck, OddIsTheOneInEveryPair) {
   EXPECT_EQ(odd_profile({{"a", "b"}, {"b", "c"}, {"a", "c"}}), "");
   EXPECT_EQ(odd_profile({{"a", "all others"}}), "a");
   EXPECT_EQ(odd_profile({{"a", "all others"}, {"b", "all others"}}), "");
+  EXPECT_EQ(odd_profile({{"a", "b"}, {"a", "b", "c"}, {"b", "c"}}), "b");
 }
 
 TEST(ProfileCheck, DisagreementIsNegative) {

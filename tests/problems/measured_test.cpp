@@ -162,7 +162,7 @@ TEST_F(Real, RunsOfTheLatheBedAgreeOnOneCurve) {
   EXPECT_NEAR(*error.value, 32.9, 3.0);
   EXPECT_GT(*error.expanded_uncertainty, 2.0);  // another noise, another grid of priors
   EXPECT_LT(*error.expanded_uncertainty, 6.0);
-  EXPECT_EQ(result.crosscheck.profiles.size(), 6U);
+  EXPECT_EQ(result.crosscheck.profiles.size(), 7U);  // six pairs, and all at once
   std::vector<double> uncertainties;
   for (const ProfileCheck& pair : result.crosscheck.profiles) {
     EXPECT_EQ(pair.verdict, Consistency::consistent) << pair.profiles[0] << pair.profiles[1];

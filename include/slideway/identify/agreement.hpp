@@ -18,13 +18,15 @@ namespace slideway {
 /// report hold together (Gates::false_disagreement): Šidák's share for each, and for a curve the
 /// quantile of its largest standardised deviation by the tube formula (Sun and Loader 1994).
 /// `p_value`: χ² of the data of the pair over all effects, near a gamma variable as in LackOfFit.
+/// Of three profiles or more, that of all at once is a comparison, too: its E_n is
+/// sqrt(χ² / its quantile).
 /// @param of_each  noise_of_each() fitted profile
 std::vector<ProfileCheck> check_profiles(const Model& model, const Solution& fit,
                                          const std::vector<Noise>& of_each);
 
 /// The profile that is in every one of some pairs of ProfileCheck::profiles; "" where none is, or
 /// two.
-std::string odd_profile(const std::set<std::vector<std::string>>& pairs);
+std::string odd_profile(std::set<std::vector<std::string>> pairs);
 
 /// Square root of the covariance of (amplitudes, shapes) that the estimates without one profile
 /// each show (delete-one jackknife): a column each.
