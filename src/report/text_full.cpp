@@ -276,7 +276,10 @@ std::string crosscheck(const Crosscheck& checks) {
         "E_n of profiles: the largest difference of their two curves over its U, the U that " +
         (checks.profiles.size() == 1 ? std::string("holds along the whole curve")
                                      : "holds for all " + std::to_string(checks.profiles.size()) +
-                                           " comparisons together and along the whole curve"));
+                                           " comparisons together and along the whole curve") +
+        (checks.profiles.back().profiles.size() > 2
+             ? "; of effects taken together, the root of chi-square over its quantile"
+             : ""));
   for (const HeldOutCheck& check : checks.held_out)
     out += note(check.profile + ", held out: " + text(check.verdict) + " (chi-square " +
                 number(check.chi2, 3) + ", " + p_text(check.p_value) + "), off by up to " +

@@ -29,13 +29,17 @@ class Response {
   /// @param tau  0: no lag
   Response(const Channel& channel, double tau) : channel_(channel), tau_(tau) {
     const std::vector<double>&t = channel.at, &q = channel.values;
-    area_.push_back(0.0);
-    lagged_.push_back(q[0]);
-    tau_slopes_.push_back(0.0);
-    for (std::size_t i = 1; i < t.size(); ++i) {
-      area_.push_back(area_.back() + 0.5 * (q[i] + q[i - 1]) * (t[i] - t[i - 1]));
-      tau_slopes_.push_back(tau_slope_at(i - 1, t[i]));
-      lagged_.push_back(lagged_at(i - 1, t[i]));
+    pieces_.reserve(t.size());
+    for (std::size_t i = 0; i < t.size(); ++i) {
+      Piece piece{.at = t[i], .value = q[i], .lagged = q[i]};
+      if (i + 1 < t.size()) piece.slope = (q[i + 1] - q[i]) / (t[i + 1] - t[i]);
+      if (i > 0) {
+        const Piece& last = pieces_.back();
+        piece.area = last.area + 0.5 * (q[i] + q[i - 1]) * (t[i] - t[i - 1]);
+        piece.tau_slope = tau_slope_at(last, t[i]);
+        piece.lagged = lagged_at(last, t[i]);
+      }
+      pieces_.push_back(piece);
     }
   }
 
@@ -53,9 +57,9 @@ class Response {
   /// Of the value in time; right of a place where there is no lag.
   [[nodiscard]] double rate(double t) const {
     if (t < channel_.at.front()) return 0.0;
-    const std::size_t i = before(t);
-    if (tau_ <= 0.0) return slope(i);
-    return (channel_.values[i] + slope(i) * (t - channel_.at[i]) - lagged_at(i, t)) / tau_;
+    const Piece& p = before(t);
+    if (tau_ <= 0.0) return p.slope;
+    return (p.value + p.slope * (t - p.at) - lagged_at(p, t)) / tau_;
   }
   [[nodiscard]] double mean_rate(double t, double width) const {
     if (!(width > 0.0)) return rate(t);
@@ -72,32 +76,34 @@ class Response {
   }
 
  private:
-  [[nodiscard]] std::size_t before(double t) const {
-    const auto after = std::ranges::upper_bound(channel_.at, t);
-    return static_cast<std::size_t>(std::max<std::ptrdiff_t>(after - channel_.at.begin() - 1, 0));
-  }
+  /// From one place to the next; what is of the response is at the place.
+  struct Piece {
+    double at = 0.0, value = 0.0, slope = 0.0;         // of the quantity
+    double area = 0.0, lagged = 0.0, tau_slope = 0.0;  // ∫ q, y, dy/dτ
+  };
 
-  [[nodiscard]] double slope(std::size_t i) const {
-    if (i + 1 >= channel_.at.size()) return 0.0;
-    return (channel_.values[i + 1] - channel_.values[i]) / (channel_.at[i + 1] - channel_.at[i]);
+  [[nodiscard]] const Piece& before(double t) const {
+    const auto after = std::ranges::upper_bound(channel_.at, t);
+    return pieces_[static_cast<std::size_t>(
+        std::max<std::ptrdiff_t>(after - channel_.at.begin() - 1, 0))];
   }
 
   /// y from y_i on, where τ y' = q - y and q = q_i + c u: y = y_i + c (u + τ d) + (y_i - q_i) d,
   /// d = exp(-u/τ) - 1.
-  [[nodiscard]] double lagged_at(std::size_t i, double t) const {
-    const double u = t - channel_.at[i], c = slope(i), q = channel_.values[i];
-    if (tau_ <= 0.0) return q + c * u;
+  [[nodiscard]] double lagged_at(const Piece& p, double t) const {
+    const double u = t - p.at;
+    if (tau_ <= 0.0) return p.value + p.slope * u;
     const double decay = std::expm1(-u / tau_);
-    return lagged_[i] + c * (u + tau_ * decay) + (lagged_[i] - q) * decay;
+    return p.lagged + p.slope * (u + tau_ * decay) + (p.lagged - p.value) * decay;
   }
 
   /// Derivative of lagged_at() by τ; that of d is d' = u/τ² exp(-u/τ).
-  [[nodiscard]] double tau_slope_at(std::size_t i, double t) const {
+  [[nodiscard]] double tau_slope_at(const Piece& p, double t) const {
     if (tau_ <= 0.0) return 0.0;
-    const double u = t - channel_.at[i], decay = std::expm1(-u / tau_);
+    const double u = t - p.at, decay = std::expm1(-u / tau_);
     const double growth = u / (tau_ * tau_) * (1.0 + decay);
-    return tau_slopes_[i] * (1.0 + decay) + slope(i) * (decay + tau_ * growth) +
-           (lagged_[i] - channel_.values[i]) * growth;
+    return p.tau_slope * (1.0 + decay) + p.slope * (decay + tau_ * growth) +
+           (p.lagged - p.value) * growth;
   }
 
   [[nodiscard]] double integral_tau_slope(double t) const {
@@ -109,15 +115,15 @@ class Response {
   [[nodiscard]] double integral(double t) const {
     const double first = channel_.at.front(), start = channel_.values.front();
     if (t <= first) return start * (t - first);
-    const std::size_t i = before(t);
-    const double u = t - channel_.at[i];
-    const double area = area_[i] + u * (channel_.values[i] + 0.5 * slope(i) * u);
-    return area - tau_ * (lagged_at(i, t) - start);
+    const Piece& p = before(t);
+    const double u = t - p.at;
+    const double area = p.area + u * (p.value + 0.5 * p.slope * u);
+    return area - tau_ * (lagged_at(p, t) - start);
   }
 
   const Channel& channel_;
   double tau_;
-  std::vector<double> area_, lagged_, tau_slopes_;  // up to each place: ∫ q, y there, dy/dτ
+  std::vector<Piece> pieces_;
 };
 
 std::string unit_of_clock(const Channel& channel) {
