@@ -27,14 +27,31 @@ constexpr const char* kTogether = "effects taken together";
 
 using Profiles = std::vector<std::size_t>;  // of the fitted ones
 
+/// What some rows [columns, residual] determine and leave.
+struct DataFit {
+  Eigen::MatrixXd rows;
+  double left = 0.0;  // of the residual's square
+  Eigen::Index rank = 0;
+
+  DataFit() = default;
+  explicit DataFit(Eigen::MatrixXd data) : rows(std::move(data)) {
+    const Eigen::Index k = rows.cols() - 1;
+    left = least_squares(rows.leftCols(k), rows.rightCols(1)).squares[0];
+    rank = orthonormal(rows.leftCols(k)).cols();
+  }
+};
+
 /// A side of a comparison, with what is known of its noise.
 struct Alone : SubsetEstimate {
   Profiles profiles;
   Eigen::MatrixXd of_priors;  // #priors by #basis: their rows along the basis
   double freedom = 0.0;       // of the noise
+  DataFit of_data;            // without the priors
 
+  /// @param of_others  columns that take what they can of the rows: they say nothing of another
+  /// side
   Alone(const Linearisation& linear, const std::vector<Noise>& noise, const Compressed& all,
-        const Profiles& which, double tolerance)
+        const Profiles& which, const std::vector<Eigen::Index>& of_others, double tolerance)
       : SubsetEstimate(linear, all, which, tolerance),
         profiles(which),
         of_priors(linear.prior_rows * basis) {
@@ -51,17 +68,9 @@ struct Alone : SubsetEstimate {
       freedom += spread > 0.0 ? 2.0 / spread : HUGE_VAL;
     }
     if (std::isfinite(freedom)) freedom = std::clamp(freedom, 1.0, std::max(1.0, known));
-  }
-
-  /// Lets columns take what they can of the rows: they say nothing of another side.
-  void leave_free(const std::vector<Eigen::Index>& columns) {
-    const Eigen::MatrixXd taken = orthonormal(rows(Eigen::all, columns));
+    const Eigen::MatrixXd taken = orthonormal(rows(Eigen::all, of_others));
     rows -= taken * (taken.transpose() * rows).eval();
-  }
-
-  /// What the profiles say without the priors.
-  [[nodiscard]] Eigen::MatrixXd of_data() const {
-    return rows.bottomRows(rows.rows() - of_priors.rows());
+    of_data = DataFit(rows.bottomRows(rows.rows() - of_priors.rows()));
   }
 
   [[nodiscard]] bool determines(const Eigen::MatrixXd& curve) const {
@@ -229,25 +238,21 @@ struct Oneness {
   double shape = 0.0, scale = 1.0;  // of the gamma variable
 
   Oneness(const std::vector<Noise>& noise, const std::vector<const Alone*>& sides) {
-    const Eigen::Index k = sides.front()->rows.cols() - 1;
-    const auto left = [&](const Eigen::MatrixXd& of) {
-      return least_squares(of.leftCols(k), of.rightCols(1)).squares[0];
-    };
-    const auto rank = [&](const Eigen::MatrixXd& of) {
-      return static_cast<double>(orthonormal(of.leftCols(k)).cols());
-    };
-    Eigen::MatrixXd all(k + 1, 0);
+    Eigen::Index size = 0;
+    for (const Alone* side : sides) size += side->of_data.rows.rows();
+    Eigen::MatrixXd rows(size, sides.front()->rows.cols());
     double apart = 0.0;
-    for (const Alone* side : sides) {
-      const Eigen::MatrixXd own = side->of_data();
-      append_columns(all, own.transpose());
-      apart += left(own);
-      count += rank(own);
+    for (Eigen::Index first = 0; const Alone* side : sides) {
+      const DataFit& own = side->of_data;
+      rows.middleRows(first, own.rows.rows()) = own.rows;
+      first += own.rows.rows();
+      apart += own.left;
+      count += static_cast<double>(own.rank);
     }
-    const Eigen::MatrixXd rows = all.transpose();
-    count -= rank(rows);
+    const DataFit together(std::move(rows));
+    count -= static_cast<double>(together.rank);
     if (count < 1.0) return;
-    chi2 = std::max(0.0, left(rows) - apart) / count;
+    chi2 = std::max(0.0, together.left - apart) / count;
     const double spread = std::min(log_variance(noise, sides), 1.0);
     const double mean = std::exp(0.5 * spread);
     const double variance = mean * mean * (2.0 / count + std::expm1(spread));
@@ -283,9 +288,7 @@ class ProfileComparison {
       for (int a = 0; term.effect->description().kinematic && a < term.effect->amplitudes(); ++a)
         of_each_cut.push_back(term.first_amplitude + a);
     const auto side = [&](const Profiles& which) {
-      Alone out(fit.linear, noise, compressed, which, model.gates.rank_tolerance);
-      out.leave_free(of_each_cut);
-      return out;
+      return Alone(fit.linear, noise, compressed, which, of_each_cut, model.gates.rank_tolerance);
     };
     for (std::size_t i = 0; i < count; ++i) alone_.push_back(side({i}));
     if (!pairwise) others_.reserve(count);
@@ -315,15 +318,17 @@ class ProfileComparison {
       check.verdict = en <= gates.en_limit ? Consistency::consistent : Consistency::inconsistent;
     };
     std::vector<ProfileCheck> out;
-    for (const Pair& pair : pairs_)
+    for (const Pair& pair : pairs_) {
+      const Oneness oneness(noise_, {&pair.a, &pair.b});
       for (const Curve& curve : pair.curves) {
         ProfileCheck check{pair.names, curve.what};
         judge(largest_en(pair, curve, outside), check);
-        set_chi_square(Oneness(noise_, {&pair.a, &pair.b}), check);
+        set_chi_square(oneness, check);
         if (curve.of_slide)
           for (const Alone* side : {&pair.a, &pair.b}) add_straightness(curve, *side, joint, check);
         out.push_back(std::move(check));
       }
+    }
     if (!all) return out;
     ProfileCheck& together = out.emplace_back();
     for (const Observation* each : fit_.linear.observations)

@@ -85,7 +85,10 @@ void say_crosscheck(const Result& result, Summary& out);
 /// "33.0 ± 5.4 and 35.4 ± 5.5 µm": what each profile says by itself, or "".
 std::string each_alone(const ProfileCheck& check);
 
-/// "run2 and run3", "all profiles" of three or more.
+/// Whether it is of all profiles taken together, not of two.
+bool is_of_all(const ProfileCheck& check);
+
+/// "run2 and run3", or "all profiles".
 std::string who_of(const ProfileCheck& check);
 bool contradicts(const HeldOutCheck& check);
 

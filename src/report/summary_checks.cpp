@@ -86,11 +86,11 @@ std::vector<std::string> objections(const Result& result) {
       out.push_back(std::to_string(count.first) + " of " + std::to_string(count.second) +
                     " pairs of profiles disagree in " + what);
   const bool by_pairs = std::ranges::any_of(result.crosscheck.profiles, [](const auto& check) {
-    return contradicts(check) && check.profiles.size() == 2;
+    return contradicts(check) && !is_of_all(check);
   });
   for (const ProfileCheck& check : result.crosscheck.profiles) {
     if (!contradicts(check) || pairs[check.what].first > kNamedPairs) continue;
-    if (by_pairs && check.profiles.size() > 2) continue;  // it follows
+    if (by_pairs && is_of_all(check)) continue;  // it follows
     const std::string who = who_of(check) + " disagree in ";
     const auto known =
         std::ranges::find_if(out, [&](const std::string& each) { return each.starts_with(who); });

@@ -96,8 +96,10 @@ bool contradicts(const HeldOutCheck& check) {
   return check.verdict == HeldOutVerdict::does_not_fit;
 }
 
+bool is_of_all(const ProfileCheck& check) { return check.profiles.size() > 2; }
+
 std::string who_of(const ProfileCheck& check) {
-  return check.profiles.size() > 2 ? "all profiles" : joined(check.profiles, " and ");
+  return is_of_all(check) ? "all profiles" : joined(check.profiles, " and ");
 }
 
 std::string each_alone(const ProfileCheck& check) {

@@ -277,7 +277,7 @@ std::string crosscheck(const Crosscheck& checks) {
         (checks.profiles.size() == 1 ? std::string("holds along the whole curve")
                                      : "holds for all " + std::to_string(checks.profiles.size()) +
                                            " comparisons together and along the whole curve") +
-        (checks.profiles.back().profiles.size() > 2
+        (is_of_all(checks.profiles.back())
              ? "; of effects taken together, the root of chi-square over its quantile"
              : ""));
   for (const HeldOutCheck& check : checks.held_out)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "../linear_effect.hpp"
 #include "../variable_range.hpp"
@@ -27,7 +28,7 @@ constexpr double kSecondDifference = 6.0;  // its variance over that of white no
 class Response {
  public:
   /// @param tau  0: no lag
-  Response(const Channel& channel, double tau) : channel_(channel), tau_(tau) {
+  Response(const Channel& channel, double tau) : tau_(tau) {
     const std::vector<double>&t = channel.at, &q = channel.values;
     pieces_.reserve(t.size());
     for (std::size_t i = 0; i < t.size(); ++i) {
@@ -44,7 +45,7 @@ class Response {
   }
 
   [[nodiscard]] double value(double t) const {
-    if (t <= channel_.at.front()) return channel_.values.front();
+    if (t <= pieces_.front().at) return pieces_.front().value;
     return lagged_at(before(t), t);
   }
 
@@ -56,7 +57,7 @@ class Response {
 
   /// Of the value in time; right of a place where there is no lag.
   [[nodiscard]] double rate(double t) const {
-    if (t < channel_.at.front()) return 0.0;
+    if (t < pieces_.front().at) return 0.0;
     const Piece& p = before(t);
     if (tau_ <= 0.0) return p.slope;
     return (p.value + p.slope * (t - p.at) - lagged_at(p, t)) / tau_;
@@ -68,7 +69,7 @@ class Response {
 
   /// Of the value by τ.
   [[nodiscard]] double tau_slope(double t) const {
-    return t <= channel_.at.front() ? 0.0 : tau_slope_at(before(t), t);
+    return t <= pieces_.front().at ? 0.0 : tau_slope_at(before(t), t);
   }
   [[nodiscard]] double mean_tau_slope(double t, double width) const {
     if (!(width > 0.0)) return tau_slope(t);
@@ -83,9 +84,8 @@ class Response {
   };
 
   [[nodiscard]] const Piece& before(double t) const {
-    const auto after = std::ranges::upper_bound(channel_.at, t);
-    return pieces_[static_cast<std::size_t>(
-        std::max<std::ptrdiff_t>(after - channel_.at.begin() - 1, 0))];
+    const auto after = std::ranges::upper_bound(pieces_, t, {}, &Piece::at);
+    return after == pieces_.begin() ? *after : *std::prev(after);
   }
 
   /// y from y_i on, where τ y' = q - y and q = q_i + c u: y = y_i + c (u + τ d) + (y_i - q_i) d,
@@ -107,13 +107,14 @@ class Response {
   }
 
   [[nodiscard]] double integral_tau_slope(double t) const {
-    if (t <= channel_.at.front()) return 0.0;
-    return channel_.values.front() - value(t) - tau_ * tau_slope(t);
+    if (t <= pieces_.front().at) return 0.0;
+    const Piece& p = before(t);
+    return pieces_.front().value - lagged_at(p, t) - tau_ * tau_slope_at(p, t);
   }
 
   /// ∫ y = ∫ q - τ (y - y_0), as τ y' = q - y.
   [[nodiscard]] double integral(double t) const {
-    const double first = channel_.at.front(), start = channel_.values.front();
+    const double first = pieces_.front().at, start = pieces_.front().value;
     if (t <= first) return start * (t - first);
     const Piece& p = before(t);
     const double u = t - p.at;
@@ -121,7 +122,6 @@ class Response {
     return area - tau_ * (lagged_at(p, t) - start);
   }
 
-  const Channel& channel_;
   double tau_;
   std::vector<Piece> pieces_;
 };
