@@ -53,7 +53,7 @@ void Effect::columns_of_shapes(const Stations& stations,
 }
 
 void Effect::derivatives(const Stations& /*stations*/, std::span<const double> /*shape*/,
-                         int /*which*/, Eigen::Ref<Eigen::MatrixXd> out) const {
+                         Eigen::Ref<Eigen::MatrixXd> out) const {
   out.setZero();
 }
 

@@ -78,7 +78,7 @@ LineTest::LineTest(std::span<const double> values, const Eigen::VectorXd& places
 
 Eigen::MatrixXd LineTest::weighted(const Eigen::MatrixXd& columns) const {
   Eigen::MatrixXd out = window_.asDiagonal() * columns;
-  out -= form_ * (form_.transpose() * out).eval();
+  out.noalias() -= form_ * (form_.transpose() * out).eval();
   return out;
 }
 

@@ -87,8 +87,9 @@ void SingleAmplitude::columns_of_shapes(const Stations& stations,
 }
 
 void SingleAmplitude::derivatives(const Stations& stations, std::span<const double> shape,
-                                  int which, Eigen::Ref<Eigen::MatrixXd> out) const {
-  if (shapes()[which].stepwise || !applies_to(stations.setup())) return void(out.setZero());
+                                  Eigen::Ref<Eigen::MatrixXd> out) const {
+  if (shape.empty() || shapes()[0].stepwise || !applies_to(stations.setup()))
+    return void(out.setZero());
   for (Eigen::Index i = 0; i < stations.size(); ++i)
     out(i, 0) = spec_.shape->derivative(spec_.reading(stations, i), shape[0]);
 }

@@ -76,7 +76,7 @@ class SingleAmplitude : public LinearEffect {
                Eigen::Ref<Eigen::MatrixXd> out) const override;
   void columns_of_shapes(const Stations& stations, std::span<const std::vector<double>> shapes,
                          Eigen::Ref<Eigen::MatrixXd> out) const override;
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
 
  private:

@@ -61,7 +61,7 @@ void PeriodicEffect::columns_of_shapes(const Stations& stations,
 }
 
 void PeriodicEffect::derivatives(const Stations& stations, std::span<const double> shape,
-                                 int /*which*/, Eigen::Ref<Eigen::MatrixXd> out) const {
+                                 Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
   const double rate = cycles(shape), rate_slope = spec_.rate_is_period ? -rate * rate : 1.0;
   Phasor phasor;

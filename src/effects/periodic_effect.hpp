@@ -40,7 +40,7 @@ class PeriodicEffect : public Effect {
                Eigen::Ref<Eigen::MatrixXd> out) const override;
   void columns_of_shapes(const Stations& stations, std::span<const std::vector<double>> shapes,
                          Eigen::Ref<Eigen::MatrixXd> out) const override;
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
   [[nodiscard]] std::vector<LineBand> lines(const Stations& stations,
                                             std::span<const double> shape) const override;

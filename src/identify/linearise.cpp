@@ -88,10 +88,9 @@ Eigen::MatrixXd linear_columns(const Model& model, const Estimate& estimate,
     const Eigen::Index count = term.effect->amplitudes();
     columns.middleCols(term.first_amplitude, count) =
         low_band_columns(model, term, observation, shape);
-    for (int j = 0; j < static_cast<int>(shape.size()); ++j)
-      columns.col(a + term.first_shape + j) =
-          low_band_derivatives(model, term, observation, shape, j) *
-          estimate.amplitudes.segment(term.first_amplitude, count);
+    if (shape.empty()) continue;
+    columns.middleCols(a + term.first_shape, std::ssize(shape)) = low_band_slopes(
+        model, term, observation, shape, estimate.amplitudes.segment(term.first_amplitude, count));
   }
   return columns;
 }

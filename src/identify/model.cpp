@@ -203,13 +203,6 @@ Eigen::MatrixXd levelled(const Observation& observation, Eigen::MatrixXd columns
 
 namespace {
 
-Stations part_of(const Profile& profile, const Machine& machine, Eigen::Index first,
-                 Eigen::Index count) {
-  const std::span<const double> positions = profile.positions;
-  return {positions.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count)),
-          profile.setup, machine};
-}
-
 void require_metadata(const ModelTerm& term, const Profile& profile) {
   if (!term.acts_on(profile)) return;
   const std::vector<std::string> lacking = term.effect->lacking(profile.setup);
@@ -316,66 +309,6 @@ Model build_model(const Problem& problem, const std::vector<Profile>& profiles,
   for (const DeclaredEffect& declared : problem.effects) append_term(model, declared, model.range);
   require_columns(model, problem.trace.own);
   return model;
-}
-
-double low_band_scale(const Observation& observation) {
-  return std::sqrt(static_cast<double>(observation.low_band.samples()) /
-                   static_cast<double>(observation.values.size()));
-}
-
-Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
-                                 const Observation& observation, std::span<const double> shape) {
-  const Profile& profile = *observation.profile;
-  const Eigen::Index amplitudes = term.effect->amplitudes();
-  if (!term.acts_on(profile)) return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
-  const auto fill = [&](Eigen::Index first, const Eigen::Ref<Eigen::MatrixXd>& rows) {
-    term.effect->columns(part_of(profile, model.machine, first, rows.rows()), shape, rows);
-  };
-  return apply_in_parts(observation.low_band, std::ssize(profile.positions), amplitudes, fill);
-}
-
-Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
-                                     const Observation& observation, std::span<const double> shape,
-                                     int which) {
-  const Profile& profile = *observation.profile;
-  const Eigen::Index amplitudes = term.effect->amplitudes();
-  if (!term.acts_on(profile)) return Eigen::MatrixXd::Zero(observation.values.size(), amplitudes);
-  if (term.effect->shapes()[which].stepwise) {
-    std::vector<double> below(shape.begin(), shape.end()), above = below;
-    const double reach = 0.5 * (profile.setup.last_mm - profile.setup.first_mm) /
-                         static_cast<double>(observation.values.size());
-    below[which] -= reach;
-    above[which] += reach;
-    return (low_band_columns(model, term, observation, above) -
-            low_band_columns(model, term, observation, below)) /
-           (2.0 * reach);
-  }
-  const auto fill = [&](Eigen::Index first, const Eigen::Ref<Eigen::MatrixXd>& rows) {
-    term.effect->derivatives(part_of(profile, model.machine, first, rows.rows()), shape, which,
-                             rows);
-  };
-  return apply_in_parts(observation.low_band, std::ssize(profile.positions), amplitudes, fill);
-}
-
-void effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,
-                   const Eigen::VectorXd& amplitudes, std::span<const double> shape,
-                   Eigen::Index first, Eigen::Ref<Eigen::VectorXd> signal) {
-  constexpr Eigen::Index kBlock = 1024;  // samples: columns that stay in the cache
-  if (!term.acts_on(profile)) return void(signal.setZero());
-  Eigen::MatrixXd columns;
-  for (Eigen::Index done = 0; done < signal.size(); done += kBlock) {
-    const Eigen::Index count = std::min(kBlock, signal.size() - done);
-    columns.resize(count, term.effect->amplitudes());
-    term.effect->columns(part_of(profile, model.machine, first + done, count), shape, columns);
-    signal.segment(done, count).noalias() = columns * amplitudes;
-  }
-}
-
-Eigen::VectorXd effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,
-                              const Eigen::VectorXd& amplitudes, std::span<const double> shape) {
-  Eigen::VectorXd signal(std::ssize(profile.positions));
-  effect_signal(model, term, profile, amplitudes, shape, 0, signal);
-  return signal;
 }
 
 }  // namespace slideway

@@ -140,12 +140,12 @@ bool ProfileResidual::Evaluate(const double* const* parameters, double* residual
     const std::vector<double> shapes = outer_shapes(term, parameters[blocks.size() + 1]);
     const auto amplitudes = vector_of(parameters[blocks.size()], a);
     add(white(low_band_columns(model_, term, observation_, shapes)));
-    Eigen::MatrixXd slopes(out.size(), s);
-    for (Eigen::Index j = 0; jacobians && j < s; ++j)
-      slopes.col(j) =
-          white(low_band_derivatives(model_, term, observation_, shapes, static_cast<int>(j)) *
-                (amplitudes * slope_of_outer(term.effect->shapes()[j], shapes[j])));
-    blocks.push_back(std::move(slopes));
+    blocks.emplace_back(out.size(), s);
+    if (!jacobians) continue;
+    Eigen::MatrixXd slopes = low_band_slopes(model_, term, observation_, shapes, amplitudes);
+    for (Eigen::Index j = 0; j < s; ++j)
+      slopes.col(j) *= slope_of_outer(term.effect->shapes()[j], shapes[j]);
+    blocks.back() = white(std::move(slopes));
   }
   if (loss_) {
     Eigen::VectorXd robust = out;
@@ -259,7 +259,7 @@ Eigen::MatrixXd EliminatedResidual::outside(Eigen::Index columns, Of&& of_observ
     row += rows.rows();
   }
   out = nuisances_.beside(std::move(out));
-  out -= fixed_ * (fixed_.transpose() * out).eval();
+  out.noalias() -= fixed_ * (fixed_.transpose() * out).eval();
   return out;
 }
 
@@ -299,16 +299,16 @@ bool EliminatedResidual::Evaluate(const double* const* parameters, double* resid
   for (const ModelTerm* term : moving_) {
     const Eigen::Index a = term->effect->amplitudes();
     const auto own = shapes_of(*term, shapes);
+    auto columns = slopes.middleCols(term->first_shape, std::ssize(own));
+    columns = outside(columns.cols(), [&](std::size_t i) {
+      return low_band_slopes(model_, *term, *observations_[i], own, at.amplitudes.segment(next, a));
+    });
     for (std::size_t j = 0; j < own.size(); ++j)
-      slopes.col(term->first_shape + static_cast<Eigen::Index>(j)) =
-          -slope_of_outer(term->effect->shapes()[j], own[j]) * outside(1, [&](std::size_t i) {
-            return Eigen::MatrixXd(
-                low_band_derivatives(model_, *term, *observations_[i], own, static_cast<int>(j)) *
-                at.amplitudes.segment(next, a));
-          });
+      columns.col(static_cast<Eigen::Index>(j)) *=
+          -slope_of_outer(term->effect->shapes()[j], own[j]);
     next += a;
   }
-  slopes -= basis * (basis.transpose() * slopes).eval();
+  slopes.noalias() -= basis * (basis.transpose() * slopes).eval();
   // Their triangle has the same products as the rows.
   Eigen::MatrixXd both(rows_, model_.shapes() + 1);
   both << slopes, at.residual;

@@ -1,5 +1,6 @@
 #include "slideway/identify/solve.hpp"
 
+#include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
@@ -34,8 +35,8 @@ ceres::Solver::Options solver_options() {
   options.initial_trust_region_radius = 1e16;  // one undamped step solves a linear problem
   options.max_trust_region_radius = 1e16;      // beyond it rounding moves along null directions
   options.max_num_consecutive_invalid_steps = 100;  // at the optimum a step is rounding
-  // Between bounds Ceres tries each step along a line first: by values, not by gradients.
-  options.line_search_interpolation_type = ceres::QUADRATIC;
+  // Of a step between bounds: one that does not lower the sum is refused and made shorter anyway.
+  options.max_num_line_search_step_size_iterations = 0;
   return options;
 }
 
@@ -52,6 +53,94 @@ void bound_shapes(const ModelTerm& term, ceres::Problem& problem, double* block,
   }
 }
 
+/// One number of a parameter block, and which of its bounds it is at.
+struct AtBound {
+  double* block;
+  int index;
+  bool lower;
+
+  [[nodiscard]] bool is(const AtBound& other) const {
+    return block == other.block && index == other.index;
+  }
+};
+
+std::vector<AtBound> at_bounds(const ceres::Problem& problem) {
+  std::vector<double*> blocks;
+  problem.GetParameterBlocks(&blocks);
+  std::vector<AtBound> out;
+  for (double* const block : blocks)
+    for (int i = 0; i < problem.ParameterBlockSize(block); ++i) {
+      const bool lower = block[i] <= problem.GetParameterLowerBound(block, i);
+      if (lower || block[i] >= problem.GetParameterUpperBound(block, i))
+        out.push_back({block, i, lower});
+    }
+  return out;
+}
+
+/// Those held stay what they are, all others move.
+void hold(const std::vector<AtBound>& held, ceres::Problem& problem) {
+  std::map<double*, std::vector<int>> by_block;
+  for (const AtBound& each : held) by_block[each.block].push_back(each.index);
+  std::vector<double*> blocks;
+  problem.GetParameterBlocks(&blocks);
+  for (double* const block : blocks) {
+    const int size = problem.ParameterBlockSize(block);
+    const std::vector<int>& own = by_block[block];
+    problem.SetParameterBlockVariable(block);
+    if (static_cast<int>(own.size()) == size)
+      problem.SetParameterBlockConstant(block);
+    else
+      problem.SetManifold(block, own.empty() ? nullptr : new ceres::SubsetManifold(size, own));
+  }
+}
+
+/// Those at a bound whose sum of squares falls towards the inside.
+std::vector<AtBound> pulled_inside(const std::vector<AtBound>& at, ceres::Problem& problem) {
+  hold({}, problem);
+  ceres::Problem::EvaluateOptions all;
+  problem.GetParameterBlocks(&all.parameter_blocks);
+  std::vector<double> gradient;
+  std::vector<AtBound> out;
+  if (!problem.Evaluate(all, nullptr, nullptr, &gradient, nullptr)) return out;
+  std::size_t first = 0;
+  for (const double* const block : all.parameter_blocks) {
+    for (const AtBound& each : at) {
+      const double slope = gradient[first + static_cast<std::size_t>(each.index)];
+      if (each.block == block && (each.lower ? slope < 0.0 : slope > 0.0)) out.push_back(each);
+    }
+    first += static_cast<std::size_t>(problem.ParameterBlockSize(block));
+  }
+  return out;
+}
+
+/// Ceres makes each step as if there were no bounds and cuts it off at them: where one is met, the
+/// others end beside their best. What meets a bound is therefore held there, and let go once if
+/// the best of the others pulls it inside.
+ceres::Solver::Summary solve_within_bounds(const ceres::Solver::Options& options,
+                                           ceres::Problem& problem) {
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  std::vector<AtBound> held, let_go;
+  const auto is_in = [](const std::vector<AtBound>& list, const AtBound& each) {
+    return std::ranges::any_of(list, [&](const AtBound& other) { return other.is(each); });
+  };
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const AtBound& each : at_bounds(problem))
+      if (!is_in(held, each) && !is_in(let_go, each)) held.push_back(each), changed = true;
+    if (!changed && !held.empty())
+      for (const AtBound& each : pulled_inside(held, problem)) {
+        std::erase_if(held, [&](const AtBound& other) { return other.is(each); });
+        let_go.push_back(each);
+        changed = true;
+      }
+    if (!changed) break;
+    hold(held, problem);
+    ceres::Solve(options, &problem, &summary);
+  }
+  return summary;
+}
+
 /// Shapes of the best fit near `start`, the amplitudes eliminated; Ceres then has few steps left.
 Eigen::VectorXd eliminated_optimum(const Model& model, const Linearisation& linear,
                                    const std::vector<Noise>& noise, const Eigen::VectorXd& start) {
@@ -66,8 +155,7 @@ Eigen::VectorXd eliminated_optimum(const Model& model, const Linearisation& line
   }
   ceres::Solver::Options options = solver_options();
   options.initial_trust_region_radius = 1e4;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  solve_within_bounds(options, problem);
   for (const ModelTerm& term : model.terms) {
     const std::vector<double> own = outer_shapes(term, inner.data() + term.first_shape);
     std::copy(own.begin(), own.end(), out.data() + term.first_shape);
@@ -96,12 +184,7 @@ class FitProblem {
     }
   }
 
-  ceres::Solver::Summary solve() {
-    ceres::Solver::Summary summary;
-    ceres::Solver::Options options = solver_options();
-    ceres::Solve(options, &problem_, &summary);
-    return summary;
-  }
+  ceres::Solver::Summary solve() { return solve_within_bounds(solver_options(), problem_); }
 
   /// What has been found: the eliminated levelling follows from the rest.
   [[nodiscard]] Estimate estimate(const Model& model) {

@@ -116,11 +116,8 @@ std::optional<double> found_in(const Design& design, const Whitened& data, const
   const Eigen::VectorXd inner = one.amplitudes(*seen);
   Eigen::MatrixXd joint(data.rows(), a + std::ssize(one.shape));
   joint.leftCols(a) = one.columns;
-  for (Eigen::Index which = 0; which < std::ssize(one.shape); ++which)
-    joint.col(a + which) =
-        stacked_derivatives(one.model, one.candidate.term, one.shape, static_cast<int>(which),
-                            data.rows() - data.values()) *
-        inner;
+  joint.rightCols(std::ssize(one.shape)) =
+      stacked_slopes(one.model, one.candidate.term, one.shape, inner, data.rows() - data.values());
   const Eigen::MatrixXd covariance = amplitude_covariance(data.outside(std::move(joint)));
   const ParameterValues at = one.candidate.term.effect->parameter_values(inner, one.shape);
   const double uncertainty =

@@ -312,12 +312,12 @@ std::vector<Eigen::MatrixXd> by_profile(const Linearisation& linear,
   return out;
 }
 
-Eigen::MatrixXd stacked_derivatives(const Model& model, const ModelTerm& term,
-                                    std::span<const double> shape, int which,
-                                    Eigen::Index prior_rows) {
+Eigen::MatrixXd stacked_slopes(const Model& model, const ModelTerm& term,
+                               std::span<const double> shape, const Eigen::VectorXd& amplitudes,
+                               Eigen::Index prior_rows) {
   const auto observations = fitted_observations(model);
-  return stack(observations, prior_rows, term.effect->amplitudes(), [&](std::size_t i) {
-    return low_band_derivatives(model, term, *observations[i], shape, which);
+  return stack(observations, prior_rows, std::ssize(shape), [&](std::size_t i) {
+    return low_band_slopes(model, term, *observations[i], shape, amplitudes);
   });
 }
 

@@ -97,9 +97,9 @@ Eigen::MatrixXd stacked_columns(const Model& model, const ModelTerm& term,
 std::vector<Eigen::MatrixXd> by_profile(const Linearisation& linear,
                                         const Eigen::MatrixXd& stacked);
 
-/// stacked_columns() for d(columns)/d(shape[which]).
-Eigen::MatrixXd stacked_derivatives(const Model& model, const ModelTerm& term,
-                                    std::span<const double> shape, int which,
-                                    Eigen::Index prior_rows);
+/// The same for low_band_slopes().
+Eigen::MatrixXd stacked_slopes(const Model& model, const ModelTerm& term,
+                               std::span<const double> shape, const Eigen::VectorXd& amplitudes,
+                               Eigen::Index prior_rows);
 
 }  // namespace slideway

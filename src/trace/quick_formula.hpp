@@ -27,19 +27,22 @@ class QuickFormula final : public Effect {
                Eigen::Ref<Eigen::MatrixXd> out) const override {
     formula_->columns(stations, shape, out);
   }
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
-    const Shape& kind = shapes()[which];
-    const Parameter& range = parameters()[kind.parameter];
-    constexpr double kStep = 1e-4;  // of the shape or of its range
-    const double step = kStep * (kind.logarithmic ? shape[which] : range.upper - range.lower);
-    std::vector<double> below(shape.begin(), shape.end()), above = below;
-    below[which] = std::max(range.lower, shape[which] - step);
-    above[which] = std::min(range.upper, shape[which] + step);
-    Eigen::MatrixXd before(out.rows(), out.cols());
-    columns(stations, below, before);
-    columns(stations, above, out);
-    out = (out - before).eval() / (above[which] - below[which]);
+    constexpr double kStep = 1e-4;  // of a shape or of its range
+    Eigen::MatrixXd before(out.rows(), amplitudes()), after = before;
+    for (std::size_t s = 0; s < shape.size(); ++s) {
+      const Shape& kind = shapes()[s];
+      const Parameter& range = parameters()[kind.parameter];
+      const double step = kStep * (kind.logarithmic ? shape[s] : range.upper - range.lower);
+      std::vector<double> below(shape.begin(), shape.end()), above = below;
+      below[s] = std::max(range.lower, shape[s] - step);
+      above[s] = std::min(range.upper, shape[s] + step);
+      columns(stations, below, before);
+      columns(stations, above, after);
+      out.middleCols(static_cast<Eigen::Index>(s) * amplitudes(), amplitudes()) =
+          (after - before) / (above[s] - below[s]);
+    }
   }
   [[nodiscard]] ParameterValues parameter_values(const Eigen::VectorXd& amplitudes,
                                                  std::span<const double> shape) const override {

@@ -46,13 +46,14 @@ class ProjectedResidual final : public ceres::CostFunction {
     if (!jacobians || !jacobians[0]) return out.allFinite();
     using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     Eigen::Map<RowMajor> jacobian(jacobians[0], data_.rows(), std::ssize(moving_));
+    Eigen::MatrixXd slopes =
+        data_.outside(stacked_slopes(model_, term_, shape, amplitudes, priors));
+    slopes -= columns * decomposition.solve(slopes).eval();
     for (std::size_t j = 0; j < moving_.size(); ++j) {
-      const auto which = static_cast<int>(moving_[j]);
-      Eigen::VectorXd slope =
-          data_.outside(stacked_derivatives(model_, term_, shape, which, priors)) * amplitudes;
-      slope -= columns * decomposition.solve(slope);
-      if (term_.effect->shapes()[moving_[j]].logarithmic) slope *= shape[moving_[j]];
-      jacobian.col(static_cast<Eigen::Index>(j)) = -slope;
+      const double stretch =
+          term_.effect->shapes()[moving_[j]].logarithmic ? shape[moving_[j]] : 1.0;
+      jacobian.col(static_cast<Eigen::Index>(j)) =
+          -stretch * slopes.col(static_cast<Eigen::Index>(moving_[j]));
     }
     return out.allFinite() && jacobian.allFinite();
   }
@@ -100,6 +101,7 @@ void move_shapes(const Model& model, const Whitened& data, const ModelTerm& term
   options.num_threads = 1;
   options.max_num_iterations = 30;
   options.function_tolerance = 1e-9;
+  options.max_num_line_search_step_size_iterations = 0;  // a step that does not pay is refused
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   for (std::size_t j = 0; j < moving.size(); ++j)
@@ -199,10 +201,8 @@ void assess(const Model& model, const Whitened& data, Refined& out) {
   const auto s = static_cast<Eigen::Index>(out.shape.size());
   Eigen::MatrixXd columns(data.rows(), a + s);
   columns.leftCols(a) = out.columns;
-  for (Eigen::Index which = 0; which < s; ++which)
-    columns.col(a + which) = stacked_derivatives(model, term, out.shape, static_cast<int>(which),
-                                                 data.rows() - data.values()) *
-                             out.projection.amplitudes;
+  columns.rightCols(s) = stacked_slopes(model, term, out.shape, out.projection.amplitudes,
+                                        data.rows() - data.values());
   columns = data.outside(std::move(columns));
   const Eigen::MatrixXd covariance = amplitude_covariance(columns);
   const ParameterValues values =

@@ -222,9 +222,12 @@ PaperProfile Suspects::on_paper(const Observation& observation, const Noise& noi
     if (!shows(term)) continue;
     columns.middleCols(suspect.columns[0], a) =
         low_band_columns(one, term, one.observations[0], suspect.shape);
+    if (suspect.shape.empty()) continue;
+    const Eigen::MatrixXd derivatives =
+        low_band_derivatives(one, term, one.observations[0], suspect.shape);
     for (std::size_t s = 0; s < suspect.shape.size(); ++s)
       columns.middleCols(suspect.derivatives[s][0], a) =
-          low_band_derivatives(one, term, one.observations[0], suspect.shape, static_cast<int>(s));
+          derivatives.middleCols(static_cast<Eigen::Index>(s) * a, a);
   }
   std::map<const Candidate*, std::vector<const PlacedColumns*>> by_rival;
   for (const PlacedColumns& each : placed_) by_rival[each.candidate].push_back(&each);

@@ -9,6 +9,7 @@
 #include "identify/cases.hpp"
 #include "slideway/base/random.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/effects/formula.hpp"
 #include "support/turning.hpp"
 
 namespace slideway {
@@ -327,6 +328,30 @@ TEST(Fit, FindsTheTimeConstantOfADriftFromTwoFeeds) {
               4.0 * uncertainty(result, "thermal_drift.amplitude_um"));
   EXPECT_NEAR(value(result, "squareness.dbeta_xz"), kCarriage.squareness,
               4.0 * uncertainty(result, "squareness.dbeta_xz"));
+}
+
+// What is at a bound is a constant: the rest is the best fit beside that constant.
+TEST(Fit, IsTheBestOneBesideAShapeAtItsBound) {
+  RandomStream random(3, "bump");
+  const std::vector<double> x = cases::spaced(0.0, 400.0, 200);
+  std::vector<double> z;
+  for (const double at : x)
+    z.push_back(5e-3 * std::exp(-std::pow((at - 85.0) / 40.0, 2)) + 1e-4 * random.normal());
+  const Profile profile = cases::profile("slide", Kind::slide, x, z);
+  const auto fit_of = [&](const std::string& text, std::vector<FormulaParameter> parameters) {
+    DeclaredEffect own = cases::effect("own");
+    own.options.own =
+        formula_effect({.name = "own", .text = text, .parameters = std::move(parameters)});
+    return fitted(cases::problem(Lever::paper, 0, {own}), {profile});
+  };
+  const FormulaParameter size{"a", "um", {}, {}}, width{"w", "mm", 5.0, 100.0};
+  const FormulaParameter place{"c", "mm", 100.0, 200.0};  // the bump lies at 85 mm
+  const ModelResult bounded = fit_of("a * exp(-((x - c) / w)^2)", {size, place, width});
+  const ModelResult held = fit_of("a * exp(-((x - 100) / w)^2)", {size, width});
+  ASSERT_EQ(value(bounded, "own.c"), 100.0);
+  // A hundredth of a standard uncertainty is what nobody sees.
+  for (const char* name : {"own.a", "own.w"})
+    EXPECT_NEAR(value(bounded, name), value(held, name), 0.01 * uncertainty(held, name)) << name;
 }
 
 }  // namespace

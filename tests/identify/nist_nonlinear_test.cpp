@@ -153,14 +153,17 @@ class FormulaEffect : public Effect {
 
   /// By a step along the imaginary axis, which has no difference to lose digits in (Squire and
   /// Trapp 1998).
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
     constexpr double kStep = 1e-100;
-    Numbers b = numbers(shape);
-    b[formula_.shapes[which]] += Number(0.0, kStep);
-    for (Eigen::Index i = 0; i < stations.size(); ++i) {
-      const Numbers row = formula_.columns(stations.slide(i), b);
-      for (Eigen::Index j = 0; j < out.cols(); ++j) out(i, j) = row[j].imag() / kStep;
+    for (std::size_t s = 0; s < shape.size(); ++s) {
+      Numbers b = numbers(shape);
+      b[formula_.shapes[s]] += Number(0.0, kStep);
+      for (Eigen::Index i = 0; i < stations.size(); ++i) {
+        const Numbers row = formula_.columns(stations.slide(i), b);
+        for (Eigen::Index j = 0; j < amplitudes(); ++j)
+          out(i, static_cast<Eigen::Index>(s) * amplitudes() + j) = row[j].imag() / kStep;
+      }
     }
   }
 

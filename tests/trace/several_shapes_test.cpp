@@ -58,11 +58,12 @@ class TwoShapes : public Effect {
     for (Eigen::Index i = 0; i < stations.size(); ++i)
       out(i, 0) = form_.value(stations.radius(i), shape[0], shape[1]);
   }
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
-    const auto slope = which == 0 ? form_.by_position : form_.by_width;
-    for (Eigen::Index i = 0; i < stations.size(); ++i)
-      out(i, 0) = slope ? slope(stations.radius(i), shape[0], shape[1]) : 0.0;
+    const decltype(form_.by_position) slopes[] = {form_.by_position, form_.by_width};
+    for (Eigen::Index s = 0; s < 2; ++s)
+      for (Eigen::Index i = 0; i < stations.size(); ++i)
+        out(i, s) = slopes[s] ? slopes[s](stations.radius(i), shape[0], shape[1]) : 0.0;
   }
   [[nodiscard]] ParameterValues parameter_values(const Eigen::VectorXd& amplitudes,
                                                  std::span<const double> shape) const override {

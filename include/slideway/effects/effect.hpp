@@ -229,8 +229,9 @@ class Effect {
                                  std::span<const std::vector<double>> shapes,
                                  Eigen::Ref<Eigen::MatrixXd> out) const;
 
-  /// Fills `out` with d(columns)/d(shape[which]); zero for a stepwise shape.
-  virtual void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  /// Fills `out` (#stations by #shapes #amplitudes) with the derivatives of the columns by each
+  /// shape, side by side; zero for a stepwise shape.
+  virtual void derivatives(const Stations& stations, std::span<const double> shape,
                            Eigen::Ref<Eigen::MatrixXd> out) const;
 
   /// The amplitudes that are a process along the slide; by default none.

@@ -119,11 +119,17 @@ double low_band_scale(const Observation& observation);
 Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
                                  const Observation& observation, std::span<const double> shape);
 
-/// The same for d(columns)/d(shape[which]); for a stepwise shape the difference over one low-band
-/// value, which is what the data resolve.
+/// The same for the derivatives of the columns by each shape, side by side: #values by #shapes
+/// #amplitudes; for a stepwise shape the difference over one low-band value, which is what the data
+/// resolve.
 Eigen::MatrixXd low_band_derivatives(const Model& model, const ModelTerm& term,
-                                     const Observation& observation, std::span<const double> shape,
-                                     int which);
+                                     const Observation& observation, std::span<const double> shape);
+
+/// How what an effect with these amplitudes adds changes with each of its shapes: #values by
+/// #shapes.
+Eigen::MatrixXd low_band_slopes(const Model& model, const ModelTerm& term,
+                                const Observation& observation, std::span<const double> shape,
+                                const Eigen::VectorXd& amplitudes);
 
 /// What an effect with these amplitudes adds to every sample of a profile, mm or rad.
 Eigen::VectorXd effect_signal(const Model& model, const ModelTerm& term, const Profile& profile,

@@ -189,7 +189,7 @@ class ChannelEffect : public LinearEffect {
   [[nodiscard]] std::vector<std::string> lacking(const Setup& setup) const override;
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override;
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
   [[nodiscard]] std::unique_ptr<Effect> noise_of_cause(std::uint64_t seed) const override;
   [[nodiscard]] double resolution(int shape, double value,
@@ -269,22 +269,22 @@ void ChannelEffect::columns(const Stations& stations, std::span<const double> sh
     out(i, 0) = unit * (response.mean(clock(stations, i) - later, width) - start);
 }
 
-void ChannelEffect::derivatives(const Stations& stations, std::span<const double> shape, int which,
+void ChannelEffect::derivatives(const Stations& stations, std::span<const double> shape,
                                 Eigen::Ref<Eigen::MatrixXd> out) const {
-  if (!applies_to(stations.setup())) return void(out.setZero());
-  const bool by_lag = response_.free_lag && which == 0;
+  if (shape.empty() || !applies_to(stations.setup())) return void(out.setZero());
   const Response response(*channel_, tau(shape));
   const VariableReading clock = reading();
   const double width = range_of(stations, clock).step, later = lag(shape);
-  const double start = !response_.since_start ? 0.0
-                       : by_lag               ? -response.rate(start_of(stations) - later)
-                                              : response.tau_slope(start_of(stations) - later);
-  const double unit = unit_of(stations);
+  const double begin = start_of(stations) - later, unit = unit_of(stations);
+  const bool from_start = response_.since_start;
+  const Eigen::Index by_tau = out.cols() - 1;  // that by the lag is the first
+  const double start_rate = from_start && response_.free_lag ? response.rate(begin) : 0.0;
+  const double start_slope = from_start && response_.free_tau ? response.tau_slope(begin) : 0.0;
   for (Eigen::Index i = 0; i < stations.size(); ++i) {
     const double at = clock(stations, i) - later;
-    out(i, 0) =
-        unit *
-        ((by_lag ? -response.mean_rate(at, width) : response.mean_tau_slope(at, width)) - start);
+    if (response_.free_lag) out(i, 0) = -unit * (response.mean_rate(at, width) - start_rate);
+    if (response_.free_tau)
+      out(i, by_tau) = unit * (response.mean_tau_slope(at, width) - start_slope);
   }
 }
 

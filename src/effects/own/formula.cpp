@@ -92,10 +92,13 @@ class FormulaEffect : public LinearEffect {
   }
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override;
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
 
  private:
+  /// Of the columns by one shape.
+  [[nodiscard]] Eigen::MatrixXd derivative(const Stations& stations, std::span<const double> shape,
+                                           int which) const;
   [[nodiscard]] double range_of_shape(int shape) const {
     const Parameter& parameter = parameters()[shapes()[shape].parameter];
     return parameter.upper - parameter.lower;
@@ -119,19 +122,25 @@ void FormulaEffect::columns(const Stations& stations, std::span<const double> sh
   }
 }
 
-void FormulaEffect::derivatives(const Stations& stations, std::span<const double> shape, int which,
-                                Eigen::Ref<Eigen::MatrixXd> out) const {
-  if (!applies_to(stations.setup())) return void(out.setZero());
+Eigen::MatrixXd FormulaEffect::derivative(const Stations& stations, std::span<const double> shape,
+                                          int which) const {
   std::vector<double> moved(shape.begin(), shape.end());
   const auto at = [&](double value) {
     moved[which] = value;
-    Eigen::MatrixXd result(out.rows(), out.cols());
+    Eigen::MatrixXd result(stations.size(), amplitudes());
     columns(stations, moved, result);
     return result;
   };
   const Parameter& parameter = parameters()[shapes()[which].parameter];
   const double step = kStep * (shapes()[which].logarithmic ? shape[which] : range_of_shape(which));
-  out = numeric_derivative(at, shape[which], step, parameter.lower, parameter.upper).value;
+  return numeric_derivative(at, shape[which], step, parameter.lower, parameter.upper).value;
+}
+
+void FormulaEffect::derivatives(const Stations& stations, std::span<const double> shape,
+                                Eigen::Ref<Eigen::MatrixXd> out) const {
+  if (!applies_to(stations.setup())) return void(out.setZero());
+  for (int s = 0; s < static_cast<int>(shape.size()); ++s)
+    out.middleCols(s * amplitudes(), amplitudes()) = derivative(stations, shape, s);
 }
 
 double FormulaEffect::resolution(int shape, double value, const Stations& stations) const {
@@ -141,9 +150,9 @@ double FormulaEffect::resolution(int shape, double value, const Stations& statio
     middle.push_back(each.outer(0.5 * (each.inner(parameter.lower) + each.inner(parameter.upper))));
   }
   middle[shape] = value;
-  Eigen::MatrixXd here(stations.size(), amplitudes()), change = here;
+  Eigen::MatrixXd here(stations.size(), amplitudes());
   columns(stations, middle, here);
-  derivatives(stations, middle, shape, change);
+  Eigen::MatrixXd change = derivative(stations, middle, shape);
   here.rowwise() -= here.colwise().mean().eval();
   change.rowwise() -= change.colwise().mean().eval();
   const double coarsest = shapes()[shape].logarithmic ? Effect::resolution(shape, value, stations)

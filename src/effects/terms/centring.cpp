@@ -48,9 +48,9 @@ class Centring final : public SingleAmplitude {
     in_proportion(stations, out);
   }
 
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
-    SingleAmplitude::derivatives(stations, shape, which, out);
+    SingleAmplitude::derivatives(stations, shape, out);
     in_proportion(stations, out);
   }
 

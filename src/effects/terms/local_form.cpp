@@ -78,19 +78,15 @@ class LocalForm : public LinearEffect {
     fill_from_locus(stations, height_only(), bump, out);
   }
 
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
     const double place = shape[0], width = shape[1];
     const auto change = [=](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value,
                             Eigen::ArrayXXd& slope) {
       const Eigen::ArrayXd u = (x - place) / width, bump = gaussian(u);
-      if (which == 0) {
-        value.col(0) = bump * u / width;
-        slope.col(0) = bump * (1.0 - u.square()) / (width * width);
-      } else {
-        value.col(0) = bump * u.square() / width;
-        slope.col(0) = bump * u * (2.0 - u.square()) / (width * width);
-      }
+      value << bump * u / width, bump * u.square() / width;
+      slope << bump * (1.0 - u.square()) / (width * width),
+          bump * u * (2.0 - u.square()) / (width * width);
     };
     fill_from_locus(stations, height_only(), change, out);
   }

@@ -51,10 +51,10 @@ class RevolutionPeriodic final : public PeriodicEffect {
         out.middleCols(static_cast<Eigen::Index>(2 * s), 2).setZero();
   }
 
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
     if (is_of_run_out(stations, shape[0])) return void(out.setZero());
-    PeriodicEffect::derivatives(stations, shape, which, out);
+    PeriodicEffect::derivatives(stations, shape, out);
   }
 
   // Between the slow lines of both signs the readings of a face resolve none.

@@ -39,10 +39,9 @@ class SlidePeriodic : public PeriodicEffect {
       columns(stations, shapes[s], out.middleCols(static_cast<Eigen::Index>(2 * s), 2));
   }
 
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
-    if (is_height(stations.setup()))
-      return PeriodicEffect::derivatives(stations, shape, which, out);
+    if (is_height(stations.setup())) return PeriodicEffect::derivatives(stations, shape, out);
     const double wave = 2.0 * kPi / shape[0];
     const double change = -wave / shape[0];  // d wave / d period
     const auto line = [=](const Eigen::ArrayXd& x, Eigen::ArrayXXd& value, Eigen::ArrayXXd& slope) {

@@ -144,22 +144,30 @@ class SpindleRunout : public LinearEffect {
 
   void columns(const Stations& stations, std::span<const double> shape,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
-    fill(stations, shape, out,
-         [](Eigen::Index, const Legendre&, int, double& /*c*/, double& /*s*/) {});
+    at_each_station(stations, shape, out, [&](Eigen::Index i, const Turned& at) {
+      for (int h = 1; h <= kHarmonics; ++h) {
+        const double cosine = at.cosines[h - 1], sine = at.sines[h - 1];
+        out.row(i).segment<4>(4 * (h - 1)) << cosine, sine, at.position * cosine,
+            at.position * sine;
+      }
+    });
   }
 
-  void derivatives(const Stations& stations, std::span<const double> shape, int which,
+  void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override {
-    const auto slope_of = [&](Eigen::Index i, const Legendre& p, int h, double& cosine,
-                              double& sine) {
-      const double own = is_speed_of(stations.setup(), shape[0]) ? stations.time(i) / kMinute : 0.0;
-      const double turns = which == 0 ? own : p[which + 1];
-      const double angle = 2.0 * kPi * h * turns;
-      const double slope = -angle * sine;
-      sine = angle * cosine;
-      cosine = slope;
-    };
-    fill(stations, shape, out, slope_of);
+    const bool moves = is_speed_of(stations.setup(), shape[0]);
+    at_each_station(stations, shape, out, [&](Eigen::Index i, const Turned& at) {
+      for (std::size_t s = 0; s < shape.size(); ++s) {
+        const double own = moves ? stations.time(i) / kMinute : 0.0;
+        const double turns = s == 0 ? own : at.legendre[s + 1];
+        for (int h = 1; h <= kHarmonics; ++h) {
+          const double angle = 2.0 * kPi * h * turns;
+          const double cosine = -angle * at.sines[h - 1], sine = angle * at.cosines[h - 1];
+          const auto first = static_cast<Eigen::Index>(s) * kAmplitudes + 4 * (h - 1);
+          out.row(i).segment<4>(first) << cosine, sine, at.position * cosine, at.position * sine;
+        }
+      }
+    });
   }
 
   // The rate of the angle from one end of the drift to the other.
@@ -218,9 +226,17 @@ class SpindleRunout : public LinearEffect {
     return turns;
   }
 
-  template <typename Line>
-  void fill(const Stations& stations, std::span<const double> shape,
-            Eigen::Ref<Eigen::MatrixXd> out, Line&& line) const {
+  // A station and the angle of the spindle there.
+  struct Turned {
+    double position = 0.0;  // from -1 to 1
+    Legendre legendre{};
+    std::array<double, kHarmonics> cosines{}, sines{};  // of the angle, harmonic by harmonic
+  };
+
+  // Calls fill(i, Turned) for each station; where the effect does not apply, `out` is 0.
+  template <typename Fill>
+  void at_each_station(const Stations& stations, std::span<const double> shape,
+                       Eigen::Ref<Eigen::MatrixXd> out, Fill&& fill) const {
     if (!applies_to(stations.setup())) return void(out.setZero());
     Phasor phasor;
     for (Eigen::Index i = 0; i < stations.size(); ++i) {
@@ -228,12 +244,7 @@ class SpindleRunout : public LinearEffect {
       const Legendre p = polynomials(stations, shape, position);
       phasor.turn_to(2.0 * kPi * turn(stations, shape, i, p));
       const double c = phasor.cosine(), s = phasor.sine();
-      const double cosines[] = {c, (c - s) * (c + s)}, sines[] = {s, 2.0 * s * c};
-      for (int h = 1; h <= kHarmonics; ++h) {
-        double cosine = cosines[h - 1], sine = sines[h - 1];
-        line(i, p, h, cosine, sine);
-        out.row(i).segment<4>(4 * (h - 1)) << cosine, sine, position * cosine, position * sine;
-      }
+      fill(i, Turned{position, p, {c, (c - s) * (c + s)}, {s, 2.0 * s * c}});
     }
   }
 };
