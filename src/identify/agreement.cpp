@@ -27,20 +27,6 @@ constexpr const char* kTogether = "effects taken together";
 
 using Profiles = std::vector<std::size_t>;  // of the fitted ones
 
-/// What some rows [columns, residual] determine and leave.
-struct DataFit {
-  Eigen::MatrixXd rows;
-  double left = 0.0;  // of the residual's square
-  Eigen::Index rank = 0;
-
-  DataFit() = default;
-  explicit DataFit(Eigen::MatrixXd data) : rows(std::move(data)) {
-    const Eigen::Index k = rows.cols() - 1;
-    left = least_squares(rows.leftCols(k), rows.rightCols(1)).squares[0];
-    rank = orthonormal(rows.leftCols(k)).cols();
-  }
-};
-
 /// A side of a comparison, with what is known of its noise.
 struct Alone : SubsetEstimate {
   Profiles profiles;
@@ -69,8 +55,8 @@ struct Alone : SubsetEstimate {
     }
     if (std::isfinite(freedom)) freedom = std::clamp(freedom, 1.0, std::max(1.0, known));
     const Eigen::MatrixXd taken = orthonormal(rows(Eigen::all, of_others));
-    rows -= taken * (taken.transpose() * rows).eval();
-    of_data = DataFit(rows.bottomRows(rows.rows() - of_priors.rows()));
+    rows.noalias() -= taken * (taken.transpose() * rows).eval();
+    of_data = DataFit(rows.bottomRows(rows.rows() - of_priors.rows()), scale, tolerance);
   }
 
   [[nodiscard]] bool determines(const Eigen::MatrixXd& curve) const {
@@ -237,19 +223,22 @@ struct Oneness {
   double chi2 = 0.0, count = 0.0;   // over its degrees of freedom
   double shape = 0.0, scale = 1.0;  // of the gamma variable
 
-  Oneness(const std::vector<Noise>& noise, const std::vector<const Alone*>& sides) {
+  Oneness(const std::vector<Noise>& noise, const std::vector<const Alone*>& sides,
+          double rank_tolerance) {
     Eigen::Index size = 0;
     for (const Alone* side : sides) size += side->of_data.rows.rows();
     Eigen::MatrixXd rows(size, sides.front()->rows.cols());
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(rows.cols() - 1);
     double apart = 0.0;
     for (Eigen::Index first = 0; const Alone* side : sides) {
       const DataFit& own = side->of_data;
       rows.middleRows(first, own.rows.rows()) = own.rows;
       first += own.rows.rows();
       apart += own.left;
+      squares += own.scale.cwiseAbs2();
       count += static_cast<double>(own.rank);
     }
-    const DataFit together(std::move(rows));
+    const DataFit together(rows, squares.cwiseSqrt(), rank_tolerance);
     count -= static_cast<double>(together.rank);
     if (count < 1.0) return;
     chi2 = std::max(0.0, together.left - apart) / count;
@@ -319,7 +308,7 @@ class ProfileComparison {
     };
     std::vector<ProfileCheck> out;
     for (const Pair& pair : pairs_) {
-      const Oneness oneness(noise_, {&pair.a, &pair.b});
+      const Oneness oneness(noise_, {&pair.a, &pair.b}, gates.rank_tolerance);
       for (const Curve& curve : pair.curves) {
         ProfileCheck check{pair.names, curve.what};
         judge(largest_en(pair, curve, outside), check);
@@ -345,7 +334,7 @@ class ProfileComparison {
     if (alone_.size() < 3 || pairs_.empty()) return std::nullopt;
     std::vector<const Alone*> sides;
     for (const Alone& side : alone_) sides.push_back(&side);
-    Oneness out(noise_, sides);
+    Oneness out(noise_, sides, model_.gates.rank_tolerance);
     return out.count < 1.0 ? std::nullopt : std::optional(out);
   }
 

@@ -1,6 +1,9 @@
 #include "slideway/identify/subset_estimate.hpp"
 
+#include <utility>
+
 #include "slideway/identify/identifiability.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
 
@@ -16,10 +19,20 @@ SubsetEstimate::SubsetEstimate(const Linearisation& linear, const Compressed& al
     rows = std::move(both);
     squares += all.profiles[i].squares();
   }
-  const Rank rank = analyse_rank(rows.leftCols(k), squares.cwiseSqrt(), rank_tolerance);
+  scale = squares.cwiseSqrt();
+  const Rank rank = analyse_rank(rows.leftCols(k), scale, rank_tolerance);
   basis = rank.basis;
   null_space = rank.null_space;
   change = basis * (basis.transpose() * (rows.leftCols(k).transpose() * rows.col(k)));
+}
+
+DataFit::DataFit(const Eigen::MatrixXd& data, Eigen::VectorXd of_columns, double rank_tolerance)
+    : rows(upper_triangle(data)), scale(std::move(of_columns)) {
+  const Eigen::Index k = rows.cols() - 1;
+  const Eigen::MatrixXd basis = analyse_rank(rows.leftCols(k), scale, rank_tolerance).basis;
+  const Eigen::MatrixXd spanned = rows.leftCols(k) * basis;
+  left = (rows.col(k) - spanned * (spanned.transpose() * rows.col(k))).squaredNorm();
+  rank = basis.cols();
 }
 
 }  // namespace slideway

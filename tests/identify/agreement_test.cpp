@@ -63,6 +63,22 @@ TEST(ProfileCheck, OneBowThatDiffersDisagreesWithBothOthers) {
   EXPECT_LT(*checks[1].p_value, 1e-3);
 }
 
+// What levelling takes of a column is its rounding, which says nothing of the profiles.
+TEST(ProfileCheck, IsTheSameWhateverLevellingTakes) {
+  std::vector<Profile> runs{run("a", 5e-3, 1), run("b", 5e-3, 2), run("c", 5e-3, 3)};
+  const auto before = checks_of(runs);
+  for (Profile& profile : runs)
+    for (std::size_t i = 0; i < profile.values.size(); ++i)
+      profile.values[i] += 0.1 + 1e-4 * profile.positions[i];
+  const auto after = checks_of(runs);
+  ASSERT_EQ(after.size(), before.size());
+  // The heights have 0.1 mm and noise 1e-4 mm: rounding is 1e-13 of the noise.
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    EXPECT_NEAR(*after[c].En, *before[c].En, 1e-6);
+    EXPECT_NEAR(*after[c].chi2, *before[c].chi2, 1e-6);
+  }
+}
+
 TEST(ProfileCheck, FalseAlarmsStayNearTheirShare) {
   // 4.55 % of 100 reports: 11 or more have a probability of 0.5 %.
   int alarms = 0;
@@ -128,20 +144,20 @@ std::vector<ProfileCheck> checks_of_curves(double bump, unsigned seed) {
 
 // What two runs have from the prior of the curve is no noise of either, and no agreement.
 TEST(ProfileCheck, OfCurvesIsAsTheirNoise) {
-  // 4.55 % of 40 reports: 7 or more have a probability of 0.4 %.
+  // 4.55 % of 20 reports: 5 or more have a probability of 0.2 %.
   int alarms = 0;
   double mean = 0.0;
-  for (unsigned seed = 0; seed < 40; ++seed) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
     const auto checks = checks_of_curves(0.0, seed);
     ASSERT_EQ(checks.size(), 4U);
     alarms += std::ranges::any_of(checks, [](const ProfileCheck& check) {
       return check.verdict == Consistency::inconsistent;
     });
-    mean += *checks[0].chi2 / 40.0;
+    mean += *checks[0].chi2 / 20.0;
   }
-  EXPECT_LE(alarms, 6);
-  EXPECT_NEAR(mean, 1.0, 0.2);  // the noise is an estimate, too
-  int seen = 0;                 // a bump of less may pass for a memory of the noise
+  EXPECT_LE(alarms, 4);
+  EXPECT_NEAR(mean, 1.0, 0.28);  // the noise is an estimate, too
+  int seen = 0;                  // a bump of less may pass for a memory of the noise
   for (unsigned seed = 0; seed < 10; ++seed) {
     const auto checks = checks_of_curves(50.0, seed);
     seen += checks[1].verdict == Consistency::inconsistent &&
