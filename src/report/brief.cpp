@@ -58,7 +58,8 @@ constexpr std::pair<std::string_view, std::string_view> kKept[] = {
      "rms_um:4 rms_urad:4 profile from_mm:4 to_mm:4 clock correlation_length:4 "
      "correlation_unit dominant_period_mm:4 forms"},
     {"UnnamedForm", "form formula profiles"},
-    {"SharedResidual", "profiles correlation:4 rms_um:4 rms_urad:4 p_value:4 significant"},
+    {"SharedResidual",
+     "profiles correlation:4 rms_um:4 rms_urad:4 p_value:4 significant lacked_by"},
     {"Blunder", "profile what delta_bic:5"},
     {"Left", "effect"},
     {"DetectionLimit", "effect unit value:3"}};

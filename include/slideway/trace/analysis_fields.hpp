@@ -134,7 +134,9 @@ inline constexpr auto kRecord<SharedResidual> =
            field("rms_um", &SharedResidual::rms_um, "of what they share"),
            field("rms_urad", &SharedResidual::rms_urad),
            field("p_value", &SharedResidual::p_value, "of as much by chance"),
-           field("significant", &SharedResidual::significant, "then it is the instrument's error"));
+           field("significant", &SharedResidual::significant, "then it is the instrument's error"),
+           field("lacked_by", &SharedResidual::lacked_by,
+                 "profiles of further surfaces: then it need not be"));
 
 template <>
 inline constexpr auto kRecord<NextCut> =

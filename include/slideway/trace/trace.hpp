@@ -97,6 +97,7 @@ struct SharedResidual {
   std::optional<double> rms_um, rms_urad;  // of what they share
   double p_value = 1.0;                    // of as much by chance
   bool significant = false;                // then it is the instrument's error
+  std::vector<std::string> lacked_by;      // profiles of further surfaces: then it need not be
 };
 
 /// A short formula that describes what is left without a name. It is no cause.
