@@ -41,7 +41,8 @@ void add_form(double height, const Eigen::VectorXd& form, Eigen::MatrixXd& rows)
   const Eigen::VectorXd white = height * (rows * form);
   const double size = white.squaredNorm();
   if (!(size > 0.0)) return;
-  rows -= (1.0 - 1.0 / std::sqrt(1.0 + size)) / size * white * (white.transpose() * rows).eval();
+  rows.noalias() -=
+      (1.0 - 1.0 / std::sqrt(1.0 + size)) / size * white * (white.transpose() * rows).eval();
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ class LocalFormSearch {
       total += best.gain;
       best_total = std::max(best_total, total);
       residual -= best.unit * best.unit.dot(residual);
-      columns -= best.unit * (best.unit.transpose() * columns).eval();
+      columns.noalias() -= best.unit * (best.unit.transpose() * columns).eval();
       taken_.conservativeResize(data_.rows(), taken_.cols() + 1);
       taken_.rightCols(1) = best.unit;
     }
@@ -98,6 +98,16 @@ class LocalFormSearch {
  private:
   /// White columns of forms outside the model and what was found before.
   [[nodiscard]] Eigen::MatrixXd columns_of(std::span<const LocalForm> forms) const {
+    constexpr std::size_t kAtATime = 64;  // forms: what is put aside for them stays small
+    Eigen::MatrixXd out(data_.rows(), std::ssize(forms));
+    for (std::size_t first = 0; first < forms.size(); first += kAtATime) {
+      const auto some = forms.subspan(first, std::min(kAtATime, forms.size() - first));
+      out.middleCols(static_cast<Eigen::Index>(first), std::ssize(some)) = some_columns_of(some);
+    }
+    return out;
+  }
+
+  [[nodiscard]] Eigen::MatrixXd some_columns_of(std::span<const LocalForm> forms) const {
     Eigen::MatrixXd out = data_.outside(stack(linear_, std::ssize(forms), [&](std::size_t i) {
       Eigen::MatrixXd rows(x_[i].size(), std::ssize(forms));
       for (Eigen::Index j = 0; j < rows.cols(); ++j)
@@ -106,7 +116,7 @@ class LocalFormSearch {
       rows *= low_band_scale(*linear_.observations[i]);
       return rows;
     }));
-    if (taken_.cols() > 0) out -= taken_ * (taken_.transpose() * out).eval();
+    if (taken_.cols() > 0) out.noalias() -= taken_ * (taken_.transpose() * out).eval();
     return out;
   }
 

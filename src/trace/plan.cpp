@@ -88,11 +88,12 @@ struct Criteria {
 
 class Planner {
  public:
-  Planner(const Problem& problem, const std::vector<Profile>& profiles, const FittedModel& fitted,
-          const std::vector<CutToCome>& cuts)
+  /// @param in_means  the cuts are made from the profiles of the band, if any
+  Planner(const Problem& problem, std::unique_ptr<SearchBand> band, bool in_means,
+          const FittedModel& fitted, const std::vector<CutToCome>& cuts)
       : problem_(problem),
         cuts_(cuts),
-        coarser_(search_band(problem, profiles, fitted)),
+        coarser_(std::move(band)),
         fitted_(coarser_ ? coarser_->fitted : fitted),
         suspects_(problem, fitted_),
         wanted_(wanted_parameters(fitted_.model)),
@@ -104,7 +105,7 @@ class Planner {
     imagined_.resize(count);
     papers_.resize(count);
     parallel_for(count, [&](std::size_t c) {
-      imagined_[c] = imagine(problem, fitted_, coarser_.get(), cuts_[c]);
+      imagined_[c] = imagine(problem, fitted_, in_means ? nullptr : coarser_.get(), cuts_[c]);
       papers_[c] = std::make_unique<PaperProfile>(
           suspects_.on_paper(imagined_[c]->observation, imagined_[c]->noise));
     });
@@ -377,7 +378,7 @@ Plan plan_cuts(const Problem& problem, const std::vector<Profile>& profiles,
   const std::vector<CutToCome> tried = with_found_effects(
       problem, fitted.model, cuts, [&](const std::string& why) { left_out.push_back(why); });
   if (tried.empty()) throw UsageError(left_out.front());
-  Plan out = Planner(problem, profiles, fitted, tried).run();
+  Plan out = Planner(problem, search_band(problem, profiles, fitted), false, fitted, tried).run();
   std::ranges::move(left_out, std::back_inserter(out.notes));
   for (const TraceRound& round : loop.trace.rounds)
     out.notes.push_back("the model has " + term_name(round.accepted, round.profiles) +
@@ -387,10 +388,13 @@ Plan plan_cuts(const Problem& problem, const std::vector<Profile>& profiles,
 
 std::optional<NextCut> next_cut(const Problem& problem, const std::vector<Profile>& profiles,
                                 const FittedModel& fitted) {
+  std::unique_ptr<SearchBand> band = search_band(problem, profiles, fitted);
+  const bool in_means = band && problem.planned.empty();  // which are fewer than the samples
   const std::vector<CutToCome> cuts = with_found_effects(
-      problem, fitted.model, cuts_to_come(problem, profiles), [](const std::string&) {});
+      problem, fitted.model, cuts_to_come(problem, in_means ? band->profiles : profiles),
+      [](const std::string&) {});
   if (cuts.empty()) return std::nullopt;
-  return Planner(problem, profiles, fitted, cuts).best_alone();
+  return Planner(problem, std::move(band), in_means, fitted, cuts).best_alone();
 }
 
 }  // namespace slideway

@@ -38,7 +38,7 @@ SampleResiduals::Trace::Trace(const Observation& observation)
 
 Eigen::VectorXd SampleResiduals::Trace::levelled(Eigen::VectorXd signal) const {
   for (const auto& [first, those] : left_out) signal.segment(first, those).setZero();
-  signal -= level * (level.transpose() * signal).eval();
+  signal.noalias() -= level * (level.transpose() * signal).eval();
   return signal;
 }
 

@@ -87,7 +87,7 @@ void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
 Eigen::MatrixXd Whitened::outside(Eigen::MatrixXd stacked) const {
   whiten(stacked);
   own_.take_out(stacked);
-  stacked -= shared_ * (shared_.transpose() * stacked).eval();
+  stacked.noalias() -= shared_ * (shared_.transpose() * stacked).eval();
   return stacked;
 }
 
@@ -124,7 +124,7 @@ Eigen::MatrixXd Whitened::outside_in(const std::vector<Eigen::Index>& rows,
   const ProfileBases own = own_.in(rows);
   const Eigen::MatrixXd shared = orthonormal(own.beside(shared_(rows, Eigen::all)));
   own.take_out(white);
-  white -= shared * (shared.transpose() * white).eval();
+  white.noalias() -= shared * (shared.transpose() * white).eval();
   return white;
 }
 

@@ -138,14 +138,14 @@ void for_each_linear_problem(std::size_t count, const Each& each) {
 }
 
 TEST(Drawn, LegalProblemsGetASoundAnswerOrOneLine) {
-  for (std::size_t number = 0; number < problem_count(60); ++number) {
+  for (std::size_t number = 0; number < problem_count(30); ++number) {
     SCOPED_TRACE("problem " + std::to_string(number));
     expect_sound(ProblemFiles(drawn(number)), {.with_details = true, .with_curves = true});
   }
 }
 
 TEST(Drawn, HostileProblemsGetASoundAnswerOrOneLine) {
-  for (std::size_t number = 0; number < problem_count(60); ++number) {
+  for (std::size_t number = 0; number < problem_count(30); ++number) {
     SCOPED_TRACE("problem " + std::to_string(number));
     expect_sound(ProblemFiles(drawn(number, Intent::hostile)), {.closes_loop = false});
   }
@@ -153,7 +153,7 @@ TEST(Drawn, HostileProblemsGetASoundAnswerOrOneLine) {
 
 TEST(Drawn, ProfilesInAnotherOrderGiveTheSameAnswer) {
   for_each_linear_problem(
-      problem_count(20), [](const auto& problem, const auto& answer, const auto& options) {
+      problem_count(10), [](const auto& problem, const auto& answer, const auto& options) {
         expect_alike(answer, answer_to(ProblemFiles(problem, {.is_reversed = true}), options));
       });
 }
@@ -171,7 +171,7 @@ TEST(Drawn, DataInOtherUnitsGiveTheSameAnswer) {
                             .slope_unit = "um_per_m",
                             .heights_per_um = 1.0 / 25400.0};
   for_each_linear_problem(
-      problem_count(20), [&](const auto& problem, const auto& answer, const auto& options) {
+      problem_count(10), [&](const auto& problem, const auto& answer, const auto& options) {
         for (const Wording& wording : {kMetres, kInches})
           expect_alike(answer, answer_to(ProblemFiles(problem, wording), options));
       });
@@ -179,7 +179,7 @@ TEST(Drawn, DataInOtherUnitsGiveTheSameAnswer) {
 
 TEST(Drawn, DataTenTimesAsLargeGiveTenTimesTheAnswer) {
   for_each_linear_problem(
-      problem_count(20), [](const auto& problem, const auto& answer, const auto& options) {
+      problem_count(10), [](const auto& problem, const auto& answer, const auto& options) {
         expect_alike(answer, answer_to(ProblemFiles(problem, {.size = 10.0}), options), 10.0);
       });
 }

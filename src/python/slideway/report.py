@@ -687,6 +687,8 @@ class SharedResidual:
     """of as much by chance"""
     significant: bool
     """then it is the instrument's error"""
+    lacked_by: list[str]
+    """profiles of further surfaces: then it need not be"""
 
 
 @dataclass(frozen=True)
