@@ -36,6 +36,19 @@ Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
   return apply_in_parts(observation.low_band, std::ssize(profile.positions), amplitudes, fill);
 }
 
+Eigen::MatrixXd low_band_columns_of_shapes(const Model& model, const ModelTerm& term,
+                                           const Observation& observation,
+                                           std::span<const std::vector<double>> shapes) {
+  const Profile& profile = *observation.profile;
+  const Eigen::Index count = std::ssize(shapes) * term.effect->amplitudes();
+  if (!term.acts_on(profile)) return Eigen::MatrixXd::Zero(observation.values.size(), count);
+  const auto fill = [&](Eigen::Index first, Eigen::Ref<Eigen::MatrixXd> rows) {
+    term.effect->columns_of_shapes(part_of(profile, model.machine, first, rows.rows()), shapes,
+                                   rows);
+  };
+  return apply_in_parts(observation.low_band, std::ssize(profile.positions), count, fill);
+}
+
 namespace {
 
 /// The low band of what `reduce` makes of the derivatives by all shapes: `width` columns a shape.

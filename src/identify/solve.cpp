@@ -105,8 +105,9 @@ std::vector<AtBound> pulled_inside(const std::vector<AtBound>& at, ceres::Proble
   std::size_t first = 0;
   for (const double* const block : all.parameter_blocks) {
     for (const AtBound& each : at) {
+      if (each.block != block) continue;
       const double slope = gradient[first + static_cast<std::size_t>(each.index)];
-      if (each.block == block && (each.lower ? slope < 0.0 : slope > 0.0)) out.push_back(each);
+      if (each.lower ? slope < 0.0 : slope > 0.0) out.push_back(each);
     }
     first += static_cast<std::size_t>(problem.ParameterBlockSize(block));
   }

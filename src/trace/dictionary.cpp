@@ -70,14 +70,8 @@ class Viewer {
       auto rows = out.middleRows(row, observation.values.size());
       row += rows.rows();
       if (!term.acts_on(*observation.profile)) continue;
-      if (thin_[i] && !is_fast) {
-        rows = thin_columns(term, shapes, observation, *thin_[i]);
-        continue;
-      }
-      const Eigen::Index a = term.effect->amplitudes();
-      for (std::size_t s = 0; s < shapes.size(); ++s)
-        rows.middleCols(static_cast<Eigen::Index>(s) * a, a) =
-            low_band_columns(model_, term, observation, shapes[s]);
+      rows = thin_[i] && !is_fast ? thin_columns(term, shapes, observation, *thin_[i])
+                                  : low_band_columns_of_shapes(model_, term, observation, shapes);
     }
   }
 

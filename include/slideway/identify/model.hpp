@@ -119,6 +119,11 @@ double low_band_scale(const Observation& observation);
 Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
                                  const Observation& observation, std::span<const double> shape);
 
+/// The same of several shapes, side by side.
+Eigen::MatrixXd low_band_columns_of_shapes(const Model& model, const ModelTerm& term,
+                                           const Observation& observation,
+                                           std::span<const std::vector<double>> shapes);
+
 /// The same for the derivatives of the columns by each shape, side by side: #values by #shapes
 /// #amplitudes; for a stepwise shape the difference over one low-band value, which is what the data
 /// resolve.
