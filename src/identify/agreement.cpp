@@ -55,7 +55,7 @@ struct Alone : SubsetEstimate {
     }
     if (std::isfinite(freedom)) freedom = std::clamp(freedom, 1.0, std::max(1.0, known));
     const Eigen::MatrixXd taken = orthonormal(rows(Eigen::all, of_others));
-    rows.noalias() -= taken * (taken.transpose() * rows).eval();
+    project_out(taken, rows);
     of_data = DataFit(rows.bottomRows(rows.rows() - of_priors.rows()), scale, tolerance);
   }
 
@@ -235,7 +235,7 @@ struct Oneness {
       rows.middleRows(first, own.rows.rows()) = own.rows;
       first += own.rows.rows();
       apart += own.left;
-      squares += own.scale.cwiseAbs2();
+      squares += side->scale.cwiseAbs2();
       count += static_cast<double>(own.rank);
     }
     const DataFit together(rows, squares.cwiseSqrt(), rank_tolerance);

@@ -228,7 +228,7 @@ double share_of_noise(const Model& model, const Solution& fit, const ModelTerm& 
   const ProfileBases levelling = own_bases(linear.observations, fit.noise);
   const Eigen::MatrixXd span = orthonormal(levelling.beside(std::move(others)));
   levelling.take_out(causes);
-  causes.noalias() -= span * (span.transpose() * causes).eval();
+  project_out(span, causes);
   const Eigen::RowVectorXd squares = causes.colwise().squaredNorm();
   return squares[0] > 0.0 ? std::min(squares.tail(kDraws).mean() / squares[0], 1.0) : 1.0;
 }

@@ -104,8 +104,8 @@ CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
   carried_(which, Eigen::all) = -least_squares(others, curve).values;
   carried_.middleRows(first, own).setIdentity();
   const Eigen::MatrixXd basis = orthonormal(others);
-  curve.noalias() -= basis * (basis.transpose() * curve).eval();
-  target.noalias() -= basis * (basis.transpose() * target).eval();
+  project_out(basis, curve);
+  project_out(basis, target);
   information_ = curve.transpose() * curve;
   products_ = curve.transpose() * target;
   bow_.form = bow_form(knots_);

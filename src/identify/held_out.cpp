@@ -163,7 +163,7 @@ HeldOutCheck check(const Model& model, const Solution& fit, const std::vector<No
   rows << predicted.columns, predicted.error, slow_cosines(n, q);
   predicted.noise.whiten(rows);
   const Eigen::MatrixXd free = predicted.free_basis();
-  rows.noalias() -= free * (free.transpose() * rows).eval();
+  project_out(free, rows);
   const Eigen::MatrixXd slow = orthonormal(rows.rightCols(q));
   const auto columns = rows.leftCols(r);
   const Eigen::VectorXd error = rows.col(r);

@@ -39,8 +39,7 @@ Eigen::MatrixXd beyond(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& more
   constexpr double kNew = 1e-6;  // of a column: less is rounding
   const Eigen::RowVectorXd whole = columns.colwise().norm();
   for (int pass = 0; pass < 2; ++pass)
-    for (const Eigen::MatrixXd* taken : {&basis, &more})
-      columns.noalias() -= *taken * (taken->transpose() * columns).eval();
+    for (const Eigen::MatrixXd* taken : {&basis, &more}) project_out(*taken, columns);
   for (Eigen::Index j = 0; j < columns.cols(); ++j)
     if (columns.col(j).norm() <= kNew * whole[j]) columns.col(j).setZero();
   return orthonormal(std::move(columns));
@@ -99,7 +98,7 @@ std::optional<LinearProfile> fine_band(const Linearisation& linear, std::size_t 
   if (n - basis.cols() < kLeastSpare) return std::nullopt;
   Eigen::VectorXd rest =
       without_lines(linear.residuals[i], basis, lines, near_half(observation), gates);
-  rest.noalias() -= basis * (basis.transpose() * rest).eval();
+  project_out(basis, rest);
   if (is_rounding(rest, observation.values)) return std::nullopt;
   return LinearProfile{std::move(basis), Eigen::MatrixXd(n, 0), std::move(rest),
                        observation.profile->standard_uncertainty};

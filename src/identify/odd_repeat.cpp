@@ -33,7 +33,7 @@ Eigen::MatrixXd slow_parts(const Linearisation& linear, const std::vector<std::s
   finer.values_per_cosine = gates.values_per_repeated_cosine;
   Eigen::MatrixXd cosines =
       slow_cosines(std::ssize(rows), slow_cosine_count(std::ssize(rows), finer));
-  cosines.noalias() -= levelling * (levelling.transpose() * cosines).eval();
+  project_out(levelling, cosines);
   return orthonormal(std::move(cosines)).transpose() * residuals;
 }
 

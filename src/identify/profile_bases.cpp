@@ -23,7 +23,7 @@ ProfileBases ProfileBases::in(const std::vector<Eigen::Index>& rows) const {
 
 void ProfileBases::take_out_of(std::size_t profile, Eigen::Ref<Eigen::MatrixXd> white) const {
   const Eigen::MatrixXd& basis = bases_[profile];
-  white.noalias() -= basis * (basis.transpose() * white).eval();
+  project_out(basis, white);
 }
 
 void ProfileBases::take_out(Eigen::MatrixXd& white) const {

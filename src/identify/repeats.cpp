@@ -208,7 +208,7 @@ std::optional<LinearProfile> deviation_from_repeats(const Linearisation& linear,
   }
   append_columns(free, unit_columns(alone, count.size()));
   Eigen::MatrixXd basis = orthonormal(std::move(free));
-  deviation.noalias() -= basis * (basis.transpose() * deviation).eval();
+  project_out(basis, deviation);
   return LinearProfile{std::move(basis), Eigen::MatrixXd(deviation.size(), 0), std::move(deviation),
                        observation.profile->standard_uncertainty};
 }

@@ -259,7 +259,7 @@ Eigen::MatrixXd EliminatedResidual::outside(Eigen::Index columns, Of&& of_observ
     row += rows.rows();
   }
   out = nuisances_.beside(std::move(out));
-  out.noalias() -= fixed_ * (fixed_.transpose() * out).eval();
+  project_out(fixed_, out);
   return out;
 }
 
@@ -308,7 +308,7 @@ bool EliminatedResidual::Evaluate(const double* const* parameters, double* resid
           -slope_of_outer(term->effect->shapes()[j], own[j]);
     next += a;
   }
-  slopes.noalias() -= basis * (basis.transpose() * slopes).eval();
+  project_out(basis, slopes);
   // Their triangle has the same products as the rows.
   Eigen::MatrixXd both(rows_, model_.shapes() + 1);
   both << slopes, at.residual;

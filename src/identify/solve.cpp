@@ -59,7 +59,7 @@ struct AtBound {
   int index;
   bool lower;
 
-  [[nodiscard]] bool is(const AtBound& other) const {
+  bool operator==(const AtBound& other) const {
     return block == other.block && index == other.index;
   }
 };
@@ -122,16 +122,14 @@ ceres::Solver::Summary solve_within_bounds(const ceres::Solver::Options& options
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   std::vector<AtBound> held, let_go;
-  const auto is_in = [](const std::vector<AtBound>& list, const AtBound& each) {
-    return std::ranges::any_of(list, [&](const AtBound& other) { return other.is(each); });
-  };
   for (bool changed = true; changed;) {
     changed = false;
     for (const AtBound& each : at_bounds(problem))
-      if (!is_in(held, each) && !is_in(let_go, each)) held.push_back(each), changed = true;
+      if (std::ranges::count(held, each) + std::ranges::count(let_go, each) == 0)
+        held.push_back(each), changed = true;
     if (!changed && !held.empty())
       for (const AtBound& each : pulled_inside(held, problem)) {
-        std::erase_if(held, [&](const AtBound& other) { return other.is(each); });
+        std::erase(held, each);
         let_go.push_back(each);
         changed = true;
       }

@@ -26,8 +26,8 @@ SubsetEstimate::SubsetEstimate(const Linearisation& linear, const Compressed& al
   change = basis * (basis.transpose() * (rows.leftCols(k).transpose() * rows.col(k)));
 }
 
-DataFit::DataFit(const Eigen::MatrixXd& data, Eigen::VectorXd of_columns, double rank_tolerance)
-    : rows(upper_triangle(data)), scale(std::move(of_columns)) {
+DataFit::DataFit(const Eigen::MatrixXd& data, const Eigen::VectorXd& scale, double rank_tolerance)
+    : rows(upper_triangle(data)) {
   const Eigen::Index k = rows.cols() - 1;
   const Eigen::MatrixXd basis = analyse_rank(rows.leftCols(k), scale, rank_tolerance).basis;
   const Eigen::MatrixXd spanned = rows.leftCols(k) * basis;

@@ -111,7 +111,7 @@ class Prediction {
     Eigen::MatrixXd known(rows.rows(), others.basis.cols() + 2);
     known << rows.leftCols(k) * others.basis, rows.leftCols(k) * amplitudes, rows.col(k);
     const Eigen::MatrixXd open = orthonormal(rows.leftCols(k) * others.null_space);
-    known.noalias() -= open * (open.transpose() * known).eval();
+    project_out(open, known);
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(known.leftCols(others.basis.cols()),
                                                 Eigen::ComputeThinU);
     inside_ = svd.matrixU();

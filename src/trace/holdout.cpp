@@ -24,7 +24,7 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
   const Eigen::MatrixXd basis = orthonormal(rows.leftCols(rows.cols() - k - a - 1));
   Eigen::MatrixXd rest = rows.rightCols(k + a + 1);
   const Eigen::VectorXd before = rest.colwise().norm();
-  rest.noalias() -= basis * (basis.transpose() * rest).eval();
+  project_out(basis, rest);
   for (Eigen::Index j = k; j < k + a; ++j)
     if (rest.col(j).norm() <= kTakenByLevelling * before[j]) rest.col(j).setZero();
   return upper_triangle(rest);

@@ -39,8 +39,7 @@ struct Curve {
     Eigen::MatrixXd span(values.size(), levelling + linear.columns[i].cols());
     span << observation.nuisances.leftCols(levelling), linear.columns[i];
     const Eigen::MatrixXd basis = orthonormal(std::move(span));
-    values.noalias() -=
-        basis * (basis.transpose() * values).eval();  // weights of the fit move a line
+    project_out(basis, values);  // weights of the fit move a line
     taken = std::max<Eigen::Index>(basis.cols() - 1, 0);
     if (observation.profile->setup.reversed) values = -values;
   }

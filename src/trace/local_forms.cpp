@@ -7,6 +7,7 @@
 
 #include "process.hpp"
 #include "search.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
 namespace {
@@ -88,7 +89,7 @@ class LocalFormSearch {
       total += best.gain;
       best_total = std::max(best_total, total);
       residual -= best.unit * best.unit.dot(residual);
-      columns.noalias() -= best.unit * (best.unit.transpose() * columns).eval();
+      project_out(best.unit, columns);
       taken_.conservativeResize(data_.rows(), taken_.cols() + 1);
       taken_.rightCols(1) = best.unit;
     }
@@ -116,7 +117,7 @@ class LocalFormSearch {
       rows *= low_band_scale(*linear_.observations[i]);
       return rows;
     }));
-    if (taken_.cols() > 0) out.noalias() -= taken_ * (taken_.transpose() * out).eval();
+    if (taken_.cols() > 0) project_out(taken_, out);
     return out;
   }
 

@@ -58,7 +58,7 @@ PaperData::PaperData(std::vector<const PaperProfile*> profiles, const Eigen::Mat
   for (Eigen::Index j = 0; j < model.cols(); ++j)
     if (model.col(j).norm() <= kSwallowed * std::sqrt(scale[j])) model.col(j).setZero();
   const Eigen::MatrixXd basis = orthonormal(std::move(model));
-  inside_.noalias() -= basis * (basis.transpose() * inside_).eval();
+  project_out(basis, inside_);
 }
 
 Eigen::MatrixXd PaperData::products(const std::vector<Eigen::Index>& columns,

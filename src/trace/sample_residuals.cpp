@@ -38,7 +38,7 @@ SampleResiduals::Trace::Trace(const Observation& observation)
 
 Eigen::VectorXd SampleResiduals::Trace::levelled(Eigen::VectorXd signal) const {
   for (const auto& [first, those] : left_out) signal.segment(first, those).setZero();
-  signal.noalias() -= level * (level.transpose() * signal).eval();
+  project_out(level, signal);
   return signal;
 }
 

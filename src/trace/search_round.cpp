@@ -120,7 +120,7 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     tested.is_wave = is_wave(model, finding.candidate->term, tested.refined.shape);
     if (tested.is_wave && !finding.candidate->is_fast) {  // else the samples have shown it
       Eigen::VectorXd rest = data.residual() - tested.fitted;
-      rest.noalias() -= no_wave * (no_wave.transpose() * rest).eval();
+      project_out(no_wave, rest);
       tested.noise_beside = noise_beside_line(data, finding, rest, model.gates);
     }
     tested.p_value = calibration.p_value(-tested.delta_bic_beside());

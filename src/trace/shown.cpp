@@ -73,10 +73,10 @@ struct Beside {
     all = levelled(observation, std::move(all));
     images = all.leftCols(parts);
     const Eigen::MatrixXd form = orthonormal(all.rightCols(linear.cols()));
-    all.noalias() -= form * (form.transpose() * all).eval();
+    project_out(form, all);
     const Eigen::MatrixXd slow =
         orthonormal(levelled(observation, slow_cosines(n, slow_cosine_count(n, model.gates))));
-    all.noalias() -= slow * (slow.transpose() * all).eval();
+    project_out(slow, all);
     const Eigen::VectorXd values = all.col(parts + of_whole.cols());
     const Eigen::MatrixXd whole = orthonormal(all.middleCols(parts, of_whole.cols()));
     const Eigen::VectorXd sum = all.leftCols(parts / 2).rowwise().sum();

@@ -87,7 +87,7 @@ void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
 Eigen::MatrixXd Whitened::outside(Eigen::MatrixXd stacked) const {
   whiten(stacked);
   own_.take_out(stacked);
-  stacked.noalias() -= shared_ * (shared_.transpose() * stacked).eval();
+  project_out(shared_, stacked);
   return stacked;
 }
 
@@ -124,7 +124,7 @@ Eigen::MatrixXd Whitened::outside_in(const std::vector<Eigen::Index>& rows,
   const ProfileBases own = own_.in(rows);
   const Eigen::MatrixXd shared = orthonormal(own.beside(shared_(rows, Eigen::all)));
   own.take_out(white);
-  white.noalias() -= shared * (shared.transpose() * white).eval();
+  project_out(shared, white);
   return white;
 }
 

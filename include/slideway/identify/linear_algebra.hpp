@@ -7,6 +7,12 @@ namespace slideway {
 /// Orthonormal basis of what the columns span; columns are judged by their direction, not size.
 Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns);
 
+/// Takes what an orthonormal basis Q spans out of columns C, in place: C - Q Q'C.
+template <typename Basis, typename Columns>
+void project_out(const Eigen::MatrixBase<Basis>& basis, Eigen::MatrixBase<Columns>& columns) {
+  columns.noalias() -= basis.derived() * (basis.transpose() * columns.derived()).eval();
+}
+
 /// Puts more columns, of as many rows, behind the others.
 void append_columns(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more);
 

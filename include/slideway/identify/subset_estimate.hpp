@@ -24,12 +24,11 @@ struct SubsetEstimate {
 /// scale is the rounding of what was taken out of it.
 struct DataFit {
   Eigen::MatrixXd rows;  // a triangle that has the same products
-  Eigen::VectorXd scale;
-  double left = 0.0;  // of the residual's square
+  double left = 0.0;     // of the residual's square
   Eigen::Index rank = 0;
 
   DataFit() = default;
-  DataFit(const Eigen::MatrixXd& data, Eigen::VectorXd of_columns, double rank_tolerance);
+  DataFit(const Eigen::MatrixXd& data, const Eigen::VectorXd& scale, double rank_tolerance);
 };
 
 }  // namespace slideway
