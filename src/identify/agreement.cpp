@@ -2,15 +2,15 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 
+#include "compared_curves.hpp"
 #include "reported.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/linear_algebra.hpp"
-#include "slideway/identify/low_band_lines.hpp"
 #include "slideway/identify/noise_model.hpp"
 #include "slideway/identify/subset_estimate.hpp"
 #include "slideway/identify/uncertainty.hpp"
@@ -20,7 +20,6 @@ namespace slideway {
 namespace {
 
 constexpr std::size_t kMostPairwise = 8;  // profiles: 28 pairs a reader still reads
-constexpr Eigen::Index kCurvePoints = 101;
 constexpr double kOutside = 1e-6;  // of a row: less along a null direction is rounding
 constexpr const char* kAllOthers = "all others";
 constexpr const char* kTogether = "effects taken together";
@@ -67,91 +66,12 @@ struct Alone : SubsetEstimate {
   }
 };
 
-/// An effect as a curve: rows that are multiplied with (amplitudes, shapes).
-struct Curve {
-  std::string what;
-  Eigen::MatrixXd rows;
-  bool of_slide = false;
-};
-
-/// Where both profiles have readings of the slide, a bridge from foot to foot.
-SlideRange common_travel(const Model& model, const Profile& a, const Profile& b) {
-  SlideRange out{-INFINITY, INFINITY};
-  for (const Profile* profile : {&a, &b}) {
-    const SlideRange own = slide_range(*profile, model.machine);
-    const double foot = profile->setup.base_mm.value_or(0.0) / 2.0;
-    out.least = std::max(out.least, own.least - foot);
-    out.greatest = std::min(out.greatest, own.greatest + foot);
-  }
-  return out;
-}
-
-/// Deviation from the line through the ends of `travel`; nothing where there is none in common.
-Eigen::MatrixXd straightness_curve(const Model& model, const ModelTerm& term, const Solution& fit,
-                                   const SlideRange& travel) {
-  if (!(travel.greatest > travel.least)) return {};
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kCurvePoints, travel.least, travel.greatest);
-  Setup setup;
-  setup.kind = Kind::slide;
-  setup.first_mm = travel.least;
-  setup.last_mm = travel.greatest;
-  Eigen::MatrixXd out(x.size(), term.effect->amplitudes());
-  term.effect->columns({{x.data(), static_cast<std::size_t>(x.size())}, setup, model.machine},
-                       shapes_of(term, fit.estimate.shapes), out);
-  const Eigen::RowVectorXd first = out.row(0), last = out.row(x.size() - 1);
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(x.size() - 1);
-    out.row(i) -= (1.0 - share) * first + share * last;
-  }
-  return out.middleRows(1, x.size() - 2);
-}
-
-/// Low band of an effect in one profile, as far as levelling leaves it, at most kCurvePoints rows.
-Eigen::MatrixXd levelled_curve(const Linearisation& linear, std::size_t i, const ModelTerm& term) {
-  const Eigen::MatrixXd all =
-      levelled(*linear.observations[i],
-               linear.columns[i].middleCols(term.first_amplitude, term.effect->amplitudes()));
-  const Eigen::Index count = std::min(kCurvePoints, all.rows());
-  Eigen::MatrixXd out(count, all.cols());
-  for (Eigen::Index row = 0; row < count; ++row) out.row(row) = all.row(row * all.rows() / count);
-  return out;
-}
-
-/// Every effect of the model as a curve of profile `a` and, for the slide, the travel in common.
-/// Not of waves that are too fine for the low band: the nose of the tool takes off their crests,
-/// more of them the smaller the feed.
-std::vector<Curve> curves(const Model& model, const Solution& fit, std::size_t a, std::size_t b) {
-  std::vector<Curve> out;
-  const auto& observations = fit.linear.observations;
-  const auto is_fine = [&](const ModelTerm& term) {
-    return std::ranges::any_of(std::array{a, b}, [&](std::size_t i) {
-      return term.acts_on(*observations[i]->profile) &&
-             is_too_fine(model, term, shapes_of(term, fit.estimate.shapes), *observations[i]);
-    });
-  };
-  for (const ModelTerm& term : model.terms) {
-    if (term.effect->description().kinematic || is_fine(term)) continue;
-    const bool of_slide = term.effect->description().motion == MotionError::straightness;
-    const Eigen::MatrixXd own =
-        of_slide ? straightness_curve(
-                       model, term, fit,
-                       common_travel(model, *observations[a]->profile, *observations[b]->profile))
-                 : levelled_curve(fit.linear, a, term);
-    if (own.size() == 0 || own.cwiseAbs().maxCoeff() == 0.0) continue;
-    Curve curve{term.name, Eigen::MatrixXd::Zero(own.rows(), fit.linear.prior_rows.cols()),
-                of_slide};
-    curve.rows.middleCols(term.first_amplitude, own.cols()) = own;
-    out.push_back(std::move(curve));
-  }
-  return out;
-}
-
 /// Two sides of a comparison, and what they are called.
 struct Pair {
   const Alone& a;
   const Alone& b;
   std::vector<std::string> names;
-  std::vector<Curve> curves;  // that both determine
+  std::vector<ComparedCurve> curves;  // that both determine
 };
 
 /// Rows whose products are the covariance of the difference of two sides along a curve. With the
@@ -169,7 +89,7 @@ Eigen::MatrixXd difference_root(const Pair& pair, const Eigen::MatrixXd& of_a,
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-double largest_en(const Pair& pair, const Curve& curve, double outside) {
+double largest_en(const Pair& pair, const ComparedCurve& curve, double outside) {
   constexpr double kNothing = 1e-12;  // of the largest variance: the ends of a levelled curve
   const Eigen::MatrixXd of_a = curve.rows * pair.a.basis, of_b = curve.rows * pair.b.basis,
                         both = difference_root(pair, of_a, of_b);
@@ -190,7 +110,7 @@ double largest_en(const Pair& pair, const Curve& curve, double outside) {
 
 /// Appends the end-point straightness of a slide as one side has it, and its U.
 /// @param joint  (amplitudes, shapes) of the fit of all profiles
-void add_straightness(const Curve& curve, const Alone& side, const Eigen::VectorXd& joint,
+void add_straightness(const ComparedCurve& curve, const Alone& side, const Eigen::VectorXd& joint,
                       ProfileCheck& out) {
   const Eigen::VectorXd deviations = curve.rows * (joint + side.change);
   Eigen::RowVectorXd range = Eigen::RowVectorXd::Zero(curve.rows.cols());
@@ -272,10 +192,9 @@ class ProfileComparison {
     const Compressed compressed = compress(fit.linear, noise);
     const std::size_t count = fit.linear.observations.size();
     const bool pairwise = count <= kMostPairwise;
-    std::vector<Eigen::Index> of_each_cut;
-    for (const ModelTerm& term : model.terms)
-      for (int a = 0; term.effect->description().kinematic && a < term.effect->amplitudes(); ++a)
-        of_each_cut.push_back(term.first_amplitude + a);
+    Profiles every(count);
+    std::iota(every.begin(), every.end(), std::size_t{0});
+    const std::vector<Eigen::Index> of_each_cut = columns_of_each_cut(model, fit, every);
     const auto side = [&](const Profiles& which) {
       return Alone(fit.linear, noise, compressed, which, of_each_cut, model.gates.rank_tolerance);
     };
@@ -309,7 +228,7 @@ class ProfileComparison {
     std::vector<ProfileCheck> out;
     for (const Pair& pair : pairs_) {
       const Oneness oneness(noise_, {&pair.a, &pair.b}, gates.rank_tolerance);
-      for (const Curve& curve : pair.curves) {
+      for (const ComparedCurve& curve : pair.curves) {
         ProfileCheck check{pair.names, curve.what};
         judge(largest_en(pair, curve, outside), check);
         set_chi_square(oneness, check);
@@ -340,7 +259,7 @@ class ProfileComparison {
 
   void add(std::size_t i, std::size_t j, const Alone& other, const std::string& name) {
     Pair pair{alone_[i], other, {fit_.linear.observations[i]->profile->name, name}, {}};
-    for (Curve& curve : curves(model_, fit_, i, j))
+    for (ComparedCurve& curve : compared_curves(model_, fit_, i, j))
       if (alone_[i].determines(curve.rows) && other.determines(curve.rows))
         pair.curves.push_back(std::move(curve));
     if (!pair.curves.empty()) pairs_.push_back(std::move(pair));

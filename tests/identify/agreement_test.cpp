@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <random>
 
 #include "identify/cases.hpp"
@@ -189,6 +190,32 @@ TEST(ProfileCheck, ComparesNothingThatEachCutHasOrOneProfileAlone) {
   EXPECT_THAT(compared_beside("cup", {}), ::testing::ElementsAre("squareness", "cup"));
   EXPECT_THAT(compared_beside("cup", {"b"}), ::testing::ElementsAre("squareness"));
   EXPECT_THAT(compared_beside("feed_marks", {}), ::testing::ElementsAre("squareness"));
+}
+
+// The nose of the tool takes off the crests of a wave that is finer than the low band, more of them
+// in some cuts than in others. Of 200 values the low band shows 50 cycles.
+TEST(ProfileCheck, AFineWaveMayHaveAnotherSizeInEachCut) {
+  const auto disagree = [](double period_mm) {
+    std::vector<Profile> faces;
+    for (const auto& [name, share] : {std::pair{"a", 1.0}, {"b", 0.6}, {"c", 0.3}}) {
+      RandomStream random(9, name);
+      const std::vector<double> r = cases::spaced(0.0, 20.0, kReadings);
+      std::vector<double> z;
+      for (const double at : r)
+        z.push_back(-1e-5 * at + kNoise * random.normal() +
+                    5.0 * share * kNoise * std::sin(2.0 * std::numbers::pi * at / period_mm));
+      faces.push_back(cases::face(name, 2.0, r, z));
+    }
+    Problem problem = cases::problem(Lever::paper, 0, {cases::effect("squareness")});
+    problem.effects.push_back(cases::effect("slide_periodic"));
+    const auto checks = checks_of(faces, problem);
+    EXPECT_FALSE(checks.empty());
+    return std::ranges::any_of(checks, [](const ProfileCheck& check) {
+      return check.verdict == Consistency::inconsistent;
+    });
+  };
+  EXPECT_FALSE(disagree(0.3));
+  EXPECT_TRUE(disagree(4.0));
 }
 
 // Of three profiles of equal weight one is off by d: the estimates without one each are d/3 above

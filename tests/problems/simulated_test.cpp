@@ -197,6 +197,27 @@ TEST(Coolant, IsNamedByTheLogAndHasNoNameWithoutIt) {
   expect_recovered(with.result, "squareness.dbeta_xz", 2.0e-5);
 }
 
+class OneMachine : public ::testing::TestWithParam<const char*> {};
+
+// The cuts of each of these problems are of one machine (data/make_data.cpp), whatever the loop
+// adds to the model.
+TEST_P(OneMachine, ItsProfilesAgreeWithOneAnother) {
+  const Problem problem = shipped_problem(GetParam());
+  const Analysis analysis = analyse(problem, read_profiles(problem));
+  ASSERT_FALSE(analysis.result.crosscheck.profiles.empty());
+  for (const ProfileCheck& check : analysis.result.crosscheck.profiles)
+    EXPECT_EQ(check.verdict, Consistency::consistent)
+        << check.what << " of " << ::testing::PrintToString(check.profiles) << ", E_n "
+        << *check.En;
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, OneMachine,
+                         ::testing::Values("paper-600mm/problem.toml", "paper-600mm/paper.toml",
+                                           "paper-experiment/problem.toml",
+                                           "paper-face-10mm/problem.toml", "demo/problem.toml",
+                                           "coolant/problem.toml", "three-levels/problem.toml",
+                                           "three-levels/split.toml"));
+
 TEST(AxisRanking, PutsYFirstAndZLastBeforeAndAfterTheLowBand) {
   LowBandOptions raw, low;
   raw.level = 0;

@@ -1,0 +1,106 @@
+#include "compared_curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "slideway/identify/low_band_lines.hpp"
+
+namespace slideway {
+namespace {
+
+constexpr Eigen::Index kCurvePoints = 101;
+
+/// Where both profiles have readings of the slide, a bridge from foot to foot.
+SlideRange common_travel(const Model& model, const Profile& a, const Profile& b) {
+  SlideRange out{-INFINITY, INFINITY};
+  for (const Profile* profile : {&a, &b}) {
+    const SlideRange own = slide_range(*profile, model.machine);
+    const double foot = profile->setup.base_mm.value_or(0.0) / 2.0;
+    out.least = std::max(out.least, own.least - foot);
+    out.greatest = std::min(out.greatest, own.greatest + foot);
+  }
+  return out;
+}
+
+/// Deviation from the line through the ends of `travel`; nothing where there is none in common.
+Eigen::MatrixXd straightness_curve(const Model& model, const ModelTerm& term, const Solution& fit,
+                                   const SlideRange& travel) {
+  if (!(travel.greatest > travel.least)) return {};
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kCurvePoints, travel.least, travel.greatest);
+  Setup setup;
+  setup.kind = Kind::slide;
+  setup.first_mm = travel.least;
+  setup.last_mm = travel.greatest;
+  Eigen::MatrixXd out(x.size(), term.effect->amplitudes());
+  term.effect->columns({{x.data(), static_cast<std::size_t>(x.size())}, setup, model.machine},
+                       shapes_of(term, fit.estimate.shapes), out);
+  const Eigen::RowVectorXd first = out.row(0), last = out.row(x.size() - 1);
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(x.size() - 1);
+    out.row(i) -= (1.0 - share) * first + share * last;
+  }
+  return out.middleRows(1, x.size() - 2);
+}
+
+/// Low band of an effect in one profile, as far as levelling leaves it, at most kCurvePoints rows.
+Eigen::MatrixXd levelled_curve(const Linearisation& linear, std::size_t i, const ModelTerm& term) {
+  const Eigen::MatrixXd all =
+      levelled(*linear.observations[i],
+               linear.columns[i].middleCols(term.first_amplitude, term.effect->amplitudes()));
+  const Eigen::Index count = std::min(kCurvePoints, all.rows());
+  Eigen::MatrixXd out(count, all.cols());
+  for (Eigen::Index row = 0; row < count; ++row) out.row(row) = all.row(row * all.rows() / count);
+  return out;
+}
+
+/// Whether each cut has its own size of an effect, so that it cannot be compared: the marks of the
+/// tool, and waves too fine for the low band of one of these profiles. The nose of the tool takes
+/// off their crests, more of them the smaller the feed.
+bool is_of_each_cut(const Model& model, const Solution& fit, const ModelTerm& term,
+                    const std::vector<std::size_t>& which) {
+  if (term.effect->description().kinematic) return true;
+  return std::ranges::any_of(which, [&](std::size_t i) {
+    const Observation& observation = *fit.linear.observations[i];
+    return term.acts_on(*observation.profile) &&
+           is_too_fine(model, term, shapes_of(term, fit.estimate.shapes), observation);
+  });
+}
+
+}  // namespace
+
+std::vector<Eigen::Index> columns_of_each_cut(const Model& model, const Solution& fit,
+                                              const std::vector<std::size_t>& which) {
+  const Eigen::Index amplitudes = fit.estimate.amplitudes.size();
+  std::vector<Eigen::Index> out;
+  for (const ModelTerm& term : model.terms) {
+    if (!is_of_each_cut(model, fit, term, which)) continue;
+    for (int a = 0; a < term.effect->amplitudes(); ++a) out.push_back(term.first_amplitude + a);
+    for (Eigen::Index s = 0; s < std::ssize(term.effect->shapes()); ++s)
+      out.push_back(amplitudes + term.first_shape + s);
+  }
+  return out;
+}
+
+std::vector<ComparedCurve> compared_curves(const Model& model, const Solution& fit, std::size_t a,
+                                           std::size_t b) {
+  std::vector<ComparedCurve> out;
+  const auto& observations = fit.linear.observations;
+  for (const ModelTerm& term : model.terms) {
+    if (is_of_each_cut(model, fit, term, {a, b})) continue;
+    const bool of_slide = term.effect->description().motion == MotionError::straightness;
+    const Eigen::MatrixXd own =
+        of_slide ? straightness_curve(
+                       model, term, fit,
+                       common_travel(model, *observations[a]->profile, *observations[b]->profile))
+                 : levelled_curve(fit.linear, a, term);
+    if (own.size() == 0 || own.cwiseAbs().maxCoeff() == 0.0) continue;
+    ComparedCurve curve{term.name, Eigen::MatrixXd::Zero(own.rows(), fit.linear.prior_rows.cols()),
+                        of_slide};
+    curve.rows.middleCols(term.first_amplitude, own.cols()) = own;
+    out.push_back(std::move(curve));
+  }
+  return out;
+}
+
+}  // namespace slideway
