@@ -136,8 +136,10 @@ def judge(report: Record, case: Case) -> Record:
     dbeta = within(parameter(report, "squareness.dbeta_xz"), case.shop.squareness)
     if dbeta is not None:
         dbeta["unseen"] = unseen(report)
+    apart = [check["profiles"] for check in report["crosscheck"]["profiles"]
+             if check["verdict"] == "inconsistent"]
     return {"verdict": report["trace"]["verdict"], "names": names, "wrong": wrong, "dbeta": dbeta,
-            "hidden": hidden_ones}
+            "hidden": hidden_ones, "apart": apart}
 
 
 def score(case: Case, program: str, title: str, keep: Path | None) -> Record:

@@ -28,18 +28,34 @@ Eigen::VectorXd readings(const Stations& stations, VariableReading reading) {
 
 VariableRange range_of(const Stations& stations, VariableReading reading) {
   if (stations.size() == 0) return {};
+  const std::span<const double> at = stations.positions();
+  const Eigen::Index last = stations.size() - 1;
+  // On a diameter the variables of the cut run there and back.
+  const Eigen::Index beyond =
+      stations.setup().kind == Kind::face
+          ? std::ranges::lower_bound(at, stations.setup().center_mm) - at.begin()
+          : 0;
   VariableRange range{reading(stations, 0), reading(stations, 0), 0.0};
   double travelled = 0.0;
   double previous = range.low;
-  for (Eigen::Index i = 1; i < stations.size(); ++i) {
+  for (const Eigen::Index i :
+       {std::clamp<Eigen::Index>(beyond - 1, 0, last), std::min(beyond, last), last}) {
     const double value = reading(stations, i);
     range.low = std::min(range.low, value);
     range.high = std::max(range.high, value);
-    // On a diameter the variables of the cut run there and back.
     travelled += std::abs(value - previous);
     previous = value;
   }
-  if (stations.size() > 1) range.step = travelled / static_cast<double>(stations.size() - 1);
+  if (last > 0) range.step = travelled / static_cast<double>(last);
+  return range;
+}
+
+VariableRange range_of(const Eigen::VectorXd& readings) {
+  VariableRange range{readings.minCoeff(), readings.maxCoeff(), 0.0};
+  const Eigen::Index steps = readings.size() - 1;
+  if (steps > 0)
+    range.step =
+        (readings.tail(steps) - readings.head(steps)).cwiseAbs().sum() / static_cast<double>(steps);
   return range;
 }
 

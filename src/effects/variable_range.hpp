@@ -28,7 +28,12 @@ struct VariableRange {
   [[nodiscard]] double extent() const { return high - low; }
 };
 
+// Of a variable that runs one way on either side of the spindle axis: the ends of both say it.
+// REQUIRES increasing positions.
 VariableRange range_of(const Stations& stations, VariableReading reading);
+
+// Of any readings, one at least.
+VariableRange range_of(const Eigen::VectorXd& readings);
 
 // Time constants (or distances) of a transient the profile can show.
 std::pair<double, double> transient_range(const Stations& stations, VariableReading reading);

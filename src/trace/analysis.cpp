@@ -3,10 +3,9 @@
 #include <string>
 
 #include "fit_numbers.hpp"
-#include "loop.hpp"
+#include "next_cut.hpp"
 #include "outcome.hpp"
 #include "slideway/base/error.hpp"
-#include "slideway/trace/plan.hpp"
 #include "slideway/trace/unseen.hpp"
 
 namespace slideway {
@@ -23,7 +22,7 @@ template <typename Error>
 /// Where the model is worth a plan: no profile is wrong, nothing is left unexplained, and there are
 /// not so many profiles that one more changes little.
 void add_next_cut(const Problem& problem, const std::vector<Profile>& profiles,
-                  const FittedModel& fitted, TimeLimit& limit, Analysis& out) {
+                  const FittedModel& fitted, Searched searched, TimeLimit& limit, Analysis& out) {
   TraceResult& trace = *out.trace;
   const ModelResult& model = *out.result.final;
   if (fitted.fit.linear.observations.size() > kMostBesideOneMore || trace.unfinished ||
@@ -34,7 +33,8 @@ void add_next_cut(const Problem& problem, const std::vector<Profile>& profiles,
     trace.notes.push_back("no further cut was tried on paper: " + std::string(error.what()));
   };
   try {
-    if (!limit.allows([&] { trace.next_cut = next_cut(problem, profiles, fitted); }))
+    if (!limit.allows(
+            [&] { trace.next_cut = next_cut(problem, profiles, fitted, std::move(searched)); }))
       trace.not_looked_at.emplace_back("the cut to make next");
   } catch (const UsageError& error) {  // a planned cut lacks metadata
     say(error);
@@ -69,7 +69,7 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
           parameters_of(*out.result.final, term_name(round.accepted, round.profiles));
     doubt_what_is_uncertain(last->model, *out.result.final, *out.trace);
     add_conditions(*out.trace, out.result);
-    add_next_cut(problem, profiles, *last, limit, out);
+    add_next_cut(problem, profiles, *last, std::move(loop.searched), limit, out);
   }
   if (options.with_details)
     out.details =

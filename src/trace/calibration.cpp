@@ -119,7 +119,7 @@ Eigen::MatrixXd null_residuals(const Whitened& data, const Gates& gates) {
 Calibration calibrate(const Whitened& data, const Candidates& candidates, const Gates& gates,
                       const std::function<void(double)>& progress) {
   const Eigen::VectorXd gains =
-      largest_gains(data, candidates, null_residuals(data, gates), progress);
+      largest_gains(data, candidates, null_residuals(data, gates).cast<float>(), progress);
   return fit_extremes({gains.begin(), gains.end()});
 }
 

@@ -135,6 +135,19 @@ FittedModel ModelExtender::in_declared_band(const std::vector<AcceptedEffect>& e
   return fit_model(with(declared_.model, effects), extended(effects).fit.estimate.shapes);
 }
 
+Searched ModelExtender::take_searched(const std::vector<AcceptedEffect>& effects) {
+  if (coarser_ && !effects.empty()) {
+    extended(effects);
+    coarser_->fitted = std::move(models_.extract(key_of(effects)).mapped());
+  }
+  std::set<std::string> added;  // the effects point into what is erased from
+  for (const AcceptedEffect& effect : effects) added.insert(effect.name());
+  std::erase_if(dictionary_.candidates, [&](const Candidate& each) {
+    return each.is_fast || (!each.raises_degree && added.contains(each.name()));
+  });
+  return {std::move(coarser_), std::move(dictionary_)};
+}
+
 Candidates ModelExtender::candidates_beside(const std::vector<AcceptedEffect>& effects) const {
   Candidates out;
   for (const Candidate& candidate : dictionary_.candidates)

@@ -20,6 +20,12 @@ struct AcceptedEffect {
   [[nodiscard]] const std::string& name() const { return candidate->name(); }
 };
 
+/// What a search has worked with, for a plan of what to measure next.
+struct Searched {
+  std::unique_ptr<SearchBand> band;  // with the effects that were added; null: the declared one
+  Dictionary dictionary;             // of what is not in that model, without lines of the samples
+};
+
 /// How many effects a set has, of one with a size per cut one.
 int distinct_effects(const std::vector<AcceptedEffect>& effects);
 
@@ -67,6 +73,9 @@ class ModelExtender {
 
   /// The same model, fitted in the declared low band, taken out of what is kept: the last call.
   FittedModel take_in_declared_band(const std::vector<AcceptedEffect>& effects);
+
+  /// With the effects of a set added: the last call of all.
+  Searched take_searched(const std::vector<AcceptedEffect>& effects);
 
   [[nodiscard]] const Dictionary& dictionary() const { return dictionary_; }
   [[nodiscard]] const TimeLimit& limit() const { return limit_; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "extended_model.hpp"
 #include "slideway/identify/fit.hpp"
 #include "slideway/trace/trace.hpp"
 #include "time_limit.hpp"
@@ -11,6 +12,7 @@ struct ClosedLoop {
   TraceResult trace;
   std::optional<Widening> widening;     // of the final fit; none: by nothing
   std::optional<FittedModel> extended;  // with the effects that were added; none: none was
+  Searched searched;
 
   [[nodiscard]] const FittedModel& last(const FittedModel& declared) const {
     return extended ? *extended : declared;

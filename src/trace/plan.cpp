@@ -8,7 +8,7 @@
 #include "detection.hpp"
 #include "exchange.hpp"
 #include "imagined.hpp"
-#include "loop.hpp"
+#include "next_cut.hpp"
 #include "plan_words.hpp"
 #include "search_band.hpp"
 #include "slideway/base/error.hpp"
@@ -89,13 +89,13 @@ struct Criteria {
 class Planner {
  public:
   /// @param in_means  the cuts are made from the profiles of the band, if any
-  Planner(const Problem& problem, std::unique_ptr<SearchBand> band, bool in_means,
-          const FittedModel& fitted, const std::vector<CutToCome>& cuts)
+  Planner(const Problem& problem, Searched searched, bool in_means, const FittedModel& fitted,
+          const std::vector<CutToCome>& cuts)
       : problem_(problem),
         cuts_(cuts),
-        coarser_(std::move(band)),
+        coarser_(std::move(searched.band)),
         fitted_(coarser_ ? coarser_->fitted : fitted),
-        suspects_(problem, fitted_),
+        suspects_(std::move(searched.dictionary), fitted_),
         wanted_(wanted_parameters(fitted_.model)),
         quick_(with_known_noise(fitted_.fit)),
         now_(wanted_, with_profiles(fitted_.model, quick_, {})),
@@ -371,14 +371,14 @@ Plan plan_cuts(const Problem& problem, const std::vector<Profile>& profiles,
                const std::vector<CutToCome>& cuts, const Progress& progress) {
   const FittedModel declared = fit_declared(problem, profiles);
   TimeLimit limit(problem.trace.time_limit_s);
-  const ClosedLoop loop = close_loop(problem, profiles, declared, limit, progress);
+  ClosedLoop loop = close_loop(problem, profiles, declared, limit, progress);
   if (progress) progress("trying cuts on paper", 0.0);
   const FittedModel& fitted = loop.last(declared);
   std::vector<std::string> left_out;
   const std::vector<CutToCome> tried = with_found_effects(
       problem, fitted.model, cuts, [&](const std::string& why) { left_out.push_back(why); });
   if (tried.empty()) throw UsageError(left_out.front());
-  Plan out = Planner(problem, search_band(problem, profiles, fitted), false, fitted, tried).run();
+  Plan out = Planner(problem, std::move(loop.searched), false, fitted, tried).run();
   std::ranges::move(left_out, std::back_inserter(out.notes));
   for (const TraceRound& round : loop.trace.rounds)
     out.notes.push_back("the model has " + term_name(round.accepted, round.profiles) +
@@ -387,14 +387,13 @@ Plan plan_cuts(const Problem& problem, const std::vector<Profile>& profiles,
 }
 
 std::optional<NextCut> next_cut(const Problem& problem, const std::vector<Profile>& profiles,
-                                const FittedModel& fitted) {
-  std::unique_ptr<SearchBand> band = search_band(problem, profiles, fitted);
-  const bool in_means = band && problem.planned.empty();  // which are fewer than the samples
+                                const FittedModel& fitted, Searched searched) {
+  const bool in_means = searched.band && problem.planned.empty();  // fewer than the samples
   const std::vector<CutToCome> cuts = with_found_effects(
-      problem, fitted.model, cuts_to_come(problem, in_means ? band->profiles : profiles),
+      problem, fitted.model, cuts_to_come(problem, in_means ? searched.band->profiles : profiles),
       [](const std::string&) {});
   if (cuts.empty()) return std::nullopt;
-  return Planner(problem, std::move(band), in_means, fitted, cuts).best_alone();
+  return Planner(problem, std::move(searched), in_means, fitted, cuts).best_alone();
 }
 
 }  // namespace slideway

@@ -40,27 +40,51 @@ GramRoot root_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& squares) {
   return out;
 }
 
+/// Products of columns with the rows of a residual they stand in.
+Eigen::MatrixXd products_of(std::span<const RowRange> rows, const Eigen::MatrixXd& columns,
+                            const Eigen::VectorXd& /*squares*/, const Eigen::VectorXd& residual) {
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(columns.cols(), 1);
+  Eigen::Index from = 0;
+  for (const RowRange& run : rows) {
+    out += columns.middleRows(from, run.count).transpose() * residual.segment(run.first, run.count);
+    from += run.count;
+  }
+  return out;
+}
+
+/// The same in single precision, of columns made one long: a power of x may exceed its range.
+Eigen::MatrixXd products_of(std::span<const RowRange> rows, const Eigen::MatrixXd& columns,
+                            const Eigen::VectorXd& squares, const Eigen::MatrixXf& residuals) {
+  const Eigen::VectorXd sizes = squares.cwiseSqrt();
+  const Eigen::MatrixXf unit =
+      (columns * sizes.unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; }).asDiagonal())
+          .cast<float>();
+  Eigen::MatrixXf sums = Eigen::MatrixXf::Zero(columns.cols(), residuals.cols());
+  Eigen::Index from = 0;
+  for (const RowRange& run : rows) {
+    sums +=
+        unit.middleRows(from, run.count).transpose() * residuals.middleRows(run.first, run.count);
+    from += run.count;
+  }
+  return sizes.asDiagonal() * sums.cast<double>();
+}
+
 /// Calls use(atom, root, products of its columns with every residual) for the atoms of one block.
-template <typename Use>
+/// The products have the precision of the residuals.
+template <typename Residuals, typename Use>
 void for_block(const Whitened& data, const Candidate& candidate, Eigen::Index first,
-               Eigen::Index count, const Eigen::MatrixXd& residuals, Use&& use) {
+               Eigen::Index count, const Residuals& residuals, Use&& use) {
   const Eigen::Index a = candidate.amplitudes();
   Eigen::MatrixXd columns = candidate.columns_of(first, count);
   data.whiten(candidate.rows, columns);
   const Eigen::MatrixXd inside = data.inside(candidate.rows, columns);
-  Eigen::MatrixXd products = Eigen::MatrixXd::Zero(columns.cols(), residuals.cols());
-  Eigen::Index from = 0;
-  for (const RowRange& run : candidate.rows) {
-    products += columns.middleRows(from, run.count).transpose() *
-                residuals.middleRows(run.first, run.count);
-    from += run.count;
-  }
+  const Eigen::VectorXd squares = columns.colwise().squaredNorm().transpose();
+  const Eigen::MatrixXd products = products_of(candidate.rows, columns, squares, residuals);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto own = columns.middleCols(i * a, a);
     const auto spanned = inside.middleCols(i * a, a);
     const Eigen::MatrixXd gram = own.transpose() * own - spanned.transpose() * spanned;
-    use(first + i, root_of(gram, own.colwise().squaredNorm().transpose()),
-        products.middleRows(i * a, a));
+    use(first + i, root_of(gram, squares.segment(i * a, a)), products.middleRows(i * a, a));
   }
 }
 
@@ -162,7 +186,7 @@ Projection project_in(const Whitened& data, std::size_t profile, const Eigen::Ma
 }
 
 Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates,
-                              const Eigen::MatrixXd& residuals,
+                              const Eigen::MatrixXf& residuals,
                               const std::function<void(double)>& told) {
   const std::vector<Block> blocks = blocks_of(candidates);
   const std::thread::id caller = std::this_thread::get_id();

@@ -47,10 +47,11 @@ Projection project(const Whitened& data, const Eigen::MatrixXd& columns);
 Projection project_in(const Whitened& data, std::size_t profile, const Eigen::MatrixXd& columns);
 
 /// Largest penalised gain (gain - unknowns ln n) of any atom, for every column of `residuals`
-/// (white, in the layout of the data, outside the model's span). `told` hears, in the thread of the
+/// (white, in the layout of the data, outside the model's span). Of noise that was drawn single
+/// precision is enough: products err by 1e-7 of both lengths. `told` hears, in the thread of the
 /// caller, which part of the work is done.
 Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates,
-                              const Eigen::MatrixXd& residuals,
+                              const Eigen::MatrixXf& residuals,
                               const std::function<void(double)>& told = {});
 
 }  // namespace slideway

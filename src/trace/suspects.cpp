@@ -57,9 +57,8 @@ Eigen::VectorXd left_of(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& o
 
 }  // namespace
 
-Suspects::Suspects(const Problem& problem, const FittedModel& base)
-    : base_(base),
-      dictionary_(make_dictionary(base.model, problem, base.fit.linear.prior_rows.rows())) {
+Suspects::Suspects(Dictionary dictionary, const FittedModel& base)
+    : base_(base), dictionary_(std::move(dictionary)) {
   choose_suspects();
   find_pairs();
 }

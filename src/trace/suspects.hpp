@@ -41,8 +41,9 @@ struct SuspectPair {
 /// The effects a problem can lack, held against one another in the profiles there are.
 class Suspects {
  public:
-  /// @param base  the declared model at its fit; outlives this
-  Suspects(const Problem& problem, const FittedModel& base);
+  /// @param dictionary  of what the model lacks
+  /// @param base        the model at its fit; outlives this
+  Suspects(Dictionary dictionary, const FittedModel& base);
 
   [[nodiscard]] const std::vector<Suspect>& all() const { return suspects_; }
   /// Those that the profiles there are do not tell apart.

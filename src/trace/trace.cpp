@@ -52,6 +52,7 @@ class Loop {
     else
       report_unfinished(closed);
     out.searches = extender_.searches();
+    closed.searched = extender_.take_searched(selection.effects);
     return closed;
   }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "effects/effect_cases.hpp"
+#include "groove.hpp"
+#include "variable_range.hpp"
 
 namespace slideway::readings_test {
 namespace {
@@ -130,6 +132,31 @@ TEST(SlideReadings, SlopesSeeNoDriftOfHeight) {
     EXPECT_FALSE(make(name)->applies_to(slope)) << name;
   for (const char* name : {"straightness", "gantry_sag", "slide_periodic"})
     EXPECT_TRUE(make(name)->applies_to(slope)) << name;
+}
+
+// On either side of the spindle axis these variables run one way, so that the ends of both sides
+// say what all stations do: to rounding, some hundred sums of numbers of up to 1e5.
+TEST(VariableRange, OfTheEndsIsThatOfAllStations) {
+  std::vector<Case> profiles = all_cases();
+  for (const double center : {-20.0, -9.9, -3.0, 10.0}) {  // beside the trace, on it, at its end
+    profiles.push_back(profiles[2]);
+    profiles.back().setup.center_mm = center;
+  }
+  const Machine machine(Machine::paper_lathe(), Lever::paper);
+  for (const Case& profile : profiles) {
+    const Stations stations{profile.positions, profile.setup, machine};
+    std::vector<VariableReading> readings_of = {slide_of, radius_of,     measuring_time_of,
+                                                time_of,  revolution_of, cutting_time_of};
+    if (profile.setup.kind == Kind::face) readings_of.push_back(distance_m_of);
+    for (std::size_t v = 0; v < readings_of.size(); ++v) {
+      const VariableRange ends = range_of(stations, readings_of[v]),
+                          all = range_of(readings(stations, readings_of[v]));
+      const double rounding = 1e-12 * (std::abs(all.low) + std::abs(all.high));
+      EXPECT_EQ(ends.low, all.low) << profile.name << v;
+      EXPECT_EQ(ends.high, all.high) << profile.name << v;
+      EXPECT_NEAR(ends.step, all.step, rounding) << profile.name << v;
+    }
+  }
 }
 
 }  // namespace

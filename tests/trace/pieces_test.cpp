@@ -208,6 +208,25 @@ TEST(Refine, FindsTheBestShapeAScanFinds) {
   EXPECT_GE(refined.projection.gain, best * (1.0 - 1e-6));  // never below a point of the scan
 }
 
+// In single precision 160 products err by 1e-7 of the lengths of both, the gain by twice that of
+// the square of the residual; columns may be larger than single precision holds.
+TEST(LargestGains, InSinglePrecisionAreThoseOfTheSearch) {
+  const Bench bench;
+  const Whitened data = bench.white();
+  Dictionary dictionary =
+      make_dictionary(bench.model, problem_of({"slide_periodic", "thermal_drift", "cup"}), 0);
+  for (Candidate& candidate : dictionary.candidates) {
+    for (const double scale : {1.0, 1e45}) {
+      candidate.columns = std::make_shared<Eigen::MatrixXd>(scale * *candidate.columns);
+      const double gain =
+          largest_gains(data, {&candidate}, Eigen::MatrixXf(data.residual().cast<float>()))[0];
+      EXPECT_NEAR(gain, -search(data, {&candidate})[0].delta_bic,
+                  1e-6 * data.residual().squaredNorm())
+          << candidate.name();
+    }
+  }
+}
+
 TEST(Calibration, PValueAndThresholdAreInverse) {
   const Calibration calibration{-7.5, 3.25};
   for (const double p : {1e-6, 0.01, 0.2, 0.9})

@@ -101,12 +101,6 @@ struct Plan {
 Plan plan_cuts(const Problem& problem, const std::vector<Profile>& profiles,
                const std::vector<CutToCome>& cuts, const Progress& progress = {});
 
-/// The first line of that, of cuts_to_come(), without the rest; none where no cut can be tried.
-/// @param fitted  the model that the closed loop ended with
-/// @throws UsageError, DataError
-std::optional<NextCut> next_cut(const Problem& problem, const std::vector<Profile>& profiles,
-                                const FittedModel& fitted);
-
 /// The problem with the cuts as [[profile]] entries, as a file in `directory`; comments say what to
 /// measure.
 /// @throws UsageError  the problem file can no longer be read

@@ -240,7 +240,7 @@ std::vector<std::string> ChannelEffect::lacking(const Setup& setup) const {
     ends.push_back(setup.center_mm);
   if (acts_on_the_reading(*channel_)) ends = setup.reading_times->positions_mm;
   const Machine machine(Machine::paper_lathe(), Lever::paper);
-  const VariableRange range = range_of({ends, setup, machine}, reading());
+  const VariableRange range = range_of(readings({ends, setup, machine}, reading()));
   const double rounding = kOfTheEnds * range.extent(), earliest = range.low - response_.lag_s;
   const std::vector<double>& at = channel_->at;
   const std::string where = " from " + significant(earliest, 5) + " to " +
@@ -261,27 +261,27 @@ void ChannelEffect::columns(const Stations& stations, std::span<const double> sh
                             Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
   const Response response(*channel_, tau(shape));
-  const VariableReading clock = reading();
-  const double width = range_of(stations, clock).step, later = lag(shape);
+  const Eigen::VectorXd clock = readings(stations, reading());
+  const double width = range_of(clock).step, later = lag(shape);
   const double start = response_.since_start ? response.value(start_of(stations) - later) : 0.0;
   const double unit = unit_of(stations);
   for (Eigen::Index i = 0; i < stations.size(); ++i)
-    out(i, 0) = unit * (response.mean(clock(stations, i) - later, width) - start);
+    out(i, 0) = unit * (response.mean(clock[i] - later, width) - start);
 }
 
 void ChannelEffect::derivatives(const Stations& stations, std::span<const double> shape,
                                 Eigen::Ref<Eigen::MatrixXd> out) const {
   if (shape.empty() || !applies_to(stations.setup())) return void(out.setZero());
   const Response response(*channel_, tau(shape));
-  const VariableReading clock = reading();
-  const double width = range_of(stations, clock).step, later = lag(shape);
+  const Eigen::VectorXd clock = readings(stations, reading());
+  const double width = range_of(clock).step, later = lag(shape);
   const double begin = start_of(stations) - later, unit = unit_of(stations);
   const bool from_start = response_.since_start;
   const Eigen::Index by_tau = out.cols() - 1;  // that by the lag is the first
   const double start_rate = from_start && response_.free_lag ? response.rate(begin) : 0.0;
   const double start_slope = from_start && response_.free_tau ? response.tau_slope(begin) : 0.0;
   for (Eigen::Index i = 0; i < stations.size(); ++i) {
-    const double at = clock(stations, i) - later;
+    const double at = clock[i] - later;
     if (response_.free_lag) out(i, 0) = -unit * (response.mean_rate(at, width) - start_rate);
     if (response_.free_tau)
       out(i, by_tau) = unit * (response.mean_tau_slope(at, width) - start_slope);
