@@ -48,10 +48,9 @@ class ExportCommand : public Command {
         return kDone;
       }
       const Compensation table = compensation(analysis, step_mm_);
-      const std::string text = compensation_table(table, format_, source);
+      write_output(out_, compensation_table(table, format_, source));
       if (!is_quiet())
         for (const std::string& line : compensation_notes(table, format_, source)) say(line);
-      write_output(out_, text);
     } catch (const UsageError& error) {
       fail(std::string("--") + error.what());
     } catch (const DataError& error) {

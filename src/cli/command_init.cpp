@@ -102,6 +102,12 @@ class InitCommand : public Command {
       if (values.size() > 1 && (!Draft::is_of_file(key) || values.size() != inputs_.size()))
         fail("--" + key + " is given " + std::to_string(values.size()) + " times; accepted: once" +
              (Draft::is_of_file(key) ? ", or once for each file" : ""));
+    for (const char* key : {"center", "feed", "speed", "base"})
+      for (const std::string& value : options_[key])
+        if (inputs_.size() > 1 && value.find(',') != std::string::npos)
+          fail("--" + std::string(key) + " " + value +
+               ": a list, or a decimal comma? accepted: one number with a decimal point, once, or "
+               "once for each file");
   }
 
   [[nodiscard]] std::filesystem::path folder() const {

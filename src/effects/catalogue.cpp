@@ -83,6 +83,10 @@ std::unique_ptr<Effect> make_effect(const std::string& name, const EffectOptions
 
 const Effect& specimen(const std::string& name) { return *specimen_of(name).effect; }
 
+bool is_part_of_straightness(const Description& effect) {
+  return effect.motion == MotionError::none && effect.standard_name.starts_with("E_ZX,");
+}
+
 const EffectOptions& needed_options(const std::string& name) { return specimen_of(name).options; }
 
 MotionError motion_error_of(const std::string& name) {

@@ -20,7 +20,7 @@ namespace slideway {
 namespace {
 
 constexpr std::size_t kMostPairwise = 8;  // profiles: 28 pairs a reader still reads
-constexpr double kOutside = 1e-6;  // of a row: less along a null direction is rounding
+constexpr double kOutside = 1e-6;         // of a row: less along a null direction is rounding
 constexpr const char* kAllOthers = "all others";
 constexpr const char* kTogether = "effects taken together";
 

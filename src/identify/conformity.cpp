@@ -76,6 +76,37 @@ QuantityValue straightness(const ModelResult& summary) {
   return {};
 }
 
+/// Peak to valley of what the model has of E_ZX under other names, µm: by how much the straightness
+/// may be more or less.
+double parts_beside_um(const FittedModel& fitted) {
+  const Model& model = fitted.model;
+  SlideRange travel{INFINITY, -INFINITY};
+  for (const Observation* each : fitted.fit.linear.observations) {
+    const SlideRange own = slide_range(*each->profile, model.machine);
+    travel.least = std::min(travel.least, own.least);
+    travel.greatest = std::max(travel.greatest, own.greatest);
+  }
+  if (!(travel.greatest > travel.least)) return 0.0;
+  constexpr Eigen::Index kPoints = 2001;  // of a wave of a fiftieth of the travel, 40 a cycle
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, travel.least, travel.greatest);
+  Setup setup;
+  setup.kind = Kind::slide;
+  setup.first_mm = travel.least;
+  setup.last_mm = travel.greatest;
+  double sum = 0.0;
+  for (const ModelTerm& term : model.terms) {
+    if (!is_part_of_straightness(term.effect->description()) || !term.effect->applies_to(setup))
+      continue;
+    Eigen::MatrixXd columns(x.size(), term.effect->amplitudes());
+    term.effect->columns({{x.data(), static_cast<std::size_t>(x.size())}, setup, model.machine},
+                         shapes_of(term, fitted.fit.estimate.shapes), columns);
+    const Eigen::VectorXd form = columns * fitted.fit.estimate.amplitudes.segment(
+                                               term.first_amplitude, term.effect->amplitudes());
+    sum += (form.maxCoeff() - form.minCoeff()) / kMicrometre;
+  }
+  return sum;
+}
+
 QuantityValue squareness(const ModelResult& summary) {
   const FittedParameter* const parameter = summary.squareness();
   if (!parameter || !parameter->value) return {};
@@ -88,9 +119,9 @@ QuantityValue squareness(const ModelResult& summary) {
 
 }  // namespace
 
-ConformityVerdict conformity_verdict(const QuantityValue& value, double limit) {
+ConformityVerdict conformity_verdict(const QuantityValue& value, double limit, double beside) {
   if (!value.value || !value.expanded_uncertainty) return ConformityVerdict::undecided;
-  const double size = std::abs(*value.value), guard = *value.expanded_uncertainty;
+  const double size = std::abs(*value.value), guard = *value.expanded_uncertainty + beside;
   if (size + guard <= limit) return ConformityVerdict::conforms;
   return size - guard > limit ? ConformityVerdict::does_not_conform : ConformityVerdict::undecided;
 }
@@ -99,17 +130,18 @@ std::vector<Conformity> conformity_of(const Problem& problem, const FittedModel&
                                       const ModelResult& summary) {
   const auto& [flatness_um, straightness_um, squareness_um_per_m] = problem.tolerance;
   std::vector<Conformity> out;
-  const auto decide = [&](const char* what, const QuantityValue& value, double limit,
-                          bool is_angle) {
+  const auto decide = [&](const char* what, const QuantityValue& value, double limit, bool is_angle,
+                          double beside = 0.0) {
     Conformity& each = out.emplace_back();
     each.what = what;
     (is_angle ? each.value_um_per_m : each.value_um) = value.value;
     (is_angle ? each.U_um_per_m : each.U_um) = value.expanded_uncertainty;
     (is_angle ? each.limit_um_per_m : each.limit_um) = limit;
-    each.verdict = conformity_verdict(value, limit);
+    each.verdict = conformity_verdict(value, limit, beside);
   };
   if (flatness_um) decide(kFlatness, flatness(fitted), *flatness_um, false);
-  if (straightness_um) decide("straightness", straightness(summary), *straightness_um, false);
+  if (straightness_um)
+    decide("straightness", straightness(summary), *straightness_um, false, parts_beside_um(fitted));
   if (squareness_um_per_m) decide("squareness", squareness(summary), *squareness_um_per_m, true);
   return out;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "slideway/base/distribution.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/agreement.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
@@ -30,10 +31,46 @@ bool are_sisters(const Observation& a, const Observation& b, double tolerance) {
          alike(static_cast<double>(a.values.size()), static_cast<double>(b.values.size()));
 }
 
+/// What a cut has by its kinematics, as its samples show it: no fit of other cuts knows that.
+struct OwnMarks {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd columns;  // one standard uncertainty each
+
+  OwnMarks(const Model& model, const Observation& observation)
+      : values(Eigen::VectorXd::Zero(observation.values.size())), columns(values.size(), 0) {
+    const Profile& profile = *observation.profile;
+    for (const std::string& name : effect_names()) {
+      const Effect& effect = specimen(name);
+      if (!effect.description().kinematic || !effect.applies_to(profile.setup) ||
+          !effect.lacking(profile.setup).empty())
+        continue;
+      auto shown =
+          effect.shown_by(profile.stations(model.machine), profile.values, model.gates.false_line);
+      if (shown) add(model, name, std::move(*shown), observation);
+    }
+  }
+
+ private:
+  void add(const Model& model, const std::string& name, ShownBySamples shown,
+           const Observation& observation) {
+    shown.options.profiles = {observation.profile->name};
+    const ModelTerm term{name, make_effect(name, shown.options, model.machine, model.range), {}};
+    const Eigen::MatrixXd all = low_band_columns(model, term, observation, {});
+    Eigen::VectorXd sizes(std::ssize(shown.values)), uncertainties(sizes.size());
+    for (std::size_t p = 0; p < shown.values.size(); ++p) {
+      sizes[static_cast<Eigen::Index>(p)] = shown.values[p].value;
+      uncertainties[static_cast<Eigen::Index>(p)] = shown.values[p].standard_uncertainty;
+    }
+    values += all * term.effect->from_parameters(sizes);
+    append_columns(columns, all * term.effect->from_parameters(uncertainties).asDiagonal());
+  }
+};
+
 /// A profile that was not fitted, held against what the fit says of it.
 struct Predicted {
-  Eigen::MatrixXd free;     // nuisances, and directions the fit does not determine
-  Eigen::MatrixXd columns;  // by the directions it determines
+  Eigen::MatrixXd free;        // nuisances, and directions the fit does not determine
+  Eigen::MatrixXd columns;     // by the directions it determines, and of own marks
+  Eigen::MatrixXd covariance;  // of these
   Eigen::VectorXd error;
   Noise noise;
 
@@ -43,9 +80,14 @@ struct Predicted {
     const Eigen::MatrixXd all = linear_columns(model, fit.estimate, observation);
     error = observation.values - all.leftCols(model.amplitudes()) * fit.estimate.amplitudes;
     columns = all * fit.uncertainty.basis;
-    const Eigen::Index m = observation.nuisances.cols(), d = fit.rank.null_space.cols();
-    free.resize(error.size(), m + d);
-    free << observation.nuisances, all * fit.rank.null_space;
+    const OwnMarks marks(model, observation);
+    error -= marks.values;
+    const Eigen::Index known = columns.cols();
+    append_columns(columns, marks.columns);
+    covariance = Eigen::MatrixXd::Identity(columns.cols(), columns.cols());
+    covariance.topLeftCorner(known, known) = fit.uncertainty.inflation * fit.uncertainty.covariance;
+    free = observation.nuisances;
+    append_columns(free, all * fit.rank.null_space);
     set_noise(model, fit, fitted, observation);
   }
 
@@ -117,8 +159,7 @@ double tail_of_largest(const Eigen::VectorXd& error, const Eigen::MatrixXd& colu
   return std::min(1.0, 2.0 * static_cast<double>(error.size()) * of_one);
 }
 
-void set_largest(const Observation& observation, const Predicted& predicted,
-                 const Eigen::MatrixXd& covariance, HeldOutCheck& out) {
+void set_largest(const Observation& observation, const Predicted& predicted, HeldOutCheck& out) {
   Eigen::MatrixXd white(predicted.error.size(), predicted.free.cols() + 1);
   white << predicted.free, predicted.error;
   predicted.noise.whiten(white);
@@ -127,7 +168,10 @@ void set_largest(const Observation& observation, const Predicted& predicted,
   if (m > 0)
     error -= predicted.free * least_squares(white.leftCols(m), white.rightCols(1)).values.col(0);
   const Eigen::VectorXd variance =
-      ((predicted.columns * covariance).cwiseProduct(predicted.columns)).rowwise().sum().array() +
+      ((predicted.columns * predicted.covariance).cwiseProduct(predicted.columns))
+          .rowwise()
+          .sum()
+          .array() +
       std::pow(predicted.noise.standard_deviation(), 2);
   Eigen::Index at = 0;
   error.cwiseAbs2().cwiseQuotient(variance).maxCoeff(&at);
@@ -156,7 +200,7 @@ Linearisation without_odd(const Linearisation& fitted, const Gates& gates) {
 HeldOutCheck check(const Model& model, const Solution& fit, const std::vector<Noise>& fitted,
                    Linearisation repeats, const Observation& observation) {
   const Predicted predicted(model, fit, fitted, observation);
-  const Eigen::MatrixXd covariance = fit.uncertainty.inflation * fit.uncertainty.covariance;
+  const Eigen::MatrixXd& covariance = predicted.covariance;
   const Eigen::Index n = predicted.error.size(), r = predicted.columns.cols();
   const Eigen::Index q = slow_cosine_count(n, model.gates);
   Eigen::MatrixXd rows(n, r + 1 + q);
@@ -182,7 +226,7 @@ HeldOutCheck check(const Model& model, const Solution& fit, const std::vector<No
                       tail_of_largest(error, columns, covariance, predicted.noise),
                       probability_beside_repeats(repeats, repeats.observations.size() - 1,
                                                  model.gates)}));
-  set_largest(observation, predicted, covariance, out);
+  set_largest(observation, predicted, out);
   if (out.p_value < model.gates.held_out_p) out.verdict = HeldOutVerdict::does_not_fit;
   return out;
 }

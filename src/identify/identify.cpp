@@ -140,6 +140,13 @@ Eigen::MatrixXd scatter_between_profiles(const Model& model, const Solution& fit
   return out;
 }
 
+void rank(const FittedModel& fitted, const ModelResult& summary, Result& result) {
+  const auto& [model, fit] = fitted;
+  result.ranking = rank_effects(model, fit);
+  result.dominant = dominant_effects(result.ranking, lead_by_fit(model, fit),
+                                     summary.identifiability, model.gates);
+}
+
 }  // namespace
 
 Result summarise_data(const Problem& problem, const std::vector<Profile>& profiles) {
@@ -161,12 +168,11 @@ Result identify_declared(const Problem& problem, const std::vector<Profile>& pro
     result.low_band.push_back(summarise_low_band(observation));
   ModelResult summary = summarise(model, fit, {}, with_budget);
   result.travel = summarise_travel(problem.lever, model);
-  if (scope != Scope::fit) {
-    result.ranking = rank_effects(model, fit);
-    result.dominant = dominant_effects(result.ranking, lead_by_fit(model, fit),
-                                       summary.identifiability, model.gates);
+  if (scope == Scope::rank) {
+    rank(declared, summary, result);
+  } else {
+    result.declared = std::move(summary);
   }
-  if (scope != Scope::rank) result.declared = std::move(summary);
   return result;
 }
 
@@ -211,6 +217,7 @@ void set_final(const Problem& problem, const FittedModel& fitted, const MoreVari
     checks.squareness->reason = "this command makes no cross-check";
   result.crosscheck = std::move(checks);
   result.conformity = conformity_of(problem, fitted, summary);
+  if (scope != Scope::fit) rank(fitted, summary, result);
   result.final = std::move(summary);
 }
 

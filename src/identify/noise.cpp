@@ -159,20 +159,25 @@ Noise Noise::scaled(double factor) const {
   return out;
 }
 
-Noise Noise::repeated(double factor) const {
+Noise Noise::repeated(const Weight& weight) const {
   Noise out = *this;
-  const auto multiply = [&](ExponentialMixture& covariance) { covariance.variances *= factor; };
+  const auto multiply = [&](ExponentialMixture& covariance) {
+    covariance.variances *= weight.memory;
+    covariance.white *= weight.white;
+  };
   multiply(out.covariance_);
   for (Alternative& each : out.alternatives) multiply(each.covariance);
   if (!out.is_white())
     out.factor_ = std::make_shared<const MixtureFactor>(factored(out.covariance_));
-  out.repeats_ *= factor;
+  out.weight_.memory *= weight.memory;
+  out.weight_.white *= weight.white;
   return out;
 }
 
 double Noise::standard_deviation() const {
   ExponentialMixture own = covariance_;
-  own.variances /= repeats_;
+  own.variances /= weight_.memory;
+  own.white /= weight_.white;
   if (is_white() || values_ < 2) return std::sqrt(own.variance());
   const auto n = static_cast<double>(values_);
   return std::sqrt((own.variance() - own.variance_of_mean(n)) * n / (n - 1.0));

@@ -9,6 +9,7 @@
 #include "noise_bounds.hpp"
 #include "outstanding_line.hpp"
 #include "repeats.hpp"
+#include "shared_texture.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/statistics.hpp"
 #include "slideway/base/units.hpp"
@@ -20,7 +21,6 @@ namespace slideway {
 namespace {
 
 constexpr Eigen::Index kLeastSpare = 6;  // values beyond what is free, else the whole residual
-constexpr double kChance = 2.0;          // standard errors of a correlation
 constexpr double kSameStep = 0.1;        // relative; values as far apart have the same memory
 constexpr double kGrid = 1024.0;         // places of a station in a step: more is jitter
 
@@ -217,48 +217,6 @@ void from_whole_residuals(const Linearisation& linear, const std::vector<std::si
   for (std::size_t i = 0; i < found.size(); ++i) noise[part.which[i]] = std::move(found[i]);
 }
 
-/// How much of the texture of repeats they have in common, from 0 to 1: mean product of what the
-/// slow band leaves of two of them over the variance that is not white, or over all where it is.
-/// 0 where two unrelated noises could have as much in common.
-double common_share(const Linearisation& linear, const std::vector<std::size_t>& group,
-                    const std::vector<std::optional<LinearProfile>>& fine,
-                    const std::vector<Noise>& noise, const Gates& gates) {
-  double products = 0.0, squares = 0.0, variances = 0.0, effective = 0.0;
-  for (std::size_t a = 0; a < group.size(); ++a)
-    for (std::size_t b = a + 1; b < group.size(); ++b) {
-      const std::size_t i = group[a], j = group[b];
-      if (!fine[i] || !fine[j]) continue;
-      const auto match = matched_values(*linear.observations[i], *linear.observations[j], gates);
-      const Eigen::VectorXd &own = fine[i]->residual, &other = fine[j]->residual;
-      double product = 0.0, square = 0.0;
-      for (Eigen::Index row = 0; row < own.size(); ++row) {
-        if (match[row] < 0) continue;
-        product += own[row] * other[match[row]];
-        square += 0.5 * (own[row] * own[row] + other[match[row]] * other[match[row]]);
-      }
-      const double white = 0.5 * (noise[i].covariance().white + noise[j].covariance().white);
-      products += product;
-      squares += square;
-      effective += noise[i].effective_values();
-      variances += std::max(square - static_cast<double>(own.size()) * white, 0.0);
-    }
-  if (products * std::sqrt(effective) <= kChance * squares) return 0.0;
-  return std::clamp(products / (variances > 0.0 ? variances : squares), 0.0, 1.0);
-}
-
-/// Traces of one cut weigh by what they do not have in common: see Noise::repeated(). What readings
-/// of a slide have in common is its form.
-void weigh_repeats(const Linearisation& linear, const Gates& gates,
-                   const std::vector<std::optional<LinearProfile>>& fine,
-                   std::vector<Noise>& noise) {
-  for (const std::vector<std::size_t>& group : repeat_groups(linear, gates)) {
-    if (linear.observations[group.front()]->profile->setup.kind != Kind::face) continue;
-    const double others =
-        static_cast<double>(group.size() - 1) * common_share(linear, group, fine, noise, gates);
-    for (const std::size_t i : group) noise[i] = noise[i].repeated(1.0 + others);
-  }
-}
-
 /// One profile with the residual that a fit of it alone, all weights equal, leaves.
 Linearisation fitted_alone(const Linearisation& all, std::size_t i) {
   const Eigen::MatrixXd& nuisances = all.observations[i]->nuisances;
@@ -342,7 +300,7 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
   const Eigen::MatrixXd no_priors(0, 0);
   std::vector<Noise> found = estimated(beside, linear, no_priors, gates);
   for (std::size_t k = 0; k < found.size(); ++k) out[beside.which[k]] = std::move(found[k]);
-  weigh_repeats(linear, gates, fine, out);
+  weigh_shared_texture(linear, fine, suspect, gates, out);
   // Repeats hold no texture, and the fine band no slow noise: the larger in the long run.
   found = estimated(instrument, linear, no_priors, gates);
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -359,11 +317,12 @@ std::vector<Noise> noise_of_each(const Linearisation& all, const std::vector<Noi
   const std::size_t count = all.observations.size();
   const std::vector<std::size_t> pools = pools_of(all);
   std::vector<Noise> out(count);
+  std::vector<Linearisation> alone(count);
   std::vector<std::optional<LinearProfile>> left(count);
   parallel_for(count, [&](std::size_t i) {
-    const Linearisation alone = fitted_alone(all, i);
-    left[i] = fine_band(alone, 0, gates, {});
-    if (!left[i]) left[i] = beside_all(alone, *all.observations[i]);
+    alone[i] = fitted_alone(all, i);
+    left[i] = fine_band(alone[i], 0, gates, {});
+    if (!left[i]) left[i] = beside_all(alone[i], *all.observations[i]);
   });
   PartialEstimate beside;
   for (std::size_t i = 0; i < count; ++i) {
@@ -371,7 +330,11 @@ std::vector<Noise> noise_of_each(const Linearisation& all, const std::vector<Noi
     if (!left[i]) out[i] = joint[i];
   }
   const std::vector<Noise> found = estimated(beside, all, Eigen::MatrixXd(0, 0), gates);
-  for (std::size_t k = 0; k < found.size(); ++k) out[beside.which[k]] = found[k];
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const std::size_t i = beside.which[k];
+    out[i] = found[k];
+    weigh_halves(alone[i], left[i], gates, out[i]);
+  }
   return out;
 }
 
@@ -379,10 +342,10 @@ std::vector<Noise> noise_if_complete(const Linearisation& linear, std::vector<No
                                      const Gates& gates) {
   std::vector<std::size_t> all(beside.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  std::vector<double> repeats;
-  for (const Noise& noise : beside) repeats.push_back(noise.repeats());
+  std::vector<Noise::Weight> weights;
+  for (const Noise& noise : beside) weights.push_back(noise.weight());
   from_whole_residuals(linear, all, gates, beside);
-  for (std::size_t i = 0; i < repeats.size(); ++i) beside[i] = beside[i].repeated(repeats[i]);
+  for (std::size_t i = 0; i < weights.size(); ++i) beside[i] = beside[i].repeated(weights[i]);
   return beside;
 }
 

@@ -49,7 +49,7 @@ std::string checked_name(const Section& section) {
   return name;
 }
 
-void read_units(const Section& section, ProfileEntry& entry) {
+void read_units(const Section& section, const ProblemRules& rules, ProfileEntry& entry) {
   constexpr std::string_view kPositionUnits = "m mm um nm inch s";
   const bool slope = entry.profile.setup.quantity == Quantity::slope;
   const std::string_view value_units = slope ? kSlopeUnits : kLengthUnits;
@@ -59,8 +59,12 @@ void read_units(const Section& section, ProfileEntry& entry) {
       section.unit("value_unit", value_units, slope ? " for a slope" : " for a height");
   const StatedUnits stated =
       position && value ? StatedUnits{} : stated_units(source.path, source.request);
+  std::error_code unknown;
+  const bool is_absent = rules.file_is_needed && !source.path.empty() &&
+                         !std::filesystem::exists(source.path, unknown);
   const auto need = [&](const char* key, std::string_view accepted) {
-    if (!section.has(key)) section.refuse(key, "missing; accepted: " + std::string(accepted));
+    if (!section.has(key) && !is_absent)  // which is said where it is read
+      section.refuse(key, "missing; accepted: " + std::string(accepted));
   };
   if (!position && (!stated.position || source.window || !source.mask.empty()))
     need("position_unit", kPositionUnits);
@@ -108,7 +112,7 @@ void read_source(const Section& section, const ProblemRules& rules, ProfileEntry
             .indices("leave_out",
                      "must be \"spikes\" or a list of data rows, the first one 1: [120, 121]")
             .value_or(source.left_out_rows);
-  read_units(section, entry);
+  read_units(section, rules, entry);
 }
 
 void read_geometry(const Section& section, const ProfileDefaults& machine, Setup& setup) {

@@ -81,7 +81,7 @@ std::optional<double> Section::number(std::string_view key) const {
   if (entry == nullptr) return std::nullopt;
   const std::optional<double> value = as_number(entry->value);
   if (value && std::isfinite(*value)) return value;
-  refuse(key, "must be a finite number");
+  refuse(key, is_text(key) ? "must be a number, without quotes" : "must be a finite number");
   return std::nullopt;
 }
 

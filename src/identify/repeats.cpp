@@ -15,6 +15,8 @@
 namespace slideway {
 namespace {
 
+constexpr double kAsWritten = 1e-6;  // of a number that was typed in twice
+
 double extent(const Observation& observation) {
   return observation.profile->setup.last_mm - observation.profile->setup.first_mm;
 }
@@ -26,14 +28,13 @@ bool near(const std::optional<double>& a, const std::optional<double>& b, double
   return near(*a, *b, share * std::max(std::abs(*a), std::abs(*b)));
 }
 
-/// Whether two cuts are one, as far as the setups tell, lengths to a part of a station.
+/// Whether two cuts are one, as far as the setups tell, lengths to a part of a station; wherever
+/// they were traced.
 bool is_one_cut(const Setup& s, const Setup& t, double length_mm) {
-  constexpr double kAsWritten = 1e-6;  // of a number that was typed in twice
   return s.kind == t.kind && s.quantity == t.quantity && s.reversed == t.reversed &&
          near(s.base_mm, t.base_mm, kAsWritten) &&
          near(s.spindle_position_mm, t.spindle_position_mm, length_mm) &&
-         near(s.azimuth_deg, t.azimuth_deg, kAsWritten) && near(s.z_mm, t.z_mm, length_mm) &&
-         near(s.overhang_mm, t.overhang_mm, length_mm) &&
+         near(s.z_mm, t.z_mm, length_mm) && near(s.overhang_mm, t.overhang_mm, length_mm) &&
          near(s.feed_mm_per_min, t.feed_mm_per_min, kAsWritten) &&
          near(s.spindle_rpm, t.spindle_rpm, kAsWritten) && s.cut_direction == t.cut_direction &&
          near(s.start_s, t.start_s, kAsWritten * std::max(1.0, std::abs(s.start_s)));
@@ -49,14 +50,23 @@ bool is_one_line(const std::optional<Line>& a, const std::optional<Line>& b, dou
   return true;
 }
 
-/// Stations of the low band, of a face from the spindle axis.
-std::vector<double> stations(const Observation& observation) {
+}  // namespace
+
+std::vector<double> stations_from_axis(const Observation& observation) {
   const Setup& setup = observation.profile->setup;
   std::vector<double> out = observation.low_band.positions(observation.profile->positions);
   if (setup.kind == Kind::face)
     for (double& each : out) each -= setup.center_mm;
   return out;
 }
+
+bool are_of_one_surface(const Observation& a, const Observation& b, const Gates& gates) {
+  const double station = gates.same_place * extent(a) / static_cast<double>(a.values.size());
+  return a.profile->surface == b.profile->surface &&
+         is_one_cut(a.profile->setup, b.profile->setup, station);
+}
+
+namespace {
 
 /// What another profile has at the stations matched to it, in rows; 0 at those it lacks.
 Eigen::MatrixXd at_stations(const std::vector<Eigen::Index>& match, const Eigen::MatrixXd& values) {
@@ -136,7 +146,7 @@ void set_rms(const Observation& observation, const Eigen::VectorXd& values, cons
 
 std::vector<Eigen::Index> matched_values(const Observation& a, const Observation& b,
                                          const Gates& gates) {
-  const std::vector<double> of_a = stations(a), of_b = stations(b);
+  const std::vector<double> of_a = stations_from_axis(a), of_b = stations_from_axis(b);
   const double tolerance = gates.same_place * extent(a) / static_cast<double>(of_a.size());
   std::vector<Eigen::Index> out(of_a.size(), -1);
   std::size_t j = 0;
@@ -151,8 +161,8 @@ std::vector<Eigen::Index> matched_values(const Observation& a, const Observation
 bool are_repeats(const Observation& a, const Observation& b, const Gates& gates) {
   if (&a == &b) return true;
   const double station = gates.same_place * extent(a) / static_cast<double>(a.values.size());
-  if (a.profile->surface != b.profile->surface ||
-      !is_one_cut(a.profile->setup, b.profile->setup, station) ||
+  if (!are_of_one_surface(a, b, gates) ||
+      !near(a.profile->setup.azimuth_deg, b.profile->setup.azimuth_deg, kAsWritten) ||
       !is_one_line(a.profile->line, b.profile->line, station))
     return false;
   const auto match = matched_values(a, b, gates);

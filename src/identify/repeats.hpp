@@ -12,6 +12,12 @@
 /// Traces of one surface at one place.
 namespace slideway {
 
+/// Stations of the low band, of a face from the spindle axis, mm.
+std::vector<double> stations_from_axis(const Observation& observation);
+
+/// Whether two profiles read one cut, wherever on it.
+bool are_of_one_surface(const Observation& a, const Observation& b, const Gates& gates);
+
 /// For each low-band value of `a` the one of `b` at the same station, or -1.
 std::vector<Eigen::Index> matched_values(const Observation& a, const Observation& b,
                                          const Gates& gates);

@@ -72,7 +72,8 @@ std::vector<double> shape_grid(const Model& model, const ModelTerm& term, int sh
     low = std::max(low, parameter.lower);
     high = std::min(high, parameter.upper);
     for (double value = low; value <= high && out.size() < kMostPoints;) {
-      out.push_back(value);
+      constexpr double kRounding = 1e-12;  // of the range, about zero
+      out.push_back(std::abs(value) > kRounding * (high - low) ? value : 0.0);
       double step = INFINITY;
       for (const Stations& one : stations)
         step = std::min(step, effect.resolution(shape, value, one));

@@ -15,14 +15,28 @@ constexpr Eigen::Index kPoints = 201;
 constexpr std::size_t kMostStations = 50;
 constexpr double kRounding = 1e-9;  // relative
 
+/// What each point stands for of the length, in square roots: of a form that is known between its
+/// points, too, half of that at the ends (trapezoidal rule).
+Eigen::VectorXd root_lengths(const Eigen::VectorXd& x) {
+  const Eigen::Index last = x.size() - 1;
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(x.size());
+  for (Eigen::Index i = 0; i < last; ++i) {
+    out[i] += 0.5 * (x[i + 1] - x[i]);
+    out[i + 1] += 0.5 * (x[i + 1] - x[i]);
+  }
+  return out.cwiseSqrt();
+}
+
 /// Deviation of each point from the least-squares line: deviations = matrix * heights.
 Eigen::MatrixXd least_squares_deviations(const Eigen::VectorXd& x) {
+  const Eigen::VectorXd root = root_lengths(x);
   Eigen::MatrixXd line(x.size(), 2);
-  line.col(0).setOnes();
-  line.col(1) = x.array() - x.mean();
+  line.col(0) = root;
+  line.col(1) = root.array() * (x.array() - x.mean());
   const Eigen::MatrixXd q =
       line.householderQr().householderQ() * Eigen::MatrixXd::Identity(x.size(), 2);
-  return Eigen::MatrixXd::Identity(x.size(), x.size()) - q * q.transpose();
+  return Eigen::MatrixXd::Identity(x.size(), x.size()) -
+         root.cwiseInverse().asDiagonal() * q * q.transpose() * root.asDiagonal();
 }
 
 void evaluate(const Eigen::VectorXd& x, const Eigen::VectorXd& z, ReferenceLine& line) {
@@ -253,9 +267,11 @@ void add_error(const ReferenceLine& line, const Eigen::VectorXd& x, const Spread
 
 ReferenceLine least_squares_line(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
   ReferenceLine line{ReferenceLineKind::least_squares};
-  const Eigen::VectorXd centred = x.array() - x.mean();
-  line.slope = centred.dot(z) / centred.squaredNorm();
-  line.at_zero = z.mean() - line.slope * x.mean();
+  const Eigen::VectorXd lengths = root_lengths(x).cwiseAbs2();
+  const double whole = lengths.sum(), middle = lengths.dot(x) / whole;
+  const Eigen::VectorXd centred = x.array() - middle;
+  line.slope = lengths.cwiseProduct(centred).dot(z) / lengths.dot(centred.cwiseAbs2());
+  line.at_zero = lengths.dot(z) / whole - line.slope * middle;
   evaluate(x, z, line);
   const Eigen::MatrixXd deviations = least_squares_deviations(x);
   line.sensitivity = deviations.row(static_cast<Eigen::Index>(line.highest_at)) -

@@ -82,6 +82,8 @@ void note_implausible(Profile& profile) {
   if (setup.quantity == Quantity::height && range > kLargestRange)
     profile.doubts.push_back("heights range over " + significant(range, 3) +
                              " mm, more than 1 mm: is value_unit right?");
+  if (!(range > 0.0) && profile.values.size() > 1)
+    profile.doubts.emplace_back("all values are the same: is value_column right?");
   note(profile, kFeed, setup.feed_mm_per_min);
   note(profile, kSpeed, setup.spindle_rpm);
   note(profile, kNose, setup.nose_radius_mm);

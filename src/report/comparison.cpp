@@ -158,10 +158,10 @@ void add_loop(const TraceResult& trace, Facts& facts) {
   for (const TraceRound& round : trace.rounds)
     accepted.push_back(term_name(round.accepted, round.profiles));
   facts.emplace_back("effects found", accepted.empty() ? "none" : joined(accepted));
-  for (const auto& [gate, value] : trace.gates) facts.emplace_back("gate " + gate, in_short(value));
 }
 
-Facts facts_of(const Analysis& analysis) {
+/// @param with_gates  the other report has a closed loop, too
+Facts facts_of(const Analysis& analysis, bool with_gates) {
   const Result& result = analysis.result;
   Facts facts{{"title", result.title}, {"version", result.version}};
   for (const auto& [key, value] : result.about) facts.emplace_back("about, " + key, value);
@@ -175,12 +175,17 @@ Facts facts_of(const Analysis& analysis) {
     facts.emplace_back("residual rms of the final model, um", in_short(result.final->rms_um));
   }
   add_checks(result, facts);
-  if (analysis.trace) add_loop(*analysis.trace, facts);
+  if (!analysis.trace) return facts;
+  add_loop(*analysis.trace, facts);
+  if (with_gates)
+    for (const auto& [gate, value] : analysis.trace->gates)
+      facts.emplace_back("gate " + gate, in_short(value));
   return facts;
 }
 
 std::vector<Change> changes_of(const NamedReport& a, const NamedReport& b) {
-  const Facts in_a = facts_of(a.analysis), in_b = facts_of(b.analysis);
+  const bool both = a.analysis.trace && b.analysis.trace;
+  const Facts in_a = facts_of(a.analysis, both), in_b = facts_of(b.analysis, both);
   std::vector<Change> out;
   for (const auto& [what, value] : in_a) {
     const auto other = std::ranges::find(in_b, what, &Facts::value_type::first);

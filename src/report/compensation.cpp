@@ -8,6 +8,7 @@
 #include "slideway/base/units.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/report/number.hpp"
+#include "slideway/trace/unseen.hpp"
 #include "summary.hpp"
 
 namespace slideway {
@@ -179,6 +180,31 @@ void add_squareness(const Analysis& analysis, Compensation& out) {
 
 }  // namespace
 
+namespace {
+
+/// What the numbers of a table hold besides.
+void add_doubts(const Analysis& analysis, Compensation& out) {
+  const ModelResult& model = *analysis.result.final;
+  const auto doubt = [&](const std::string& why) { out.left_out.push_back("in doubt: " + why); };
+  const auto holds = [&](const char* what, const std::vector<std::string>& if_no) {
+    if (!if_no.empty())
+      doubt(std::string(what) + " holds " + effect_titles(if_no, " or ") +
+            " as well: these data do not tell them apart");
+  };
+  if (!out.straightness_mm.empty()) holds("EZX", model.straightness->if_no);
+  if (out.squareness_rad) holds("B0X", model.squareness()->if_no);
+  if (!analysis.trace) {
+    doubt("the closed loop was not run, so what the model lacks is in these numbers");
+    return;
+  }
+  if (analysis.trace->verdict == TraceVerdict::ambiguous)
+    doubt("the closed loop's verdict is ambiguous, and its rivals would leave other numbers");
+  if (out.squareness_rad && may_be_moved_unseen(model, *analysis.trace))
+    doubt("what these data do not show may move B0X " + moved_unseen(analysis));
+}
+
+}  // namespace
+
 Compensation compensation(const Analysis& analysis, double step_mm) {
   refuse_whole(analysis);
   Compensation out;
@@ -187,13 +213,7 @@ Compensation compensation(const Analysis& analysis, double step_mm) {
   add_squareness(analysis, out);
   if (out.straightness_mm.empty() && !out.squareness_rad)
     throw DataError("no table: " + joined(out.left_out, "; "));
-  if (!analysis.trace)
-    out.left_out.emplace_back(
-        "in doubt: the closed loop was not run, so what the model lacks is in these numbers");
-  else if (analysis.trace->verdict == TraceVerdict::ambiguous)
-    out.left_out.emplace_back(
-        "in doubt: the closed loop's verdict is ambiguous, and its rivals would leave other "
-        "numbers");
+  add_doubts(analysis, out);
   for (const std::string& effect : analysis.result.final->effects)
     if (is_vertical(effect))
       out.left_out.push_back("not in this table: " + effect + " of the report (E_BZ)");

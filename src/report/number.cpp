@@ -86,7 +86,7 @@ double written_probability(double p) { return std::max(p, std::numeric_limits<do
 
 std::string to_digits(double value, int digits) {
   if (!std::isfinite(value)) throw std::logic_error("to_digits: the value is not finite");
-  return significant(value, digits);
+  return significant(value + 0.0, digits);  // never "-0"
 }
 
 std::string with_uncertainty(double value, double uncertainty) {
@@ -97,7 +97,8 @@ std::string with_uncertainty(double value, double uncertainty) {
   if (plain.uncertainty.find('e') != std::string::npos) return joined_pair(plain);
 
   const int place = exponent_of(uncertainty, 1) - 1;
-  const int exponent = exponent_of(magnitude, std::max(1, exponent_of(magnitude, 0) - place));
+  const int digits = exponent_of(magnitude, kMostDigits) - place;  // behind the leading one
+  const int exponent = exponent_of(magnitude, std::max(1, digits));
   const std::string power = in_format(std::pow(10.0, exponent), std::chars_format::scientific, 0);
   std::string text = "(";
   text += joined_pair(rounded(scaled(value, exponent), scaled(uncertainty, exponent)));

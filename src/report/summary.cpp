@@ -206,8 +206,8 @@ std::string squareness_of(const Result& result) {
   return std::ranges::any_of(result.inputs, is_face) ? "not in the model" : "needs a face";
 }
 
-/// The error that dominates, with its size; "" where nothing was determined.
-std::string lead_of(const Result& result) {
+/// The error that dominates; "" where nothing was determined.
+std::string lead_of(const Result& result, bool with_size) {
   const FittedParameter* const angle = result.final->squareness();
   const bool has_angle = angle != nullptr && is_known(*angle);
   const auto& way = result.final->straightness;
@@ -221,15 +221,17 @@ std::string lead_of(const Result& result) {
   if (!dominant.doubt.empty() || !leader)
     return has_angle && has_form ? "no error clearly dominates" : "";
   const auto named = [](bool is_clear, const std::string& error) {
-    return is_clear ? error + ", dominates" : "no error clearly dominates";
+    return is_clear ? error + " dominates" : "no error clearly dominates";
   };
   if (motion_error_of(*leader) == MotionError::squareness && has_angle)
     return named(std::abs(*angle->value) > *angle->expanded_uncertainty,
-                 "squareness, " + squareness);
+                 effect_title(*leader) +
+                     (angle->if_no.empty() ? "" : " or " + effect_titles(angle->if_no, " or ")) +
+                     (with_size ? ", " + squareness + "," : ""));
   if (motion_error_of(*leader) == MotionError::straightness && has_form)
     return named(*way->end_point_um > way->expanded_uncertainty_um.value_or(0.0),
-                 "straightness, " + straightness);
-  return effect_title(*leader) + " dominates";
+                 effect_title(*leader) + (with_size ? ", " + straightness + "," : ""));
+  return "largest effect: " + effect_title(*leader);
 }
 
 /// Badge and sentence; what harms most comes first.
@@ -257,15 +259,21 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   const bool harms = out.alarm == Alarm::warn || out.alarm == Alarm::bad;
   const bool has_blunder = analysis.trace && !analysis.trace->blunders.empty();
   if (harms) clauses.insert(has_blunder ? clauses.begin() : clauses.end(), finding);
-  const std::string lead = lead_of(result);
+  const std::string lead = lead_of(result, true);
   const bool has_room = !harms || code_points(joined(clauses, "; ") + lead) < kTwoLines;
-  if (out.alarm != Alarm::bad && !lead.empty() && has_room) clauses.push_back(lead);
+  const bool leads = out.alarm != Alarm::bad && !lead.empty() && has_room;
+  if (leads) clauses.push_back(lead);
+  const std::size_t before_checks = clauses.size();
   const auto& angle = result.crosscheck.squareness;
   if (angle && angle->verdict == Consistency::consistent)
     clauses.emplace_back(shows_little(*angle) ? "the run-out does not contradict it"
                                               : "the run-out agrees in amount");
   if (!harms) clauses.push_back(finding);
   out.verdict = joined(clauses, "; ");
+  if (clauses.size() > before_checks + (harms ? 0 : 1))  // the run-out is among the checks
+    clauses.erase(clauses.begin() + static_cast<std::ptrdiff_t>(before_checks));
+  if (leads) clauses[before_checks - 1] = lead_of(result, false);  // and the size in the result
+  out.verdict_in_brief = joined(clauses, "; ");
   out.verdict_names_missing = analysis.trace && was_extended(analysis) &&
                               out.verdict.find(found(analysis)) != std::string::npos;
 }
@@ -307,12 +315,23 @@ Summary summary_of(const Analysis& analysis) {
                    condition(result, each));
   }
   out.conformity = joined(held, "; ");
+  const bool all_conform = std::ranges::all_of(result.conformity, [&](const Conformity& each) {
+    return each.verdict == ConformityVerdict::conforms && condition(result, each).empty();
+  });
+  if (all_conform && held.size() > 1) {
+    std::vector<std::string> what;
+    for (const Conformity& each : result.conformity) what.push_back(each.what);
+    out.conformity = joined(what, " and ") + " conform";
+  }
   say_verdict(analysis, out);
   out.straightness = straightness_of(result);
   out.squareness = squareness_of(result);
   const bool has_curve = out.straightness.starts_with("E_ZX ") && out.straightness.ends_with("µm");
   const FittedParameter* const angle = result.final ? result.final->squareness() : nullptr;
-  out.result = out.straightness + (has_curve ? " (end points)" + parts_beside(result) : "") +
+  out.result = out.straightness +
+               (has_curve ? " (end points)" + parts_beside(result) +
+                                condition_in_brief(result.final->straightness->if_no)
+                          : "") +
                "; squareness " + out.squareness + (angle ? condition(angle->if_no) : "");
   if (!result.final) out.result = "none: nothing was fitted";
   if (result.final && !result.final->converged)

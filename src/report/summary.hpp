@@ -30,7 +30,7 @@ struct Summary {
   std::string missing;  // what was missing and what that had done
   std::string next;
   // In a line of the box, if it can be.
-  std::string checks_in_brief, missing_in_brief, next_in_brief;
+  std::string verdict_in_brief, checks_in_brief, missing_in_brief, next_in_brief;
   bool has_crosscheck = false, has_missing = false, has_next = false;
   bool verdict_names_missing = false;  // what was missing, and what that had done
 };
@@ -49,6 +49,8 @@ std::string moved_unseen(const Analysis& analysis);
 
 /// ", if no steady drift": of what a value holds unseen (FittedParameter::if_no); "": of nothing.
 std::string condition(const std::vector<std::string>& if_no);
+/// ", if no cupped workpiece or 2 more".
+std::string condition_in_brief(std::vector<std::string> if_no);
 /// The same of what a conformity holds, and of a straightness parts_beside().
 std::string condition(const Result& result, const Conformity& conformity);
 

@@ -142,6 +142,12 @@ void say_crosscheck(const Result& result, Summary& out) {
   out.checks_in_brief = out.checks;
   if (!agreement.empty() && parts.size() > 1 && code_points(out.checks) > kBoxText)
     out.checks_in_brief.erase(out.checks.size() - agreement.size() - 2);  // "; "
+  if (angle && angle->En && angle->verdict == Consistency::consistent && contradictions == 0 &&
+      code_points(out.checks_in_brief) > kBoxText)
+    out.checks_in_brief.replace(
+        out.checks_in_brief.find(parts.front()), parts.front().size(),
+        std::string(shows_little(*angle) ? "the run-out shows little" : "the run-out agrees") +
+            ", E_n = " + en_text(*angle->En));
   if (contradictions > 1 && code_points(out.checks) > kBoxText)
     out.checks_in_brief = (out.conformity.empty() ? "" : out.conformity + "; ") + parts.front() +
                           "; " + std::to_string(contradictions - 1) + " more";

@@ -37,9 +37,7 @@ std::string parts_beside(const Result& result) {
   for (const std::string& term : result.final->effects) {
     const std::string name = term.substr(0, term.find('['));
     if (std::ranges::count(known, name) == 0 || std::ranges::count(parts, name) > 0) continue;
-    const Description& effect = specimen(name).description();
-    if (effect.motion == MotionError::none && effect.standard_name.starts_with("E_ZX,"))
-      parts.push_back(name);
+    if (is_part_of_straightness(specimen(name).description())) parts.push_back(name);
   }
   return of + (parts.empty() ? "" : ", without " + effect_titles(parts, " and "));
 }

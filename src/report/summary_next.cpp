@@ -126,6 +126,12 @@ std::string condition(const std::vector<std::string>& if_no) {
   return if_no.empty() ? "" : ", if no " + effect_titles(if_no, " or ");
 }
 
+std::string condition_in_brief(std::vector<std::string> if_no) {
+  if (if_no.size() < 3) return condition(if_no);
+  const std::string more = std::to_string(if_no.size() - 1) + " more";
+  return condition({if_no.front()}) + " or " + more;
+}
+
 std::string next_step(const Analysis& analysis) {
   const Result& result = analysis.result;
   if (!result.final) return "slideway identify, which fits and looks for what is missing";

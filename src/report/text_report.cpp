@@ -97,20 +97,24 @@ std::vector<std::string> first_lines(std::vector<std::string> lines, std::size_t
 /// With room for six lines: where a sentence needs a second one, entries that say nothing leave;
 /// only then long entries are cut, from the last one up, the verdict and the numbers last.
 std::string box(const Summary& summary, const TextOptions& options) {
-  std::vector<std::vector<std::string>> entries;
-  const auto add = [&](const char* label, const std::string& words) {
+  const auto entry = [&](const char* label, const std::string& words) {
     std::string first = "│ " + std::string(label);
     first.append(11 - code_points(first), ' ');
     std::vector<std::string> lines = lines_of(paragraph(first, words));
     for (std::size_t i = 1; i < lines.size(); ++i) lines[i].replace(0, 1, "│");
-    entries.push_back(std::move(lines));
+    return lines;
   };
-  add("Verdict", summary.badge + ": " + summary.verdict + ".");
-  add("Result", summary.result);
-  add("Check", options.full ? summary.checks : summary.checks_in_brief);
-  add("Missing", options.full ? summary.missing : summary.missing_in_brief);
-  add("Next", options.full ? summary.next : summary.next_in_brief);
-  add("Page", options.page.empty() ? "none was written; --html FILE writes it" : options.page);
+  const auto verdict = [&](const std::string& words) {
+    return entry("Verdict", summary.badge + ": " + words + ".");
+  };
+  std::vector<std::vector<std::string>> entries{
+      verdict(summary.verdict),
+      entry("Result", summary.result),
+      entry("Check", options.full ? summary.checks : summary.checks_in_brief),
+      entry("Missing", options.full ? summary.missing : summary.missing_in_brief),
+      entry("Next", options.full ? summary.next : summary.next_in_brief),
+      entry("Page",
+            options.page.empty() ? "none was written; --html FILE writes it" : options.page)};
   std::size_t count = 0;
   for (const auto& lines : entries) count += lines.size();
   const auto leave = [&](std::size_t entry, bool says_nothing) {
@@ -120,11 +124,20 @@ std::string box(const Summary& summary, const TextOptions& options) {
   };
   leave(3, !summary.has_missing || summary.verdict_names_missing);
   leave(5, options.page.empty());
-  for (const std::size_t give : {5U, 3U, 2U, 4U, 0U, 1U})
+  if (!options.full && count > kBoxLines) {
+    count -= entries[0].size();
+    entries[0] = verdict(summary.verdict_in_brief);
+    count += entries[0].size();
+  }
+  const auto cut = [&](std::size_t give) {
     while (!options.full && count > kBoxLines && entries[give].size() > 1) {
       entries[give] = first_lines(entries[give], entries[give].size() - 1);
       --count;
     }
+  };
+  for (const std::size_t give : {5U, 3U, 2U, 4U, 0U}) cut(give);
+  leave(5, !options.full);  // sooner than the condition of a number
+  cut(1);
   std::string text;
   for (const auto& lines : entries) text += in_lines(lines);
   return text;

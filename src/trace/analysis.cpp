@@ -33,8 +33,9 @@ void add_next_cut(const Problem& problem, const std::vector<Profile>& profiles,
     trace.notes.push_back("no further cut was tried on paper: " + std::string(error.what()));
   };
   try {
-    if (!limit.allows(
-            [&] { trace.next_cut = next_cut(problem, profiles, fitted, std::move(searched)); }))
+    if (!limit.allows([&] {
+          trace.next_cut = next_cut(problem, profiles, fitted, model, std::move(searched));
+        }))
       trace.not_looked_at.emplace_back("the cut to make next");
   } catch (const UsageError& error) {  // a planned cut lacks metadata
     say(error);
@@ -56,11 +57,9 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
     loop = close_loop(problem, profiles, declared, limit, progress);
     last = &loop.last(declared);
   }
-  MoreVariance unnamed;
-  if (loop.widening)
-    unnamed = [&](const Eigen::RowVectorXd& row) { return loop.widening->variance(row); };
   if (options.scope != Scope::rank)
-    set_final(problem, *last, unnamed, options.scope, options.with_details, out.result);
+    set_final(problem, *last, loop.more_variance(), options.scope, options.with_details,
+              out.result);
   if (!options.closes_loop) out.result.declared = out.result.final;
   if (options.closes_loop) {
     out.trace = std::move(loop.trace);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "rescaled.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/identify/left_out.hpp"
@@ -39,25 +40,6 @@ constexpr int kHalvings = 6;  // of the step in which the best of these is moved
 
 double length_of(const Profile& profile) { return profile.setup.last_mm - profile.setup.first_mm; }
 
-/// A profile with its positions in another unit; a centre in the trace and a radius of the
-/// cut that was taken from it go with them.
-Profile rescaled(Profile profile, double factor) {
-  Setup& setup = profile.setup;
-  const double radius = std::max(setup.last_mm - setup.center_mm, setup.center_mm - setup.first_mm);
-  if (setup.cut_radius_mm == radius) *setup.cut_radius_mm *= factor;
-  if (setup.first_mm <= setup.center_mm && setup.center_mm <= setup.last_mm)
-    setup.center_mm *= factor;
-  setup.first_mm *= factor;
-  setup.last_mm *= factor;
-  for (double& each : profile.positions) each *= factor;
-  if (setup.reading_times) {
-    ReadingTimes times = *setup.reading_times;
-    for (double& each : times.positions_mm) each *= factor;
-    setup.reading_times = std::make_shared<const ReadingTimes>(std::move(times));
-  }
-  return profile;
-}
-
 Profile multiplied(Profile profile, double factor) {
   for (double& value : profile.values) value *= factor;
   return profile;
@@ -78,11 +60,14 @@ std::optional<Hypothesis> other_position_unit(const Profile& profile,
   return std::nullopt;
 }
 
-std::vector<Hypothesis> hypotheses(const Profile& profile,
-                                   const std::vector<double>& other_lengths) {
+/// @param is_reversal  others were read the other way round: with the other sign what is the
+///                     slide's and what is the artefact's would change places, and both fit
+std::vector<Hypothesis> hypotheses(const Profile& profile, const std::vector<double>& other_lengths,
+                                   bool is_reversal) {
   const Setup& setup = profile.setup;
   std::vector<Hypothesis> out;
-  for (const auto& [kind, factor] : kFactors) out.push_back({kind, factor, {}});
+  for (const auto& [kind, factor] : kFactors)
+    if (kind != BlunderKind::sign || !is_reversal) out.push_back({kind, factor, {}});
   if (auto other = other_position_unit(profile, other_lengths)) out.push_back(*std::move(other));
   if (!setup.cut_direction || !setup.feed_mm_per_min) return out;
   Profile other = profile;
@@ -231,7 +216,13 @@ class Finder {
   }
 
   [[nodiscard]] std::vector<Hypothesis> hypotheses_of(std::size_t i) const {
-    return hypotheses(*fit_.linear.observations[i]->profile, other_lengths(i));
+    const Profile& profile = *fit_.linear.observations[i]->profile;
+    const bool is_reversal =
+        std::ranges::any_of(fit_.linear.observations, [&](const Observation* each) {
+          return each->profile->setup.kind == Kind::slide &&
+                 each->profile->setup.reversed != profile.setup.reversed;
+        });
+    return hypotheses(profile, other_lengths(i), is_reversal);
   }
 
   [[nodiscard]] static std::vector<double> long_run_deviations(const std::vector<Noise>& noise) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
@@ -14,6 +15,7 @@ constexpr double kSpeeds[] = {2.0 / 3.0, 1.5};  // of the spindle speed there is
 constexpr double kAzimuths[] = {40.0, 80.0};    // degrees; no two lobes of 2, 3, 4 alike
 constexpr double kLevels[] = {0.5, 1.0};        // of the radius, beyond the levels there are
 constexpr double kOtherOverhang = 50.0;         // mm
+constexpr double kLongest = 60.0;               // min, where no cut there is took as long
 
 void complete(Profile& profile) {
   Setup& setup = profile.setup;
@@ -95,6 +97,7 @@ CutToCome to_come(const PlannedCut& cut, const std::vector<Profile>& profiles) {
   CutToCome out{"", cut.like, cut.entry.profile, cut.cost, cut.time_min};
   if (!is_new && !cut.entry.source.window && !out.profile.setup.cut_radius_mm)
     out.profile.setup.cut_radius_mm = like->setup.cut_radius_mm;
+  if (!is_new) out.profile.setup.reading_times = like->setup.reading_times;
   out.profile.positions = positions_of(cut, is_new ? nullptr : &*like);
   complete(out.profile);
   const std::string what = out.profile.setup.kind == Kind::face ? "a cut" : "a pass";
@@ -157,8 +160,20 @@ void add_speeds(const Profile& like, Range& out) {
     }
 }
 
+/// The same stations read from the other end, in the same time.
+ReadingTimes backwards(ReadingTimes times) {
+  const auto [first, last] = std::ranges::minmax(times.times_s);
+  for (double& time : times.times_s) time = first + (last - time);
+  return times;
+}
+
 void add_direction(const Profile& like, Range& out) {
-  if (!like.setup.cut_direction) return;
+  if (like.setup.reading_times)
+    out.add("back", "the pass back", false, [&](Profile& p) {
+      p.setup.reading_times =
+          std::make_shared<const ReadingTimes>(backwards(*like.setup.reading_times));
+    });
+  if (!like.setup.cut_direction || like.setup.reading_times) return;
   const bool inward = like.setup.cut_direction == CutDirection::inward;
   const bool is_face = like.setup.kind == Kind::face;
   const std::string name = inward ? "outward" : "inward";
@@ -229,6 +244,11 @@ std::vector<CutToCome> cuts_to_come(const Problem& problem, const std::vector<Pr
     add_traces(*like, range);
     add_levels(*like, highest, problem.lever, range);
   }
+  double longest = kLongest;
+  for (const Profile& each : profiles)
+    if (is_fitted(each) && each.setup.feed_mm_per_min)
+      longest = std::max(longest, machining_min(each));
+  std::erase_if(range.cuts, [&](const CutToCome& cut) { return cut.time_min > longest; });
   return std::move(range.cuts);
 }
 

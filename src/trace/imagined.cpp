@@ -1,5 +1,6 @@
 #include "imagined.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "slideway/base/error.hpp"
@@ -75,12 +76,50 @@ Seen seen(const SearchBand* band, const Problem& problem, const Observation* lik
   return out;
 }
 
-}  // namespace
+bool is_declared(const Problem& problem, const ModelTerm& term) {
+  return std::ranges::any_of(problem.effects, [&](const DeclaredEffect& each) {
+    return term_name(each.name, each.options.profiles) == term.name;
+  });
+}
 
+/// An effect that was declared for each profile alone has a size of its own in the cut, too.
+void free_what_each_has(const Problem& problem, const FittedModel& base, const Observation& like,
+                        Observation& observation) {
+  for (ModelTerm term : base.model.terms) {
+    if (term.profiles != std::vector{like.profile->name} || !is_declared(problem, term)) continue;
+    term.profiles.clear();
+    const Eigen::MatrixXd columns =
+        low_band_columns(base.model, term, observation, shapes_of(term, base.fit.estimate.shapes));
+    Eigen::MatrixXd all(columns.rows(), observation.nuisances.cols() + columns.cols());
+    all << observation.nuisances, columns;
+    observation.nuisances = std::move(all);
+    observation.nuisance_names.resize(observation.nuisances.cols(), term.name);
+  }
+}
+
+/// What an effect lacks on a cut to come: "effect 'linear_drift' needs feed_mm_per_min", or "".
 std::string lacks(const ModelTerm& term, const CutToCome& cut) {
   if (!term.acts_on(cut.profile)) return "";
   const std::vector<std::string> lacking = term.effect->lacking(cut.profile.setup);
   return lacking.empty() ? "" : "effect '" + term.name + "' needs " + joined(lacking);
+}
+
+}  // namespace
+
+std::vector<CutToCome> with_found_effects(const Problem& problem, const Model& model,
+                                          std::vector<CutToCome> cuts,
+                                          std::vector<std::string>& left_out) {
+  std::erase_if(cuts, [&](const CutToCome& cut) {
+    for (const ModelTerm& term : model.terms) {
+      if (is_declared(problem, term)) continue;
+      const std::string why = lacks(term, cut);
+      if (why.empty()) continue;
+      left_out.push_back("planned cut '" + cut.profile.name + "': " + why);
+      return true;
+    }
+    return false;
+  });
+  return cuts;
 }
 
 Imagined imagine(const Problem& problem, const FittedModel& base, const SearchBand* band,
@@ -98,6 +137,7 @@ Imagined imagine(const Problem& problem, const FittedModel& base, const SearchBa
   Observation observation = std::move(build_model(bare, one).observations[0]);
   Imagined out{std::make_shared<const Profile>(std::move(one[0])), std::move(observation), {}};
   out.observation.profile = out.profile.get();
+  if (like) free_what_each_has(problem, base, *like, out.observation);
   leave_out(out.observation, values_at_axis(out.observation, base.model.machine));
   const std::optional<double>& declared = cut.profile.standard_uncertainty;
   if (like && (!declared || declared == like->profile->standard_uncertainty)) {

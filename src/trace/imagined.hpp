@@ -15,8 +15,12 @@ struct Imagined {
   Noise noise;
 };
 
-/// What an effect lacks on a cut to come: "effect 'linear_drift' needs feed_mm_per_min", or "".
-std::string lacks(const ModelTerm& term, const CutToCome& cut);
+/// The cuts on which the effects that the closed loop has found can be evaluated: the log of a
+/// measured cause may end before a cut does.
+/// @param left_out  is told which cannot, and why
+std::vector<CutToCome> with_found_effects(const Problem& problem, const Model& model,
+                                          std::vector<CutToCome> cuts,
+                                          std::vector<std::string>& left_out);
 
 /// @throws UsageError  the cut lacks metadata of a declared effect, or nothing tells its noise
 /// @throws DataError   fewer samples than its low band takes

@@ -17,6 +17,11 @@ struct ClosedLoop {
   [[nodiscard]] const FittedModel& last(const FittedModel& declared) const {
     return extended ? *extended : declared;
   }
+  /// By what a process without a name adds to uncertainties; while this lives.
+  [[nodiscard]] MoreVariance more_variance() const {
+    if (!widening) return {};
+    return [this](const Eigen::RowVectorXd& row) { return widening->variance(row); };
+  }
 };
 
 /// @param declared  fit_declared() of the problem

@@ -110,8 +110,7 @@ std::string part_of_a_line(const Model& model, const Eigen::VectorXd& shapes,
     bool shown = false;
     for (const Observation* observation : fitted_observations(model)) {
       const Profile& profile = *observation->profile;
-      if (!own.effect->applies_to(profile.setup)) continue;
-      if (!term.effect->applies_to(profile.setup)) return false;
+      if (!own.acts_on(profile) || !term.acts_on(profile)) continue;  // a line of other profiles
       const Stations stations = profile.stations(model.machine);
       const auto lines = own.effect->lines(stations, refined.shape);
       if (lines.empty() || !lie_beside(lines, term.effect->lines(stations, shapes_of(term, shapes)),

@@ -5,6 +5,7 @@
 
 #include "fit_numbers.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "structure.hpp"
 
 namespace slideway {
@@ -110,6 +111,13 @@ void report_untestable(const Dictionary& dictionary, const Problem& problem, Tra
     out.not_testable.push_back({effect.effect, effect.needs});
     if (std::ranges::count(problem.own_effects, effect.effect, &DeclaredEffect::name) > 0)
       out.notes.push_back(effect.effect + " was not looked for: it needs " + effect.needs);
+    if (std::ranges::count(effect_names(), effect.effect) == 0 ||
+        effect.needs.find("feed") == std::string::npos)
+      continue;
+    const Description& what = specimen(effect.effect).description();
+    for (TraceRound& round : out.rounds)
+      if (what.kinematic && std::ranges::count(what.confounded_effects, round.accepted) > 0)
+        round.ambiguous_with.push_back(effect.effect);
   }
 }
 

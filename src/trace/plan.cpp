@@ -14,6 +14,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/identify.hpp"
 #include "slideway/identify/planned_fit.hpp"
 #include "suspects.hpp"
 
@@ -69,7 +70,8 @@ double logarithm_of_fall(const std::optional<double>& now, const std::optional<d
 std::optional<double> expanded(const FittedParameter& of) { return of.expanded_uncertainty; }
 std::optional<double> expanded(const Straightness& of) { return of.expanded_uncertainty_um; }
 
-/// U that is planned, of U in the declared low band now and of both in that of a search.
+/// U that is planned, of U as it is reported and of both in the low band of a search, without what
+/// profiles that disagree and processes without a name add: that is taken to fall as the rest.
 template <typename Quantity>
 std::optional<double> in_declared_band(const Quantity& now, const Quantity& coarse,
                                        const Quantity& planned) {
@@ -90,7 +92,7 @@ class Planner {
  public:
   /// @param in_means  the cuts are made from the profiles of the band, if any
   Planner(const Problem& problem, Searched searched, bool in_means, const FittedModel& fitted,
-          const std::vector<CutToCome>& cuts)
+          const ModelResult& final, const std::vector<CutToCome>& cuts)
       : problem_(problem),
         cuts_(cuts),
         coarser_(std::move(searched.band)),
@@ -99,8 +101,8 @@ class Planner {
         wanted_(wanted_parameters(fitted_.model)),
         quick_(with_known_noise(fitted_.fit)),
         now_(wanted_, with_profiles(fitted_.model, quick_, {})),
-        summary_(summarise(fitted.model, fitted.fit)),
-        coarse_(coarser_ ? summarise(fitted_.model, fitted_.fit) : summary_) {
+        summary_(final),
+        coarse_(summarise(fitted_.model, fitted_.fit)) {
     const std::size_t count = cuts_.size();
     imagined_.resize(count);
     papers_.resize(count);
@@ -340,30 +342,12 @@ class Planner {
   std::vector<Eigen::Index> wanted_;
   Solution quick_;
   Wanted now_;
-  ModelResult summary_, coarse_;
+  const ModelResult& summary_;  // as reported
+  ModelResult coarse_;
   std::vector<std::optional<Imagined>> imagined_;
   std::vector<std::unique_ptr<PaperProfile>> papers_;
   std::vector<std::optional<double>> limits_now_;
 };
-
-/// The cuts on which the effects that the closed loop has found can be evaluated: the log of a
-/// measured cause may end before a cut does.
-/// @param without  is told which cannot, and why
-template <typename Told>
-std::vector<CutToCome> with_found_effects(const Problem& problem, const Model& model,
-                                          std::vector<CutToCome> cuts, Told&& without) {
-  std::erase_if(cuts, [&](const CutToCome& cut) {
-    for (const ModelTerm& term : model.terms) {
-      if (std::ranges::count(problem.effects, term.name, &DeclaredEffect::name) > 0) continue;
-      const std::string why = lacks(term, cut);
-      if (why.empty()) continue;
-      without("planned cut '" + cut.profile.name + "': " + why);
-      return true;
-    }
-    return false;
-  });
-  return cuts;
-}
 
 }  // namespace
 
@@ -375,10 +359,12 @@ Plan plan_cuts(const Problem& problem, const std::vector<Profile>& profiles,
   if (progress) progress("trying cuts on paper", 0.0);
   const FittedModel& fitted = loop.last(declared);
   std::vector<std::string> left_out;
-  const std::vector<CutToCome> tried = with_found_effects(
-      problem, fitted.model, cuts, [&](const std::string& why) { left_out.push_back(why); });
+  const std::vector<CutToCome> tried = with_found_effects(problem, fitted.model, cuts, left_out);
   if (tried.empty()) throw UsageError(left_out.front());
-  Plan out = Planner(problem, std::move(loop.searched), false, fitted, tried).run();
+  Result reported;
+  set_final(problem, fitted, loop.more_variance(), Scope::identify, false, reported);
+  Plan out =
+      Planner(problem, std::move(loop.searched), false, fitted, *reported.final, tried).run();
   std::ranges::move(left_out, std::back_inserter(out.notes));
   for (const TraceRound& round : loop.trace.rounds)
     out.notes.push_back("the model has " + term_name(round.accepted, round.profiles) +
@@ -387,13 +373,15 @@ Plan plan_cuts(const Problem& problem, const std::vector<Profile>& profiles,
 }
 
 std::optional<NextCut> next_cut(const Problem& problem, const std::vector<Profile>& profiles,
-                                const FittedModel& fitted, Searched searched) {
+                                const FittedModel& fitted, const ModelResult& final,
+                                Searched searched) {
   const bool in_means = searched.band && problem.planned.empty();  // fewer than the samples
+  std::vector<std::string> left_out;
   const std::vector<CutToCome> cuts = with_found_effects(
       problem, fitted.model, cuts_to_come(problem, in_means ? searched.band->profiles : profiles),
-      [](const std::string&) {});
+      left_out);
   if (cuts.empty()) return std::nullopt;
-  return Planner(problem, std::move(searched), in_means, fitted, cuts).best_alone();
+  return Planner(problem, std::move(searched), in_means, fitted, final, cuts).best_alone();
 }
 
 }  // namespace slideway

@@ -74,7 +74,8 @@ std::string profile_text(const CutToCome& cut) {
                      std::to_string(profile.positions.size()) + " positions from " +
                      significant(setup.first_mm, 6) + " to " + significant(setup.last_mm, 6) +
                      " mm, into the file below, with a line of headings: x_mm, " +
-                     (is_slope ? "slope_urad" : "z_um") + ".\n[[profile]]\n";
+                     (is_slope ? "slope_urad" : "z_um") +
+                     (setup.reading_times ? ", t_s: when each was read" : "") + ".\n[[profile]]\n";
   Keys keys;
   keys.text("name", profile.name);
   keys.text("file", profile.name + ".csv");
@@ -84,6 +85,10 @@ std::string profile_text(const CutToCome& cut) {
   keys.text("value_column", is_slope ? "slope_urad" : "z_um");
   keys.text("position_unit", "mm");
   keys.text("value_unit", is_slope ? "urad" : "um");
+  if (setup.reading_times) {
+    keys.text("time_column", "t_s");
+    keys.text("time_unit", "s");
+  }
   add_setup(setup, keys);
   add_treatment(profile, is_slope, keys);
   return text + keys.all();

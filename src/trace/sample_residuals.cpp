@@ -60,14 +60,17 @@ SampleResiduals::SampleResiduals(const Model& model, const Solution& fit) : mode
 
 bool SampleResiduals::have(const Refined& effect) const {
   const ModelTerm& term = effect.candidate->term;
+  // A form of so many amplitudes may have taken a part of a slower line.
+  double smooth = 0.0;
+  for (const ModelTerm& each : model_.terms)
+    if (!each.effect->description().kinematic) smooth += each.effect->amplitudes();
   double fall = 0.0;
   for (const Trace& trace : traces_) {
     if (!term.acts_on(*trace.profile)) continue;
     const auto lines = term.effect->lines(trace.profile->stations(model_.machine), effect.shape);
     const bool may_be_folded =
-        is_kinematic(*effect.candidate) || std::ranges::any_of(lines, [&](const LineBand& line) {
-          return line.low > static_cast<double>(model_.amplitudes());
-        });
+        is_kinematic(*effect.candidate) ||
+        std::ranges::any_of(lines, [&](const LineBand& line) { return line.low > smooth; });
     const double square = trace.residual.squaredNorm();
     if (!may_be_folded || square == 0.0) continue;
     const Eigen::VectorXd signal = trace.levelled(

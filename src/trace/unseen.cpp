@@ -30,7 +30,8 @@ std::vector<std::string> same_columns_as(MotionError error, const TraceResult& t
   std::vector<std::string> names;
   for (const NotSeparable& each : trace.not_separable)
     if (has_parameter_of(error, each.same_as) &&
-        motion_error_of(each.effect) != MotionError::vertical_straightness)
+        motion_error_of(each.effect) != MotionError::vertical_straightness &&
+        motion_error_of(each.effect) != error)
       names.push_back(each.effect);
   return names;
 }

@@ -118,6 +118,7 @@ class Classes(unittest.TestCase):
 
 
 REPORT = {
+    "crosscheck": {"profiles": []},
     "final": {"parameters": [
         {"name": "squareness.dbeta_xz", "value": 1.1e-5, "expanded_uncertainty": 2e-6, "identifiable": True},
         {"name": "slide_periodic.amplitude_um", "value": -0.5, "expanded_uncertainty": 0.1, "identifiable": True}]},
@@ -161,7 +162,7 @@ class Score(unittest.TestCase):
 def record(name, seed, error, **changes):
     group = workshop.CLASSES[name][0]
     return {"class": name, "group": group, "seed": seed, "draw": 0, "status": "done", "seconds": 1.0,
-            "verdict": "nothing_missing", "names": [], "wrong": [], "hidden": [],
+            "verdict": "nothing_missing", "names": [], "wrong": [], "hidden": [], "apart": [],
             "dbeta": {"error": error, "U": 1.0, "unseen": 1.0}} | changes
 
 

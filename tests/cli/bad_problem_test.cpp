@@ -48,7 +48,7 @@ const BadInput kKeys[] = {
     bad("UnitOfASlopeForAHeight", {.units = "position_unit = \"mm\"\nvalue_unit = \"arcsec\"\n"},
         {"problem.toml:11: profile.value_unit", "not accepted for a height", "accepted: m mm um"}),
     bad("TextForANumber", {.profile_more = "feed_mm_per_min = \"fast\"\n"},
-        {"problem.toml:12: profile.feed_mm_per_min: must be a finite number"}),
+        {"problem.toml:12: profile.feed_mm_per_min: must be a number, without quotes"}),
     bad("NumberForAText", {.low_band = "[low_band]\nwavelet = 4\n"},
         {"problem.toml:4: low_band.wavelet: must be a text"}),
     bad("TextForAWholeNumber", {.low_band = "[low_band]\nlevel = \"5\"\n"},

@@ -18,15 +18,18 @@ TEST_F(ProblemFile, NamesLineKeyAndNearestKeyOfAMistypedOne) {
               HasSubstr("low_bend: unknown key (did you mean 'low_band'?)"));
 }
 
+// Where the file is not there, that is what is said, once it is read.
 TEST_F(ProblemFile, RefusesAMissingUnit) {
-  EXPECT_THAT(
-      refusal(std::string(kMachine) +
-              "[[profile]]\nname = \"a\"\nfile = \"a.csv\"\nposition_unit = \"mm\"\n" + kEffect),
-      EndsWith(":3: profile.value_unit: missing; accepted: m mm um nm inch"));
-  EXPECT_THAT(
-      refusal(std::string(kMachine) +
-              "[[profile]]\nname = \"a\"\nfile = \"a.csv\"\nvalue_unit = \"mm\"\n" + kEffect),
-      EndsWith(":3: profile.position_unit: missing; accepted: m mm um nm inch s"));
+  const auto with = [&](const std::string& unit) {
+    return refusal(std::string(kMachine) + "[[profile]]\nname = \"a\"\nfile = \"a.csv\"\n" + unit +
+                   kEffect);
+  };
+  EXPECT_EQ(with("position_unit = \"mm\"\n"), "");
+  std::ofstream(folder_.path() / "a.csv") << "0,1\n1,2\n";
+  EXPECT_THAT(with("position_unit = \"mm\"\n"),
+              EndsWith(":3: profile.value_unit: missing; accepted: m mm um nm inch"));
+  EXPECT_THAT(with("value_unit = \"mm\"\n"),
+              EndsWith(":3: profile.position_unit: missing; accepted: m mm um nm inch s"));
 }
 
 TEST_F(ProblemFile, RefusesAUnitOfTheWrongKind) {
@@ -113,7 +116,9 @@ TEST_F(ProblemFile, RefusesWordsThatAreNoDialect) {
 }
 
 TEST_F(ProblemFile, RefusesWrongTypes) {
-  EXPECT_THAT(profile_refusal("z_mm = \"2\""), HasSubstr(":9: profile.z_mm: must be a finite"));
+  EXPECT_THAT(profile_refusal("z_mm = \"2\""),
+              HasSubstr(":9: profile.z_mm: must be a number, without quotes"));
+  EXPECT_THAT(profile_refusal("z_mm = nan"), HasSubstr(":9: profile.z_mm: must be a finite"));
   EXPECT_THAT(profile_refusal("role = 1"), HasSubstr("profile.role: must be a text"));
   EXPECT_THAT(profile_refusal("free = \"offset\""), HasSubstr("profile.free: must be a list"));
   EXPECT_THAT(profile_refusal("start_s = 1979-05-27"), HasSubstr("must be a finite number"));

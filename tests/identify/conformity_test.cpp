@@ -26,6 +26,9 @@ TEST(Conformity, NeedsTheUncertaintyInsideTheLimitOrBeyondIt) {
   EXPECT_EQ(conformity_verdict(measured(3.2, 0.1), 3.0), ConformityVerdict::does_not_conform);
   EXPECT_EQ(conformity_verdict(measured(-3.2, 0.1), 3.0), ConformityVerdict::does_not_conform);
   EXPECT_EQ(conformity_verdict({}, 3.0), ConformityVerdict::undecided);
+  EXPECT_EQ(conformity_verdict(measured(0.3, 0.1), 1.0, 0.5), ConformityVerdict::conforms);
+  EXPECT_EQ(conformity_verdict(measured(0.3, 0.1), 1.0, 0.7), ConformityVerdict::undecided);
+  EXPECT_EQ(conformity_verdict(measured(3.2, 0.1), 3.0, 0.7), ConformityVerdict::undecided);
 }
 
 class Toleranced : public ProblemFile {

@@ -85,7 +85,7 @@ TEST(Noise, StandardDeviationIsThatOfValuesAboutTheirMean) {
     }
   const double expected = std::sqrt((trace - sum / kRows) / (kRows - 1));
   EXPECT_NEAR(noise.standard_deviation(), expected, 1e-9);
-  EXPECT_NEAR(noise.repeated(4.0).standard_deviation(), expected, 1e-9);
+  EXPECT_NEAR(noise.repeated({4.0, 1.0}).standard_deviation(), expected, 1e-9);
 }
 
 TEST(Noise, OfFirstOrderIsRecovered) {

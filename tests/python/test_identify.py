@@ -126,7 +126,7 @@ BAD_PROBLEMS = [
     (lambda p: p.update(efect=[]), r"^problem: efect: unknown key \(did you mean 'effect'\?\)"),
     (
         lambda p: p["profile"][1].update(feed_mm_per_min="2"),
-        r"^problem: profile\[1\]\.feed_mm_per_min: must be a finite number",
+        r"^problem: profile\[1\]\.feed_mm_per_min: must be a number, without quotes",
     ),
     (
         lambda p: p["profile"][0].pop("value_unit"),

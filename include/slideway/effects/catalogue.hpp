@@ -23,6 +23,9 @@ std::unique_ptr<Effect> make_effect(const std::string& name, const EffectOptions
 /// without. REQUIRES a name of effect_names().
 const Effect& specimen(const std::string& name);
 
+/// Whether an effect is a part of E_ZX (ISO 230-1) under a name of its own.
+bool is_part_of_straightness(const Description& effect);
+
 /// The options an effect of the catalogue cannot do without. REQUIRES a name of effect_names().
 const EffectOptions& needed_options(const std::string& name);
 

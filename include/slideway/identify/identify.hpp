@@ -20,7 +20,7 @@ Result identify(const Problem& problem, const std::vector<Profile>& profiles,
 Result identify(const Problem& problem, const std::vector<Profile>& profiles,
                 Scope scope = Scope::identify);
 
-/// The same without a final model and its cross-check.
+/// The same without a final model, its ranking and its cross-check. Scope::rank: with the ranking.
 Result identify_declared(const Problem& problem, const std::vector<Profile>& profiles,
                          const FittedModel& declared, Scope scope, bool with_budget);
 

@@ -31,10 +31,13 @@ class Noise {
   /// The same noise with all variances multiplied.
   [[nodiscard]] Noise scaled(double factor) const;
 
-  /// The same noise as one of several repeats weighs by it: the variances of texture and memory
-  /// multiplied. m repeats that have them in common say no more of what is slow than one, and each
-  /// has m times the variance.
-  [[nodiscard]] Noise repeated(double factor) const;
+  /// Factors of the variances of texture and memory, and of white noise.
+  struct Weight {
+    double memory = 1.0, white = 1.0;
+  };
+  /// The same noise as one of several readings of one texture weighs by it. m readings that have it
+  /// in common say no more of what is slow than one, and each has m times the variance.
+  [[nodiscard]] Noise repeated(const Weight& weight) const;
 
   bool declared = false;   // white, as the problem file has it; else estimated from the residual
   bool overruled = false;  // a declared uncertainty was there, and the residual refutes it
@@ -49,8 +52,8 @@ class Noise {
   [[nodiscard]] bool is_estimated() const { return !declared && !alternatives.empty(); }
   [[nodiscard]] bool is_white() const { return covariance_.is_white(); }
 
-  /// The factor of repeated().
-  [[nodiscard]] double repeats() const { return repeats_; }
+  /// That of repeated().
+  [[nodiscard]] const Weight& weight() const { return weight_; }
 
   /// Of one value about the mean of the trace, repeated or not.
   [[nodiscard]] double standard_deviation() const;
@@ -83,7 +86,7 @@ class Noise {
 
   ExponentialMixture covariance_;
   Eigen::Index values_ = 0;
-  double repeats_ = 1.0;
+  Weight weight_;
   std::vector<double> stations_;
   std::shared_ptr<const MixtureFactor> factor_;
 };

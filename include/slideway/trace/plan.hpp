@@ -26,7 +26,7 @@ struct CutToCome {
 /// The planned cuts of a problem. Without any, what a workshop can make of the first fitted face:
 /// once more, at other feeds and speeds, the other way, traced at other azimuths or over the whole
 /// diameter, at other levels Z, with another overhang; or of the first reading of a slide: once
-/// more, backwards, at another speed.
+/// more, backwards, at another speed. None takes longer than the longest cut there is, or an hour.
 /// @throws UsageError  no fitted profile is there to begin with
 std::vector<CutToCome> cuts_to_come(const Problem& problem, const std::vector<Profile>& profiles);
 

@@ -46,10 +46,12 @@ std::vector<Parameter> lobe_parameters() {
   return list;
 }
 
-// In (-90, 90]: a trace over the diameter looks both ways.
-double direction_of(double azimuth_deg) {
-  const double direction = std::remainder(azimuth_deg, kHalfTurn);
-  return direction <= -kHalfTurn / 2.0 + kSameAzimuth ? direction + kHalfTurn : direction;
+// In (-90, 90] of a trace over the diameter, which looks both ways, in (-180, 180] of a radius.
+double direction_of(const Setup& setup) {
+  const bool looks_both_ways = setup.first_mm < setup.center_mm && setup.center_mm < setup.last_mm;
+  const double turn = looks_both_ways ? kHalfTurn : 2.0 * kHalfTurn;
+  const double direction = std::remainder(setup.azimuth_deg, turn);
+  return direction <= -turn / 2.0 + kSameAzimuth ? direction + turn : direction;
 }
 
 /// A lobe that no trace crosses has a column of zeros: sin 180° is none of 1e-16.
@@ -72,7 +74,7 @@ class ChuckingLobes : public LinearEffect {
   [[nodiscard]] std::vector<std::string> lacking_together(
       const std::vector<const Setup*>& setups) const override {
     std::vector<double> directions;
-    for (const Setup* setup : setups) directions.push_back(direction_of(setup->azimuth_deg));
+    for (const Setup* setup : setups) directions.push_back(direction_of(*setup));
     std::ranges::sort(directions);
     const auto same = [](double a, double b) { return b - a <= kSameAzimuth; };
     directions.erase(std::unique(directions.begin(), directions.end(), same), directions.end());

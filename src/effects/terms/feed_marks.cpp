@@ -41,7 +41,8 @@ Description describe_feed_marks() {
           .confounded_with =
               "nothing if the grooves are resolved; averaged over blocks of a similar width, or "
               "sampled coarser than the feed, it returns as a long alias whose phase differs from "
-              "cut to cut",
+              "cut to cut; where the feed is not known, slide_periodic",
+          .confounded_effects = {"slide_periodic"},
           .separated_by =
               "its period is exactly the feed per turn and its height goes "
               "with the square of the feed",

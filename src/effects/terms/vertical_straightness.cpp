@@ -93,9 +93,8 @@ class VerticalStraightness : public LinearEffect {
       return other->description().motion == MotionError::squareness;
     });
     if (square && std::ranges::count(part.own, "c1") > 0)
-      return "no face can tell c_1 from the squareness: both make a cone; "
-             "read the straightness of the Z carriage along Z, or measure the squareness itself "
-             "(run-out, Eq. 21)";
+      return "read Z's straightness along Z, or measure the squareness (Eq. 21); "
+             "no face can tell c_1 from the squareness: both make a cone";
     if (square)
       return "cut faces at more Z levels (z_mm): each further level determines one more c_k";
     return "cut faces at more Z levels (z_mm), with an offset that levelling has not removed or "
