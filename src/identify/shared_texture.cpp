@@ -11,7 +11,8 @@
 namespace slideway {
 namespace {
 
-constexpr double kChance = 2.0;  // standard errors of a correlation
+constexpr double kChance = 2.0;       // standard errors of a correlation
+constexpr double kNearlyWhite = 0.5;  // of the values: so many white ones would say as much
 
 using Fine = std::vector<std::optional<LinearProfile>>;
 
@@ -132,6 +133,12 @@ Linearisation beside(const Linearisation& linear, const std::vector<Eigen::Matri
   return out;
 }
 
+/// What turns leave differs from turn to turn; what is slow may be an effect that the model lacks.
+bool may_be_of_turns(const Noise& noise, const std::optional<LinearProfile>& fine) {
+  return fine &&
+         noise.effective_values() >= kNearlyWhite * static_cast<double>(fine->residual.size());
+}
+
 void weigh(const Noise::Weight& weight, Noise& noise) {
   if (!noise.declared && (weight.memory > 1.0 || weight.white > 1.0))
     noise = noise.repeated(weight);
@@ -160,7 +167,9 @@ void weigh_shared_texture(const Linearisation& linear, const Fine& fine,
     any |= p.memory > 0.0 || p.white > 0.0;
     for (std::size_t a = 0; a < face.size(); ++a) {
       const Noise::Weight own{1.0 + of_repeats[a] * r.memory, 1.0 + of_repeats[a] * r.white};
-      weigh({own.memory + of_places[a] * p.memory, own.white + of_places[a] * p.white},
+      const double places_of_it =
+          may_be_of_turns(noise[face[a]], fine[face[a]]) ? of_places[a] : 0.0;
+      weigh({own.memory + places_of_it * p.memory, own.white + places_of_it * p.white},
             with_places[face[a]]);
       weigh(own, noise[face[a]]);
     }
@@ -171,7 +180,7 @@ void weigh_shared_texture(const Linearisation& linear, const Fine& fine,
 
 void weigh_halves(const Linearisation& alone, const std::optional<LinearProfile>& fine,
                   const Gates& gates, Noise& noise) {
-  if (!is_face(alone, 0) || noise.declared) return;
+  if (!is_face(alone, 0) || noise.declared || !may_be_of_turns(noise, fine)) return;
   const Fine own{fine};
   const std::vector<Noise> of_it{noise};
   Common halves(alone, own, of_it);

@@ -19,7 +19,8 @@ namespace slideway {
 /// that of W min((C - V) / W, 1); both 0 where two unrelated noises could have as large a C.
 ///
 /// An effect that the model lacks may look alike at two places, too. So other places count where
-/// the model and the suspects then leave no lack of fit: turns alone explain what is left.
+/// the noise is nearly white and the model and the suspects leave no lack of fit beside it: turns
+/// alone explain what is left.
 /// @param fine     what the slow band leaves of each profile; nothing: it says nothing
 /// @param suspect  as noise_beside()
 void weigh_shared_texture(const Linearisation& linear,

@@ -86,8 +86,8 @@ TEST(Placing, LobesOfEachClampingAreNamed) {
 /// Two discs, three traces each, the discs in turn; the first has a form of X and the azimuth.
 template <typename Form>
 std::vector<Profile> two_discs(Form&& form) {
-  std::vector<Profile> first = at_azimuths(form, 55);
-  std::vector<Profile> second = at_azimuths([](double, double) { return 0.0; }, 58);
+  std::vector<Profile> first = at_azimuths(form, 5);
+  std::vector<Profile> second = at_azimuths([](double, double) { return 0.0; }, 8);
   std::vector<Profile> out;
   for (std::size_t c = 0; c < first.size(); ++c)
     for (std::vector<Profile>* disc : {&first, &second}) {
