@@ -56,12 +56,16 @@ def chirp(minutes):
     return 0.15 * math.sin(2.0 * math.pi * (0.3 * minutes + 0.04 * minutes**2))
 
 
-def faces(folder, hidden, samples=1000):
-    """The problem file of three cuts, a drift hidden in them."""
+THREE = (("slow", 2, "inward"), ("fast", 8, "inward"), ("out", 2, "outward"))
+MANY = [(f"cut{i}", 2 + 0.01 * i, "inward") for i in range(60)]
+
+
+def faces(folder, hidden, cuts=THREE, samples=1000, level=4):
+    """The problem file of some cuts, a drift hidden in them."""
     folder.mkdir(parents=True, exist_ok=True)
     draw = random.Random(21)
-    text = f'title = "{folder.name}"\n[machine]\nlever = "paper"\n[low_band]\nlevel = 4\n'
-    for name, feed, direction in (("slow", 2, "inward"), ("fast", 8, "inward"), ("out", 2, "outward")):
+    text = f'title = "{folder.name}"\n[machine]\nlever = "paper"\n[low_band]\nlevel = {level}\n'
+    for name, feed, direction in cuts:
         rows = "x_mm,z_um\n"
         for i in range(samples):
             x = RADIUS * (2.0 * i / (samples - 1) - 1.0)
@@ -83,15 +87,18 @@ def cases():
     # Two incommensurable waves: digits like a profile's, the same everywhere.
     table.write_text("x_mm,z_um\n" + "".join(
         f"{i * 5e-4:.4f},{((i * 7919) % 100_003 - 50_001) / 65_536:.12f}\n" for i in range(50_000)))  # fmt: skip
-    loop = {"loop_clean": lambda _: 0.0, "loop_named": thermal, "loop_open": chirp}
+    loop = {"loop_clean": faces(WORK / "loop_clean", lambda _: 0.0),
+            "loop_named": faces(WORK / "loop_named", thermal),
+            "loop_open": faces(WORK / "loop_open", chirp),
+            "loop_many": faces(WORK / "loop_many", lambda _: 0.0, MANY, samples=256, level=2)}
     return {
         "start": ["--version"],
         "identify": ["identify", FACE, "--no-trace", "--quiet"],
         "decompose_db4": ["decompose", table, "--out", "/dev/null"],
         "rank": ["rank", table, "--signal", "2", "--candidates", "1", "--quiet"],
         "read": ["info", table],
-        **{name: ["identify", faces(WORK / name, hidden), "--quiet", "--json", WORK / f"{name}.json"]
-           for name, hidden in loop.items()},
+        **{name: ["identify", problem, "--quiet", "--json", WORK / f"{name}.json"]
+           for name, problem in loop.items()},
     }
 
 

@@ -76,4 +76,11 @@ double median(std::span<double> values) {
   return *middle;
 }
 
+double deviation_of_most(std::span<const double> values) {
+  constexpr double kNormal = 0.6744897501960817;  // median of the size of a standard normal value
+  std::vector<double> sizes;
+  for (const double value : values) sizes.push_back(std::abs(value));
+  return median(sizes) / kNormal;
+}
+
 }  // namespace slideway

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include "compared_curves.hpp"
 #include "reported.hpp"
@@ -192,9 +191,7 @@ class ProfileComparison {
     const Compressed compressed = compress(fit.linear, noise);
     const std::size_t count = fit.linear.observations.size();
     const bool pairwise = count <= kMostPairwise;
-    Profiles every(count);
-    std::iota(every.begin(), every.end(), std::size_t{0});
-    const std::vector<Eigen::Index> of_each_cut = columns_of_each_cut(model, fit, every);
+    const std::vector<Eigen::Index> of_each_cut = columns_of_each_cut(model, fit);
     const auto side = [&](const Profiles& which) {
       return Alone(fit.linear, noise, compressed, which, of_each_cut, model.gates.rank_tolerance);
     };

@@ -1,9 +1,12 @@
 #include "compared_curves.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
+#include "form_columns.hpp"
 #include "slideway/identify/low_band_lines.hpp"
 
 namespace slideway {
@@ -28,13 +31,8 @@ Eigen::MatrixXd straightness_curve(const Model& model, const ModelTerm& term, co
                                    const SlideRange& travel) {
   if (!(travel.greatest > travel.least)) return {};
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kCurvePoints, travel.least, travel.greatest);
-  Setup setup;
-  setup.kind = Kind::slide;
-  setup.first_mm = travel.least;
-  setup.last_mm = travel.greatest;
-  Eigen::MatrixXd out(x.size(), term.effect->amplitudes());
-  term.effect->columns({{x.data(), static_cast<std::size_t>(x.size())}, setup, model.machine},
-                       shapes_of(term, fit.estimate.shapes), out);
+  Eigen::MatrixXd out =
+      form_columns(model, term, shapes_of(term, fit.estimate.shapes), on_slide(), x);
   const Eigen::RowVectorXd first = out.row(0), last = out.row(x.size() - 1);
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(x.size() - 1);
@@ -58,23 +56,18 @@ Eigen::MatrixXd levelled_curve(const Linearisation& linear, std::size_t i, const
 /// tool, and waves too fine for the low band of one of these profiles. The nose of the tool takes
 /// off their crests, more of them the smaller the feed.
 bool is_of_each_cut(const Model& model, const Solution& fit, const ModelTerm& term,
-                    const std::vector<std::size_t>& which) {
-  if (term.effect->description().kinematic) return true;
-  return std::ranges::any_of(which, [&](std::size_t i) {
-    const Observation& observation = *fit.linear.observations[i];
-    return term.acts_on(*observation.profile) &&
-           is_too_fine(model, term, shapes_of(term, fit.estimate.shapes), observation);
-  });
+                    std::span<const Observation* const> observations) {
+  return term.effect->description().kinematic ||
+         is_too_fine(model, term, shapes_of(term, fit.estimate.shapes), observations);
 }
 
 }  // namespace
 
-std::vector<Eigen::Index> columns_of_each_cut(const Model& model, const Solution& fit,
-                                              const std::vector<std::size_t>& which) {
+std::vector<Eigen::Index> columns_of_each_cut(const Model& model, const Solution& fit) {
   const Eigen::Index amplitudes = fit.estimate.amplitudes.size();
   std::vector<Eigen::Index> out;
   for (const ModelTerm& term : model.terms) {
-    if (!is_of_each_cut(model, fit, term, which)) continue;
+    if (!is_of_each_cut(model, fit, term, fit.linear.observations)) continue;
     for (int a = 0; a < term.effect->amplitudes(); ++a) out.push_back(term.first_amplitude + a);
     for (Eigen::Index s = 0; s < std::ssize(term.effect->shapes()); ++s)
       out.push_back(amplitudes + term.first_shape + s);
@@ -87,7 +80,7 @@ std::vector<ComparedCurve> compared_curves(const Model& model, const Solution& f
   std::vector<ComparedCurve> out;
   const auto& observations = fit.linear.observations;
   for (const ModelTerm& term : model.terms) {
-    if (is_of_each_cut(model, fit, term, {a, b})) continue;
+    if (is_of_each_cut(model, fit, term, std::array{observations[a], observations[b]})) continue;
     const bool of_slide = term.effect->description().motion == MotionError::straightness;
     const Eigen::MatrixXd own =
         of_slide ? straightness_curve(

@@ -24,7 +24,7 @@ struct ComparedCurve {
 
 /// (Amplitudes, shapes) of the effects of which each cut has its own size: those say nothing of
 /// whether cuts agree.
-[[nodiscard]] std::vector<Eigen::Index> columns_of_each_cut(const Model& model, const Solution& fit,
-                                                            const std::vector<std::size_t>& which);
+[[nodiscard]] std::vector<Eigen::Index> columns_of_each_cut(const Model& model,
+                                                            const Solution& fit);
 
 }  // namespace slideway

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "form_columns.hpp"
 #include "slideway/effects/catalogue.hpp"
 
 namespace slideway {
@@ -89,19 +90,14 @@ double parts_beside_um(const FittedModel& fitted) {
   if (!(travel.greatest > travel.least)) return 0.0;
   constexpr Eigen::Index kPoints = 2001;  // of a wave of a fiftieth of the travel, 40 a cycle
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, travel.least, travel.greatest);
-  Setup setup;
-  setup.kind = Kind::slide;
-  setup.first_mm = travel.least;
-  setup.last_mm = travel.greatest;
   double sum = 0.0;
   for (const ModelTerm& term : model.terms) {
-    if (!is_part_of_straightness(term.effect->description()) || !term.effect->applies_to(setup))
+    if (!is_part_of_straightness(term.effect->description()) ||
+        !term.effect->applies_to(on_slide()))
       continue;
-    Eigen::MatrixXd columns(x.size(), term.effect->amplitudes());
-    term.effect->columns({{x.data(), static_cast<std::size_t>(x.size())}, setup, model.machine},
-                         shapes_of(term, fitted.fit.estimate.shapes), columns);
-    const Eigen::VectorXd form = columns * fitted.fit.estimate.amplitudes.segment(
-                                               term.first_amplitude, term.effect->amplitudes());
+    const Eigen::VectorXd form =
+        form_columns(model, term, shapes_of(term, fitted.fit.estimate.shapes), on_slide(), x) *
+        fitted.fit.estimate.amplitudes.segment(term.first_amplitude, term.effect->amplitudes());
     sum += (form.maxCoeff() - form.minCoeff()) / kMicrometre;
   }
   return sum;

@@ -31,7 +31,8 @@ bool are_sisters(const Observation& a, const Observation& b, double tolerance) {
          alike(static_cast<double>(a.values.size()), static_cast<double>(b.values.size()));
 }
 
-/// What a cut has by its kinematics, as its samples show it: no fit of other cuts knows that.
+/// What a cut has by its kinematics, as its samples show it: no fit of other cuts knows that,
+/// unless the model has it in all.
 struct OwnMarks {
   Eigen::VectorXd values;
   Eigen::MatrixXd columns;  // one standard uncertainty each
@@ -39,30 +40,25 @@ struct OwnMarks {
   OwnMarks(const Model& model, const Observation& observation)
       : values(Eigen::VectorXd::Zero(observation.values.size())), columns(values.size(), 0) {
     const Profile& profile = *observation.profile;
+    const auto is_in_model = [&](const std::string& name) {
+      return std::ranges::any_of(model.terms, [&](const ModelTerm& term) {
+        return term.effect->description().name == name && term.acts_on(profile);
+      });
+    };
     for (const std::string& name : effect_names()) {
       const Effect& effect = specimen(name);
       if (!effect.description().kinematic || !effect.applies_to(profile.setup) ||
-          !effect.lacking(profile.setup).empty())
+          !effect.lacking(profile.setup).empty() || is_in_model(name))
         continue;
       auto shown =
           effect.shown_by(profile.stations(model.machine), profile.values, model.gates.false_line);
-      if (shown) add(model, name, std::move(*shown), observation);
+      if (!shown) continue;
+      shown->options.profiles = {profile.name};
+      const ModelTerm term{name, make_effect(name, shown->options, model.machine, model.range), {}};
+      const Eigen::MatrixXd images = low_band_images(model, term, shown->values, observation);
+      values += images.leftCols(images.cols() / 2).rowwise().sum();
+      append_columns(columns, images.rightCols(images.cols() / 2));
     }
-  }
-
- private:
-  void add(const Model& model, const std::string& name, ShownBySamples shown,
-           const Observation& observation) {
-    shown.options.profiles = {observation.profile->name};
-    const ModelTerm term{name, make_effect(name, shown.options, model.machine, model.range), {}};
-    const Eigen::MatrixXd all = low_band_columns(model, term, observation, {});
-    Eigen::VectorXd sizes(std::ssize(shown.values)), uncertainties(sizes.size());
-    for (std::size_t p = 0; p < shown.values.size(); ++p) {
-      sizes[static_cast<Eigen::Index>(p)] = shown.values[p].value;
-      uncertainties[static_cast<Eigen::Index>(p)] = shown.values[p].standard_uncertainty;
-    }
-    values += all * term.effect->from_parameters(sizes);
-    append_columns(columns, all * term.effect->from_parameters(uncertainties).asDiagonal());
   }
 };
 

@@ -115,12 +115,8 @@ bool is_disagreement(const ProfileCheck& check) {
 std::vector<Eigen::Index> amplitudes_of_fine_waves(const Model& model, const Solution& fit) {
   std::vector<Eigen::Index> out;
   for (const ModelTerm& term : model.terms) {
-    const auto is_fine_in = [&](const Observation* each) {
-      return term.acts_on(*each->profile) &&
-             is_too_fine(model, term, shapes_of(term, fit.estimate.shapes), *each);
-    };
     if (!term.effect->description().kinematic &&
-        std::ranges::any_of(fit.linear.observations, is_fine_in))
+        is_too_fine(model, term, shapes_of(term, fit.estimate.shapes), fit.linear.observations))
       for (int a = 0; a < term.effect->amplitudes(); ++a) out.push_back(term.first_amplitude + a);
   }
   return out;

@@ -36,6 +36,21 @@ Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
   return apply_in_parts(observation.low_band, std::ssize(profile.positions), amplitudes, fill);
 }
 
+Eigen::MatrixXd low_band_images(const Model& model, const ModelTerm& term,
+                                const std::vector<Prior>& values, const Observation& observation) {
+  const Eigen::MatrixXd columns = low_band_columns(model, term, observation, {});
+  Eigen::VectorXd of_values(std::ssize(values)), of_uncertainties(std::ssize(values));
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const auto k = static_cast<Eigen::Index>(p);
+    of_values[k] = values[p].value;
+    of_uncertainties[k] = values[p].standard_uncertainty;
+  }
+  Eigen::MatrixXd out(columns.rows(), 2 * columns.cols());
+  out << columns * term.effect->from_parameters(of_values).asDiagonal(),
+      columns * term.effect->from_parameters(of_uncertainties).asDiagonal();
+  return out;
+}
+
 Eigen::MatrixXd low_band_columns_of_shapes(const Model& model, const ModelTerm& term,
                                            const Observation& observation,
                                            std::span<const std::vector<double>> shapes) {

@@ -25,4 +25,11 @@ bool is_too_fine(const Model& model, const ModelTerm& term, std::span<const doub
       [&](const LineBand& line) { return cycles_along(profile.setup, effect, line) > cycles; });
 }
 
+bool is_too_fine(const Model& model, const ModelTerm& term, std::span<const double> shape,
+                 std::span<const Observation* const> observations) {
+  return std::ranges::any_of(observations, [&](const Observation* each) {
+    return term.acts_on(*each->profile) && is_too_fine(model, term, shape, *each);
+  });
+}
+
 }  // namespace slideway

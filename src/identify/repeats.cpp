@@ -172,16 +172,8 @@ bool are_repeats(const Observation& a, const Observation& b, const Gates& gates)
 
 std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
                                                     const Gates& gates) {
-  std::vector<std::vector<std::size_t>> out;
-  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
-    const auto own = std::ranges::find_if(out, [&](const std::vector<std::size_t>& group) {
-      return are_repeats(*linear.observations[group.front()], *linear.observations[i], gates);
-    });
-    if (own != out.end())
-      own->push_back(i);
-    else
-      out.push_back({i});
-  }
+  auto out = grouped(
+      linear, [&](const Observation& a, const Observation& b) { return are_repeats(a, b, gates); });
   std::erase_if(out, [](const std::vector<std::size_t>& group) { return group.size() < 2; });
   return out;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,22 @@ std::vector<Eigen::Index> matched_values(const Observation& a, const Observation
 /// Whether two profiles read one cut along one line: half of the stations of either are the other's
 /// too, within Gates::same_place.
 bool are_repeats(const Observation& a, const Observation& b, const Gates& gates);
+
+/// Fitted profiles by index, rising, each with the first group to whose front one it belongs.
+template <typename Together>
+std::vector<std::vector<std::size_t>> grouped(const Linearisation& linear, Together&& together) {
+  std::vector<std::vector<std::size_t>> out;
+  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+    const auto own = std::ranges::find_if(out, [&](const std::vector<std::size_t>& group) {
+      return together(*linear.observations[group.front()], *linear.observations[i]);
+    });
+    if (own != out.end())
+      own->push_back(i);
+    else
+      out.push_back({i});
+  }
+  return out;
+}
 
 /// Fitted profiles that repeat one another, two or more in each group, by index, rising.
 std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,

@@ -22,25 +22,40 @@ struct Reading {
   double side;  // 1 or -1
 };
 
+/// What is compared of all profiles, at its stations from the axis.
+struct Textures {
+  std::vector<std::vector<double>> stations;
+  std::vector<Eigen::VectorXd> values;  // none: it says nothing
+
+  Textures(const Linearisation& linear, const Fine& fine) {
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+      stations.push_back(stations_from_axis(*linear.observations[i]));
+      values.push_back(fine[i] ? bounded(fine[i]->residual) : Eigen::VectorXd());
+    }
+  }
+
+ private:
+  /// Within three standard deviations of most values: a step or an edge at one radius is no
+  /// texture.
+  static Eigen::VectorXd bounded(const Eigen::VectorXd& all) {
+    const double most = 3.0 * deviation_of_most({all.data(), static_cast<std::size_t>(all.size())});
+    return all.cwiseMax(-most).cwiseMin(most);
+  }
+};
+
 /// What pairs of readings have in common, summed over values at one radius.
 class Common {
  public:
-  Common(const Linearisation& linear, const Fine& fine, const std::vector<Noise>& noise)
-      : fine_(fine), noise_(noise) {
-    for (std::size_t i = 0; i < fine.size(); ++i) {
-      stations_.push_back(stations_from_axis(*linear.observations[i]));
-      bounded_.push_back(fine[i] ? bounded(fine[i]->residual) : Eigen::VectorXd());
-    }
-  }
+  Common(const Textures& textures, const std::vector<Noise>& noise)
+      : textures_(textures), noise_(noise) {}
 
   /// A value has in common with one at another station what their blocks overlap by: with the two
   /// nearest ones together as much as with one at its own station.
   /// @return whether half of the values of `a` have others
   bool add(std::size_t a, const Reading& b) {
-    if (!fine_[a] || !fine_[b.profile]) return false;
-    const std::vector<double>&of_a = stations_[a], &of_b = stations_[b.profile];
-    const Eigen::VectorXd &own = bounded_[a], &other = bounded_[b.profile];
-    if (of_b.size() < 2 || (b.side < 0.0 && -of_a.back() > of_b.back()) ||
+    const std::vector<double>&of_a = textures_.stations[a], &of_b = textures_.stations[b.profile];
+    const Eigen::VectorXd &own = textures_.values[a], &other = textures_.values[b.profile];
+    if (own.size() == 0 || other.size() < 2 || (b.side < 0.0 && -of_a.back() > of_b.back()) ||
         (b.side < 0.0 && -of_a.front() < of_b.front()))
       return false;  // nothing at these radii
     const double step = (of_b.back() - of_b.front()) / static_cast<double>(of_b.size() - 1);
@@ -78,20 +93,8 @@ class Common {
  private:
   static constexpr double kOneStep = 1.0 - 1e-6;
 
-  /// Within three standard deviations of most values: a step or an edge at one radius is no
-  /// texture.
-  static Eigen::VectorXd bounded(const Eigen::VectorXd& values) {
-    constexpr double kNormal = 0.6744897501960817;  // median of the size of a standard normal value
-    Eigen::VectorXd sizes = values.cwiseAbs();
-    const double most =
-        3.0 / kNormal * median({sizes.data(), static_cast<std::size_t>(sizes.size())});
-    return values.cwiseMax(-most).cwiseMin(most);
-  }
-
-  const Fine& fine_;
+  const Textures& textures_;
   const std::vector<Noise>& noise_;
-  std::vector<std::vector<double>> stations_;
-  std::vector<Eigen::VectorXd> bounded_;
   double products_ = 0.0, squares_ = 0.0, white_ = 0.0, effective_ = 0.0;
 };
 
@@ -99,38 +102,18 @@ bool is_face(const Linearisation& linear, std::size_t i) {
   return linear.observations[i]->profile->setup.kind == Kind::face;
 }
 
-/// Profiles that read one face, by index, rising.
-std::vector<std::vector<std::size_t>> faces_of(const Linearisation& linear, const Gates& gates) {
-  std::vector<std::vector<std::size_t>> out;
-  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
-    if (!is_face(linear, i)) continue;
-    const auto own = std::ranges::find_if(out, [&](const std::vector<std::size_t>& face) {
-      return are_of_one_surface(*linear.observations[face.front()], *linear.observations[i], gates);
-    });
-    if (own != out.end())
-      own->push_back(i);
-    else
-      out.push_back({i});
+/// Whether the noise and what suspects may make, in each profile by itself, leave structure.
+bool leaves_structure(Linearisation linear, const std::vector<Noise>& noise,
+                      const std::vector<Eigen::MatrixXd>& suspect, const Gates& gates) {
+  std::vector<Observation> with_suspects;
+  with_suspects.reserve(suspect.size());
+  for (std::size_t i = 0; i < suspect.size(); ++i) {
+    Observation& own = with_suspects.emplace_back(*linear.observations[i]);
+    append_columns(own.nuisances, suspect[i]);
+    own.nuisances = orthonormal(std::move(own.nuisances));
+    linear.observations[i] = &own;
   }
-  return out;
-}
-
-/// With the columns of suspects beside those of the model, of each profile by itself.
-Linearisation beside(const Linearisation& linear, const std::vector<Eigen::MatrixXd>& suspect) {
-  Linearisation out = linear;
-  Eigen::Index more = 0;
-  for (const Eigen::MatrixXd& own : suspect) more += own.cols();
-  if (more == 0) return out;
-  for (Eigen::Index i = 0, first = 0; i < std::ssize(suspect); ++i) {
-    Eigen::MatrixXd& columns = out.columns[static_cast<std::size_t>(i)];
-    const Eigen::MatrixXd& own = suspect[static_cast<std::size_t>(i)];
-    append_columns(columns, Eigen::MatrixXd::Zero(columns.rows(), more));
-    columns.middleCols(linear.columns[static_cast<std::size_t>(i)].cols() + first, own.cols()) =
-        own;
-    first += own.cols();
-  }
-  append_columns(out.prior_rows, Eigen::MatrixXd::Zero(out.prior_rows.rows(), more));
-  return out;
+  return lack_of_fit(linear, noise, gates).significant(gates);
 }
 
 /// What turns leave differs from turn to turn; what is slow may be an effect that the model lacks.
@@ -149,10 +132,15 @@ void weigh(const Noise::Weight& weight, Noise& noise) {
 void weigh_shared_texture(const Linearisation& linear, const Fine& fine,
                           const std::vector<Eigen::MatrixXd>& suspect, const Gates& gates,
                           std::vector<Noise>& noise) {
+  const auto faces = grouped(linear, [&](const Observation& a, const Observation& b) {
+    return are_of_one_surface(a, b, gates);
+  });
+  const Textures textures(linear, fine);
   std::vector<Noise> with_places = noise;
   bool any = false;
-  for (const std::vector<std::size_t>& face : faces_of(linear, gates)) {
-    Common repeats(linear, fine, noise), places(linear, fine, noise);
+  for (const std::vector<std::size_t>& face : faces) {
+    if (!is_face(linear, face.front())) continue;
+    Common repeats(textures, noise), places(textures, noise);
     std::vector<double> of_repeats(face.size(), 0.0), of_places(face.size(), 0.0);
     for (std::size_t a = 0; a < face.size(); ++a)
       for (const std::size_t b : face)
@@ -174,22 +162,21 @@ void weigh_shared_texture(const Linearisation& linear, const Fine& fine,
       weigh(own, noise[face[a]]);
     }
   }
-  if (any && !lack_of_fit(beside(linear, suspect), with_places, gates).significant(gates))
-    noise = std::move(with_places);
+  if (any && !leaves_structure(linear, with_places, suspect, gates)) noise = std::move(with_places);
 }
 
 void weigh_halves(const Linearisation& alone, const std::optional<LinearProfile>& fine,
                   const Gates& gates, Noise& noise) {
   if (!is_face(alone, 0) || noise.declared || !may_be_of_turns(noise, fine)) return;
-  const Fine own{fine};
+  const Textures textures(alone, {fine});
   const std::vector<Noise> of_it{noise};
-  Common halves(alone, own, of_it);
+  Common halves(textures, of_it);
   if (!halves.add(0, {0, -1.0})) return;
   const Noise::Weight shares = halves.shares();
   if (shares.memory == 0.0 && shares.white == 0.0) return;
   Noise weighed = noise;
   weigh({1.0 + shares.memory, 1.0 + shares.white}, weighed);
-  if (!lack_of_fit(alone, {weighed}, gates).significant(gates)) noise = std::move(weighed);
+  if (!leaves_structure(alone, {weighed}, {}, gates)) noise = std::move(weighed);
 }
 
 }  // namespace slideway

@@ -178,10 +178,6 @@ void add_squareness(const Analysis& analysis, Compensation& out) {
            : " minus " + significant(slope, 6) + ", the slope of EZX's reference line"));
 }
 
-}  // namespace
-
-namespace {
-
 /// What the numbers of a table hold besides.
 void add_doubts(const Analysis& analysis, Compensation& out) {
   const ModelResult& model = *analysis.result.final;

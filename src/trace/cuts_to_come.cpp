@@ -15,7 +15,7 @@ constexpr double kSpeeds[] = {2.0 / 3.0, 1.5};  // of the spindle speed there is
 constexpr double kAzimuths[] = {40.0, 80.0};    // degrees; no two lobes of 2, 3, 4 alike
 constexpr double kLevels[] = {0.5, 1.0};        // of the radius, beyond the levels there are
 constexpr double kOtherOverhang = 50.0;         // mm
-constexpr double kLongest = 60.0;               // min, where no cut there is took as long
+constexpr double kLongestCut = 60.0;            // min, where no cut there is took as long
 
 void complete(Profile& profile) {
   Setup& setup = profile.setup;
@@ -244,7 +244,7 @@ std::vector<CutToCome> cuts_to_come(const Problem& problem, const std::vector<Pr
     add_traces(*like, range);
     add_levels(*like, highest, problem.lever, range);
   }
-  double longest = kLongest;
+  double longest = kLongestCut;
   for (const Profile& each : profiles)
     if (is_fitted(each) && each.setup.feed_mm_per_min)
       longest = std::max(longest, machining_min(each));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
+#include <type_traits>
 
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
@@ -40,33 +41,29 @@ GramRoot root_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& squares) {
   return out;
 }
 
-/// Products of columns with the rows of a residual they stand in.
-Eigen::MatrixXd products_of(std::span<const RowRange> rows, const Eigen::MatrixXd& columns,
-                            const Eigen::VectorXd& /*squares*/, const Eigen::VectorXd& residual) {
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(columns.cols(), 1);
+/// Products of columns with the rows of residuals that they stand in.
+template <typename Columns, typename Residuals>
+Columns products_of(std::span<const RowRange> rows, const Columns& columns,
+                    const Residuals& residuals) {
+  Columns out = Columns::Zero(columns.cols(), residuals.cols());
   Eigen::Index from = 0;
   for (const RowRange& run : rows) {
-    out += columns.middleRows(from, run.count).transpose() * residual.segment(run.first, run.count);
+    out += columns.middleRows(from, run.count).transpose() *
+           residuals.middleRows(run.first, run.count);
     from += run.count;
   }
   return out;
 }
 
 /// The same in single precision, of columns made one long: a power of x may exceed its range.
-Eigen::MatrixXd products_of(std::span<const RowRange> rows, const Eigen::MatrixXd& columns,
-                            const Eigen::VectorXd& squares, const Eigen::MatrixXf& residuals) {
+Eigen::MatrixXd products_in_single(std::span<const RowRange> rows, const Eigen::MatrixXd& columns,
+                                   const Eigen::VectorXd& squares,
+                                   const Eigen::MatrixXf& residuals) {
   const Eigen::VectorXd sizes = squares.cwiseSqrt();
   const Eigen::MatrixXf unit =
       (columns * sizes.unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; }).asDiagonal())
           .cast<float>();
-  Eigen::MatrixXf sums = Eigen::MatrixXf::Zero(columns.cols(), residuals.cols());
-  Eigen::Index from = 0;
-  for (const RowRange& run : rows) {
-    sums +=
-        unit.middleRows(from, run.count).transpose() * residuals.middleRows(run.first, run.count);
-    from += run.count;
-  }
-  return sizes.asDiagonal() * sums.cast<double>();
+  return sizes.asDiagonal() * products_of(rows, unit, residuals).cast<double>();
 }
 
 /// Calls use(atom, root, products of its columns with every residual) for the atoms of one block.
@@ -79,7 +76,11 @@ void for_block(const Whitened& data, const Candidate& candidate, Eigen::Index fi
   data.whiten(candidate.rows, columns);
   const Eigen::MatrixXd inside = data.inside(candidate.rows, columns);
   const Eigen::VectorXd squares = columns.colwise().squaredNorm().transpose();
-  const Eigen::MatrixXd products = products_of(candidate.rows, columns, squares, residuals);
+  Eigen::MatrixXd products;
+  if constexpr (std::is_same_v<Residuals, Eigen::MatrixXf>)
+    products = products_in_single(candidate.rows, columns, squares, residuals);
+  else
+    products = products_of(candidate.rows, columns, residuals);
   for (Eigen::Index i = 0; i < count; ++i) {
     const auto own = columns.middleCols(i * a, a);
     const auto spanned = inside.middleCols(i * a, a);

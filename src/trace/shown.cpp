@@ -25,32 +25,6 @@ ModelTerm term_of(const Model& model, const std::string& name, const EffectOptio
           {}};
 }
 
-/// What each of some parameters does to the low band of a profile, one column each: its value, and
-/// behind those its standard uncertainty.
-Eigen::MatrixXd images(const Model& model, const ModelTerm& term, const std::vector<Prior>& values,
-                       const Observation& observation) {
-  const Eigen::MatrixXd columns = low_band_columns(model, term, observation, {});
-  Eigen::VectorXd of_values(std::ssize(values)), of_uncertainties(std::ssize(values));
-  for (std::size_t p = 0; p < values.size(); ++p) {
-    const auto k = static_cast<Eigen::Index>(p);
-    of_values[k] = values[p].value;
-    of_uncertainties[k] = values[p].standard_uncertainty;
-  }
-  Eigen::MatrixXd out(columns.rows(), 2 * columns.cols());
-  out << columns * term.effect->from_parameters(of_values).asDiagonal(),
-      columns * term.effect->from_parameters(of_uncertainties).asDiagonal();
-  return out;
-}
-
-/// Of normal values, by the median of their sizes: the few at the axis and the rim, where grooves
-/// have another form, may be far larger.
-double variance_of_most(const Eigen::VectorXd& values) {
-  constexpr double kNormal = 0.6744897501960817;  // median of the size of a standard normal value
-  Eigen::VectorXd sizes = values.cwiseAbs();
-  const double middle = median({sizes.data(), static_cast<std::size_t>(sizes.size())});
-  return middle * middle / (kNormal * kNormal);
-}
-
 /// What the low band of a profile shows beside the model.
 struct Beside {
   // Of the values of parameters, and behind those of their uncertainties. What the form of one
@@ -89,7 +63,9 @@ struct Beside {
     columns_of_whole = static_cast<double>(whole.cols());
     degrees = static_cast<double>(n - observation.left_out() - form.cols() - slow.cols() -
                                   std::ssize(observation.nuisance_names));
-    noise = std::min({after / degrees, noise_of_fit * noise_of_fit, variance_of_most(rest)});
+    // The few at the axis and the rim, where grooves have another form, may be far larger.
+    const double of_most = deviation_of_most({rest.data(), static_cast<std::size_t>(rest.size())});
+    noise = std::min({after / degrees, noise_of_fit * noise_of_fit, of_most * of_most});
   }
 
   /// Of the images together, to be expected.
@@ -192,7 +168,7 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
     options = seen->options;
     options.profiles = whole.profiles;
     return Beside(model, declared.fit.estimate, observation,
-                  images(model, term_of(model, name, options), seen->values, observation),
+                  low_band_images(model, term_of(model, name, options), seen->values, observation),
                   low_band_columns(model, term_of(model, name, whole), observation, {}),
                   noise.standard_deviation());
   };

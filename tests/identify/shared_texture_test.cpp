@@ -78,8 +78,7 @@ TEST(SharedTexture, MakesARadiusWeighLessBesideThoseAtOtherAzimuths) {
   EXPECT_EQ(weight_of(radii), 1.0);
 }
 
-// U for 95.45 %: 16 or fewer of 20 in 0.5 % of correct programs, and in a third of those that take
-// the halves for two (U short of a factor of 0.73).
+// U that takes the halves for two is short by a factor of 0.73.
 TEST(SharedTexture, IsInTheUncertainty) {
   int held = 0;
   for (unsigned seed = 0; seed < 40; ++seed) {
@@ -92,7 +91,7 @@ TEST(SharedTexture, IsInTheUncertainty) {
   EXPECT_GE(held, 35);  // of 40 at 95.45 %: fewer in 1 %; at 85 %, fewer in 65 %
 }
 
-// The marks of a tool that held-out cut alone has are no disagreement: a scallop of every turn,
+// The marks of a tool that a held-out cut alone has are no disagreement: a scallop of every turn,
 // whose samples show it, folded by the low band.
 TEST(HeldOutCheck, LeavesACutItsOwnFeedMarks) {
   const auto cut = [](const std::string& name, double feed, double nose_mm, std::uint64_t seed) {
@@ -116,7 +115,7 @@ TEST(HeldOutCheck, LeavesACutItsOwnFeedMarks) {
     const Result result = identify(problem, profiles);
     ASSERT_EQ(result.crosscheck.held_out.size(), 1U);
     EXPECT_EQ(result.crosscheck.held_out[0].verdict, HeldOutVerdict::fits) << seed;
-    for (double& value : profiles[1].values) value = -value;  // another cone, the same marks
+    for (double& value : profiles[1].values) value = -value;  // the cone turned over
     EXPECT_EQ(identify(problem, profiles).crosscheck.held_out[0].verdict,
               HeldOutVerdict::does_not_fit)
         << seed;

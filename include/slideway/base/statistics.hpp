@@ -18,4 +18,8 @@ Statistics statistics_of(std::span<const double> values);
 /// one.
 double median(std::span<double> values);
 
+/// Standard deviation of normal values of mean 0, by the median of their sizes: a few may be far
+/// larger. REQUIRES at least one.
+double deviation_of_most(std::span<const double> values);
+
 }  // namespace slideway

@@ -16,4 +16,8 @@ double cycles_along(const Setup& setup, const Effect& effect, const LineBand& li
 bool is_too_fine(const Model& model, const ModelTerm& term, std::span<const double> shape,
                  const Observation& observation);
 
+/// The same in any of several profiles that an effect acts on.
+bool is_too_fine(const Model& model, const ModelTerm& term, std::span<const double> shape,
+                 std::span<const Observation* const> observations);
+
 }  // namespace slideway

@@ -119,6 +119,11 @@ double low_band_scale(const Observation& observation);
 Eigen::MatrixXd low_band_columns(const Model& model, const ModelTerm& term,
                                  const Observation& observation, std::span<const double> shape);
 
+/// What each of the parameters of an effect without shapes does to that low band, one column each:
+/// its value, and behind those its standard uncertainty.
+Eigen::MatrixXd low_band_images(const Model& model, const ModelTerm& term,
+                                const std::vector<Prior>& values, const Observation& observation);
+
 /// The same of several shapes, side by side.
 Eigen::MatrixXd low_band_columns_of_shapes(const Model& model, const ModelTerm& term,
                                            const Observation& observation,
