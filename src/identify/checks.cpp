@@ -11,7 +11,7 @@
 #include "slideway/base/text.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/profile_bases.hpp"
-#include "slideway/identify/straightness.hpp"
+#include "slideway/identify/reference_line.hpp"
 
 namespace slideway {
 namespace {

@@ -1,101 +1,21 @@
 #include "slideway/identify/straightness.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "form_columns.hpp"
 #include "reported.hpp"
 #include "residual.hpp"
+#include "slideway/identify/reference_line.hpp"
 
 namespace slideway {
 namespace {
 
 constexpr Eigen::Index kPoints = 201;
+constexpr std::size_t kMostExtremes = 6;
 constexpr std::size_t kMostStations = 50;
 constexpr double kRounding = 1e-9;  // relative
-
-/// What each point stands for of the length, in square roots: of a form that is known between its
-/// points, too, half of that at the ends (trapezoidal rule).
-Eigen::VectorXd root_lengths(const Eigen::VectorXd& x) {
-  const Eigen::Index last = x.size() - 1;
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(x.size());
-  for (Eigen::Index i = 0; i < last; ++i) {
-    out[i] += 0.5 * (x[i + 1] - x[i]);
-    out[i + 1] += 0.5 * (x[i + 1] - x[i]);
-  }
-  return out.cwiseSqrt();
-}
-
-/// Deviation of each point from the least-squares line: deviations = matrix * heights.
-Eigen::MatrixXd least_squares_deviations(const Eigen::VectorXd& x) {
-  const Eigen::VectorXd root = root_lengths(x);
-  Eigen::MatrixXd line(x.size(), 2);
-  line.col(0) = root;
-  line.col(1) = root.array() * (x.array() - x.mean());
-  const Eigen::MatrixXd q =
-      line.householderQr().householderQ() * Eigen::MatrixXd::Identity(x.size(), 2);
-  return Eigen::MatrixXd::Identity(x.size(), x.size()) -
-         root.cwiseInverse().asDiagonal() * q * q.transpose() * root.asDiagonal();
-}
-
-void evaluate(const Eigen::VectorXd& x, const Eigen::VectorXd& z, ReferenceLine& line) {
-  const Eigen::VectorXd deviation = z.array() - line.at_zero - line.slope * x.array();
-  Eigen::Index high = 0, low = 0;
-  line.highest = deviation.maxCoeff(&high);
-  line.lowest = deviation.minCoeff(&low);
-  line.highest_at = static_cast<std::size_t>(high);
-  line.lowest_at = static_cast<std::size_t>(low);
-  line.error = line.highest - line.lowest;
-}
-
-ReferenceLine through(ReferenceLineKind kind, const Eigen::VectorXd& x, const Eigen::VectorXd& z,
-                      Eigen::Index a, Eigen::Index b) {
-  ReferenceLine line{kind};
-  line.slope = (z[b] - z[a]) / (x[b] - x[a]);
-  line.at_zero = z[a] - line.slope * x[a];
-  evaluate(x, z, line);
-  line.sensitivity = Eigen::RowVectorXd::Zero(x.size());
-  const auto high = static_cast<Eigen::Index>(line.highest_at),
-             low = static_cast<Eigen::Index>(line.lowest_at);
-  line.sensitivity[high] += 1.0;
-  line.sensitivity[low] -= 1.0;
-  const double tilt = (x[high] - x[low]) / (x[b] - x[a]);
-  line.sensitivity[b] -= tilt;
-  line.sensitivity[a] += tilt;
-  return line;
-}
-
-/// Indices of the upper (sign 1) or lower (-1) convex hull.
-std::vector<Eigen::Index> hull(const Eigen::VectorXd& x, const Eigen::VectorXd& z, double sign) {
-  std::vector<Eigen::Index> out;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    while (out.size() > 1) {
-      const Eigen::Index a = out[out.size() - 2], b = out.back();
-      const double turn = (x[b] - x[a]) * (z[i] - z[a]) - (z[b] - z[a]) * (x[i] - x[a]);
-      if (sign * turn < 0.0) break;
-      out.pop_back();
-    }
-    out.push_back(i);
-  }
-  return out;
-}
-
-/// The narrowest strip touches an edge of the convex hull.
-ReferenceLine minimum_zone(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
-  std::optional<ReferenceLine> best;
-  for (const double sign : {1.0, -1.0}) {
-    const std::vector<Eigen::Index> corners = hull(x, z, sign);
-    for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
-      ReferenceLine line =
-          through(ReferenceLineKind::minimum_zone, x, z, corners[i], corners[i + 1]);
-      if (!best || line.error < best->error) best = std::move(line);
-    }
-  }
-  best->at_zero += 0.5 * (best->highest + best->lowest);  // the line in the middle of the strip
-  evaluate(x, z, *best);
-  return *best;
-}
 
 /// Where the straightness is evaluated: what one reading would see of it, and of it alone.
 class Locus {
@@ -263,30 +183,6 @@ void add_error(const ReferenceLine& line, const Eigen::VectorXd& x, const Spread
   out.errors.push_back(std::move(error));
 }
 
-}  // namespace
-
-ReferenceLine least_squares_line(const Eigen::VectorXd& x, const Eigen::VectorXd& z) {
-  ReferenceLine line{ReferenceLineKind::least_squares};
-  const Eigen::VectorXd lengths = root_lengths(x).cwiseAbs2();
-  const double whole = lengths.sum(), middle = lengths.dot(x) / whole;
-  const Eigen::VectorXd centred = x.array() - middle;
-  line.slope = lengths.cwiseProduct(centred).dot(z) / lengths.dot(centred.cwiseAbs2());
-  line.at_zero = lengths.dot(z) / whole - line.slope * middle;
-  evaluate(x, z, line);
-  const Eigen::MatrixXd deviations = least_squares_deviations(x);
-  line.sensitivity = deviations.row(static_cast<Eigen::Index>(line.highest_at)) -
-                     deviations.row(static_cast<Eigen::Index>(line.lowest_at));
-  return line;
-}
-
-std::vector<ReferenceLine> reference_lines(const Eigen::VectorXd& positions,
-                                           const Eigen::VectorXd& heights) {
-  return {through(ReferenceLineKind::end_point, positions, heights, 0, positions.size() - 1),
-          least_squares_line(positions, heights), minimum_zone(positions, heights)};
-}
-
-namespace {
-
 /// The error is no smaller than the size of any deviation, so with its U it reaches as far as each
 /// of them with its own, mm. Where the form is small against its U, the points that happen to be
 /// the highest and the lowest say little of that.
@@ -298,6 +194,32 @@ double least_uncertainty(const StraightnessCurve& curve) {
     reach = std::max(reach, std::abs(curve.deviation_um[i]) + curve.expanded_uncertainty_um[i]);
   }
   return std::max(0.0, reach - (highest - lowest)) * kMicrometre;
+}
+
+/// Points that lie further out than those beside them, the furthest ones first.
+std::vector<Eigen::Index> extremes(const Eigen::VectorXd& deviation) {
+  std::vector<Eigen::Index> out;
+  for (Eigen::Index i = 0; i < deviation.size(); ++i)
+    if ((i == 0 || deviation[i] >= deviation[i - 1]) &&
+        (i + 1 == deviation.size() || deviation[i] >= deviation[i + 1]))
+      out.push_back(i);
+  std::ranges::stable_sort(out, std::greater(), [&](Eigen::Index i) { return deviation[i]; });
+  out.resize(std::min(out.size(), kMostExtremes));
+  return out;
+}
+
+/// The error is no smaller than any point lies above any other: it reaches as far as each pair with
+/// its own U, mm. Of pairs that are nearly as far apart, noise chooses the one it rests on.
+template <typename SpreadBetween>
+double reach_of_pairs(const Eigen::VectorXd& deviation, const SpreadBetween& spread_between) {
+  double out = 0.0;
+  for (const Eigen::Index high : extremes(deviation))
+    for (const Eigen::Index low : extremes(-deviation)) {
+      const Spread spread = spread_between(high, low);
+      const double U = coverage_factor(spread.degrees_of_freedom) * spread.standard_uncertainty;
+      out = std::max(out, deviation[high] - deviation[low] + U);
+    }
+  return out;
 }
 
 std::optional<Straightness> straightness_of(const Model& model, const ModelTerm& term,
@@ -312,7 +234,8 @@ std::optional<Straightness> straightness_of(const Model& model, const ModelTerm&
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, travel.least, travel.greatest);
   const Reported reported(fit, more);
   const Locus slide(model, term, fit, reported, on_slide());
-  const Eigen::MatrixXd columns = slide.columns(x), forms = least_squares_deviations(x) * columns;
+  const Eigen::MatrixXd columns = slide.columns(x),
+                        forms = least_squares_line(x, x).deviations(x, columns);
   if (forms.norm() <= kRounding * columns.norm()) {
     out.reason = "a straightness of degree 1 is a line, which deviates from no line";
     return out;
@@ -333,9 +256,16 @@ std::optional<Straightness> straightness_of(const Model& model, const ModelTerm&
   const Eigen::MatrixXd left = slide.left_of_curve(x);
   const double least_U = least_uncertainty(out.curve);
   for (const ReferenceLine& line : reference_lines(x, form)) {
-    Spread spread = slide.spread(line.sensitivity * columns, line.sensitivity * left);
+    const Eigen::VectorXd deviation = line.deviations(x, form);
+    const Eigen::MatrixXd rows = line.deviations(x, columns), rest = line.deviations(x, left);
+    const auto spread_between = [&](Eigen::Index high, Eigen::Index low) {
+      return slide.spread(rows.row(high) - rows.row(low), rest.row(high) - rest.row(low));
+    };
+    Spread spread = spread_between(static_cast<Eigen::Index>(line.highest_at),
+                                   static_cast<Eigen::Index>(line.lowest_at));
+    const double U = std::max(least_U, reach_of_pairs(deviation, spread_between) - line.error);
     spread.standard_uncertainty =
-        std::max(spread.standard_uncertainty, least_U / coverage_factor(spread.degrees_of_freedom));
+        std::max(spread.standard_uncertainty, U / coverage_factor(spread.degrees_of_freedom));
     add_error(line, x, spread, out);
   }
   return out;

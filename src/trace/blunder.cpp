@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "prediction.hpp"
 #include "rescaled.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
@@ -83,69 +84,6 @@ std::vector<Hypothesis> hypotheses(const Profile& profile, const std::vector<dou
   }
   return out;
 }
-
-/// A profile as predicted by the others: white values and columns, compressed.
-class Prediction {
- public:
-  /// @param amplitudes  (amplitudes, shapes): a model linear in them makes the predicted values
-  Prediction(const ProfileTriangle& triangle, const SubsetEstimate& others,
-             const Eigen::VectorXd& amplitudes, double values) {
-    if (others.basis.cols() == 0) return;  // they predict nothing
-    const auto rows = triangle.free();
-    const Eigen::Index k = rows.cols() - 1;
-    Eigen::MatrixXd known(rows.rows(), others.basis.cols() + 2);
-    known << rows.leftCols(k) * others.basis, rows.leftCols(k) * amplitudes, rows.col(k);
-    const Eigen::MatrixXd open = orthonormal(rows.leftCols(k) * others.null_space);
-    project_out(open, known);
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(known.leftCols(others.basis.cols()),
-                                                Eigen::ComputeThinU);
-    inside_ = svd.matrixU();
-    spread_ = svd.singularValues().cwiseAbs2();
-    predicted_ = known.col(known.cols() - 2);
-    values_ = known.col(known.cols() - 1);
-    count_ = values - static_cast<double>(triangle.levelling() + open.cols());
-  }
-
-  [[nodiscard]] Eigen::Index directions() const { return spread_.size(); }
-
-  /// Square of the disagreement in the directions that are predicted.
-  [[nodiscard]] double disagreement(double factor) const {
-    const Eigen::VectorXd inside = inside_.transpose() * error(factor);
-    return (inside.array().square() / (1.0 + spread_.array())).sum();
-  }
-
-  /// -2 ln of the likelihood, the noise's size at its best, and that size.
-  struct Best {
-    double cost = HUGE_VAL, size = 1.0;
-  };
-  [[nodiscard]] Best best(double factor, double sister_factor) const {
-    constexpr int kSizesTried = 800;
-    constexpr double kFarthest = 20.0;  // |ln s|: 1e5 of a noise a thousand times too small
-    const Eigen::VectorXd e = error(factor);
-    const Eigen::ArrayXd inside = (inside_.transpose() * e).array().square();
-    const double outside = e.squaredNorm() - inside.sum();
-    const double of_unit = 2.0 * count_ * std::log(std::abs(factor));
-    Best out;
-    for (int step = -kSizesTried; step <= kSizesTried; ++step) {
-      const double log_size = kFarthest * step / kSizesTried, size = std::exp(log_size);
-      const Eigen::ArrayXd variance = size * size + spread_.array();
-      const double unlike = log_size / std::log(sister_factor);
-      const double at = (count_ - static_cast<double>(spread_.size())) * 2.0 * log_size +
-                        variance.log().sum() + outside / (size * size) + (inside / variance).sum() -
-                        of_unit + unlike * unlike;
-      if (at < out.cost) out = {at, size};
-    }
-    return out;
-  }
-
- private:
-  [[nodiscard]] Eigen::VectorXd error(double factor) const { return factor * values_ - predicted_; }
-
-  Eigen::MatrixXd inside_;  // orthonormal: what the others predict
-  Eigen::VectorXd spread_;  // variance of that prediction
-  Eigen::VectorXd predicted_, values_;
-  double count_ = 0.0;
-};
 
 class Finder {
  public:
@@ -282,25 +220,53 @@ class Finder {
     return out;
   }
 
-  [[nodiscard]] Prediction prediction(const Observation& observation, const SubsetEstimate& others,
-                                      const Noise& noise) const {
-    Eigen::VectorXd amplitudes = others.change;
-    amplitudes.head(model_.amplitudes()) += fit_.estimate.amplitudes;
-    return {{observation, noise, linear_columns(model_, fit_.estimate, observation),
-             observation.values},
-            others,
-            amplitudes,
-            static_cast<double>(observation.values.size() - observation.left_out())};
+  [[nodiscard]] ProfileTriangle triangle_of(const Observation& observation,
+                                            const Noise& noise) const {
+    return {observation, noise, linear_columns(model_, fit_.estimate, observation),
+            observation.values};
   }
 
-  /// The priors but those of effects of one profile: what its own samples say of them is wrong with
-  /// its values.
+  [[nodiscard]] Expected expected_by(const SubsetEstimate& others) const {
+    Expected out{others.change, others.basis, others.null_space};
+    out.mean.head(model_.amplitudes()) += fit_.estimate.amplitudes;
+    return out;
+  }
+
+  /// The same, where a profile is meant in a unit `factor` times as large: so is what its samples
+  /// say of the effects that it alone has.
+  [[nodiscard]] Expected in_unit(Expected expected, const std::string& profile,
+                                 double factor) const {
+    for (const ModelTerm& term : model_.terms) {
+      const auto count = std::ssize(term.priors);
+      if (!is_of_one(term, profile) || count == 0 || count != term.effect->amplitudes()) continue;
+      Eigen::VectorXd values(count), uncertainties(count);
+      for (Eigen::Index k = 0; k < count; ++k) {
+        const Prior& prior = term.priors[static_cast<std::size_t>(k)];
+        const Eigen::Index p = parameter_index(term, prior.parameter);
+        values[p] = prior.value;
+        uncertainties[p] = prior.standard_uncertainty;
+      }
+      const auto own = [&](auto& all) { return all.middleRows(term.first_amplitude, count); };
+      own(expected.mean) = factor * term.effect->from_parameters(values);
+      own(expected.open).setZero();
+      append_columns(expected.basis, Eigen::MatrixXd::Zero(expected.basis.rows(), count));
+      own(expected.basis).rightCols(count) =
+          (factor * term.effect->from_parameters(uncertainties)).asDiagonal();
+    }
+    return expected;
+  }
+
+  static bool is_of_one(const ModelTerm& term, const std::string& profile) {
+    return term.profiles == std::vector<std::string>{profile};
+  }
+
+  /// The priors but those of effects of one profile.
   [[nodiscard]] Linearisation priors_beside(const std::string& profile) const {
     std::vector<Eigen::Index> kept;
     Eigen::Index row = 0;
     for (const ModelTerm& term : model_.terms)
       for (std::size_t k = 0; k < term.priors.size(); ++k, ++row)
-        if (term.profiles != std::vector<std::string>{profile}) kept.push_back(row);
+        if (!is_of_one(term, profile)) kept.push_back(row);
     for (; row < fit_.linear.prior_rows.rows(); ++row) kept.push_back(row);
     Linearisation out;
     out.prior_rows = fit_.linear.prior_rows(kept, Eigen::all);
@@ -322,26 +288,34 @@ class Finder {
       if (j != i) all_but_it.push_back(j);
     const Profile& profile = *fit_.linear.observations[i]->profile;
     if (is_a_surface_alone(profile)) return;
-    const SubsetEstimate others(priors_beside(profile.name), compressed_, all_but_it,
-                                gates.rank_tolerance);
+    const Expected expected =
+        expected_by({priors_beside(profile.name), compressed_, all_but_it, gates.rank_tolerance});
+    if (expected.basis.cols() == 0) return;
     Observation observation = recorded(i, list);
-    const Prediction as_it_is = prediction(observation, others, noise);
-    if (as_it_is.directions() == 0) return;
-    const auto [before, size_before] = as_it_is.best(1.0, kAnyFactor);
-    const double square = as_it_is.disagreement(1.0);
+    const ProfileTriangle triangle = triangle_of(observation, noise);
+    const auto count = static_cast<double>(observation.values.size() - observation.left_out());
+    const auto in = [&](double unit) {
+      return Prediction(triangle, in_unit(expected, profile.name, unit), count);
+    };
+    const AsItIs in_another_unit(in(1.0)), in_another_setup({triangle, expected, count});
     const double own = in_long_run_[i] / in_long_run_[of_sister.value_or(i)];
     for (const Hypothesis& each : list) {
-      if (each.profile) observation.profile = &*each.profile;
-      const Prediction& meant = each.profile ? prediction(observation, others, noise) : as_it_is;
+      observation.profile = each.profile ? &*each.profile : &profile;
+      const AsItIs& as_it_is = each.profile ? in_another_setup : in_another_unit;
+      const Prediction meant = each.profile
+                                   ? Prediction(triangle_of(observation, noise), expected, count)
+                                   : in(each.factor);
+      const auto [before, size_before] = as_it_is.best;
       const auto [after, size] = meant.best(each.factor, factor);
-      if (after > before - gates.blunder_bic) continue;
+      if (as_it_is.prediction.directions() == 0 || after > before - gates.blunder_bic) continue;
       const bool is_like_sisters =
           std::abs(std::log(size)) <=
               std::max(2.0 * std::log(factor), 0.5 * std::log(size_before)) ||
           std::abs(std::log(std::abs(each.factor) * own)) <= 2.0 * std::log(factor);
       const bool was_like_sisters = std::abs(std::log(own)) <= 2.0 * std::log(factor);
       if (std::abs(each.factor) != 1.0 && (was_like_sisters || !is_like_sisters)) continue;
-      tell({profile.name, each.kind, after - before, meant.disagreement(each.factor) / square},
+      tell({profile.name, each.kind, after - before,
+            meant.disagreement(each.factor) / as_it_is.prediction.disagreement(1.0)},
            each);
     }
   }
@@ -357,6 +331,13 @@ class Finder {
   }
 
   static constexpr double kAnyFactor = 1e3;  // between noises of unlike profiles
+
+  struct AsItIs {
+    Prediction prediction;
+    Prediction::Best best;
+    explicit AsItIs(Prediction of)
+        : prediction(std::move(of)), best(prediction.best(1.0, kAnyFactor)) {}
+  };
 
   const Model& model_;
   const Solution& fit_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <span>
 
 #include "dictionary.hpp"
@@ -23,6 +24,16 @@ ModelTerm term_of(const Model& model, const std::string& name, const EffectOptio
   return {term_name(name, options.profiles),
           make_effect(name, options, model.machine, model.range),
           {}};
+}
+
+/// The span of the largest of some columns, at most so many.
+Eigen::MatrixXd largest(const Eigen::MatrixXd& columns, double most) {
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(columns.cols()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::ranges::stable_sort(order, std::greater(),
+                           [&](Eigen::Index c) { return columns.col(c).squaredNorm(); });
+  order.resize(std::min(order.size(), static_cast<std::size_t>(std::max(most, 0.0))));
+  return orthonormal(columns(Eigen::all, order));
 }
 
 /// What the low band of a profile shows beside the model.
@@ -57,15 +68,19 @@ struct Beside {
     before = values.squaredNorm();
     shared = values.dot(sum);
     of_sum = sum.squaredNorm();
-    const Eigen::VectorXd rest = values - sum;
+    Eigen::VectorXd rest = values - sum;
     after = rest.squaredNorm();
     taken_by_whole = (whole.transpose() * values).squaredNorm();
     columns_of_whole = static_cast<double>(whole.cols());
     degrees = static_cast<double>(n - observation.left_out() - form.cols() - slow.cols() -
                                   std::ssize(observation.nuisance_names));
+    const Eigen::MatrixXd unsure = largest(all.middleCols(parts / 2, parts / 2), degrees / 4.0);
+    rest -= unsure * (unsure.transpose() * rest);
+    const double free = degrees - static_cast<double>(unsure.cols());
     // The few at the axis and the rim, where grooves have another form, may be far larger.
     const double of_most = deviation_of_most({rest.data(), static_cast<std::size_t>(rest.size())});
-    noise = std::min({after / degrees, noise_of_fit * noise_of_fit, of_most * of_most});
+    noise = std::min({rest.squaredNorm() / free, noise_of_fit * noise_of_fit,
+                      of_most * of_most * degrees / free});
   }
 
   /// Of the images together, to be expected.
@@ -88,7 +103,7 @@ bool has_image(const Beside& beside) {
 }
 
 constexpr double kTenth = 0.01;  // of the square
-constexpr std::size_t kMostBounded = 4;
+constexpr std::size_t kMostBounded = 16;
 
 /// Whether the effect without options takes as much of what is fast. Where that is far more than
 /// noise makes of its columns, a tie is enough: it is the simpler one, and that of all cuts.

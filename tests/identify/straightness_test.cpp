@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "identify/cases.hpp"
 #include "slideway/base/random.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/budget.hpp"
+#include "slideway/identify/reference_line.hpp"
 
 namespace slideway {
 namespace {
@@ -19,6 +21,9 @@ class Parabola : public testing::Test {
   Parabola()
       : x_(Eigen::VectorXd::LinSpaced(1001, 0.0, 1.0)),
         lines_(reference_lines(x_, x_.array().square())) {}
+  [[nodiscard]] Eigen::Vector2d least_squares() const {
+    return lines_[1].of_heights * x_.array().square().matrix();
+  }
   Eigen::VectorXd x_;
   std::vector<ReferenceLine> lines_;
 };
@@ -31,8 +36,8 @@ TEST_F(Parabola, HasTheErrorsOfItsThreeLines) {
   EXPECT_NEAR(lines_[0].lowest, -0.25, 1e-12);
   EXPECT_EQ(lines_[0].lowest_at, 500U);
   EXPECT_EQ(lines_[1].kind, ReferenceLineKind::least_squares);
-  EXPECT_NEAR(lines_[1].slope, 1.0, 1e-9);
-  EXPECT_NEAR(lines_[1].at_zero, -1.0 / 6.0, 1e-3);  // of 1001 points, not of the integral
+  EXPECT_NEAR(least_squares()[1], 1.0, 1e-9);
+  EXPECT_NEAR(least_squares()[0], -1.0 / 6.0, 1e-3);  // of 1001 points, not of the integral
   EXPECT_EQ(lines_[2].kind, ReferenceLineKind::minimum_zone);
   EXPECT_NEAR(lines_[2].error, 0.25, 1e-12);
   EXPECT_NEAR(lines_[2].highest, 0.125, 1e-12);
@@ -40,21 +45,26 @@ TEST_F(Parabola, HasTheErrorsOfItsThreeLines) {
 }
 
 // Of a cube: no two points are equally far out.
-TEST(ReferenceLines, SensitivityIsTheDerivativeOfTheError) {
+TEST(ReferenceLines, DeviationsAreTheDerivativesOfTheError) {
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(1001, 0.0, 1.0), z = x.array().cube();
   Eigen::VectorXd bent = z;
   for (Eigen::Index i = 0; i < bent.size(); ++i) bent[i] += 1e-9 * std::sin(7.0 * x[i]);
   const std::vector<ReferenceLine> lines = reference_lines(x, z), moved = reference_lines(x, bent);
-  for (std::size_t l = 0; l < lines.size(); ++l)
-    EXPECT_NEAR(lines[l].sensitivity.dot(bent - z), moved[l].error - lines[l].error, 1e-14)
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const Eigen::VectorXd change = lines[l].deviations(x, bent - z);
+    EXPECT_NEAR(change[static_cast<Eigen::Index>(lines[l].highest_at)] -
+                    change[static_cast<Eigen::Index>(lines[l].lowest_at)],
+                moved[l].error - lines[l].error, 1e-14)
         << text_of(lines[l].kind);
+  }
 }
 
 TEST(ReferenceLines, OfAStraightLineLeaveNothing) {
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(11, -5.0, 5.0);
-  for (const ReferenceLine& line : reference_lines(x, 2.0 * x.array() + 1.0)) {
+  const Eigen::VectorXd z = 2.0 * x.array() + 1.0;
+  for (const ReferenceLine& line : reference_lines(x, z)) {
     EXPECT_NEAR(line.error, 0.0, 1e-12) << text_of(line.kind);
-    EXPECT_NEAR(line.slope, 2.0, 1e-12) << text_of(line.kind);
+    EXPECT_NEAR((line.of_heights * z)[1], 2.0, 1e-12) << text_of(line.kind);
   }
 }
 
@@ -99,6 +109,42 @@ TEST(IdentifiedStraightness, IsThatOfTheSlideWithinItsUncertainty) {
     EXPECT_GT(*error.expanded_uncertainty, 0.0) << text_of(error.line);
   }
   EXPECT_NEAR(found->errors[0].lowest_at_mm, 100.0, 5.0);
+}
+
+// Of 2 s² - 1.2 s³ µm the least-squares line leaves its lowest point within, at an end nearly as
+// low a one: noise chooses which of them the error rests on. On a face b_k of the carriage gives
+// (1 - k) b_k r^k, and squareness has a column beside it: the end is known ten times as well. With
+// the U of the pair that was chosen 71.5 % of 1000 readings held the error.
+TEST(IdentifiedStraightness, HoldsTheErrorWhereTwoPairsOfPointsAreNearlyAsFarApart) {
+  const std::vector<double> r = cases::spaced(0.0, 200.0, 100);
+  const auto form = [](double at) {
+    const double s = at / 200.0;
+    return 1e-3 * (2.0 * s * s - 1.2 * s * s * s);
+  };
+  const auto on_face = [](double at) {
+    const double s = at / 200.0;
+    return 1e-3 * (-2.0 * s * s + 2.0 * 1.2 * s * s * s);
+  };
+  const Eigen::VectorXd fine = Eigen::VectorXd::LinSpaced(2001, 0.0, 200.0);
+  const double truth = least_squares_line(fine, fine.unaryExpr(form)).error / kMicrometre;
+  int held = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    RandomStream noise(seed, "radius");
+    std::vector<double> z;
+    for (const double at : r) z.push_back(on_face(at) + 2e-5 * noise.normal());
+    const std::vector<Profile> face{cases::profile("radius", Kind::face, r, z)};
+    const Model model =
+        build_model(cases::problem(Lever::paper, 0,
+                                   {cases::effect("straightness", 3), cases::effect("squareness")}),
+                    face);
+    const auto found = identified_straightness(model, fit(model));
+    ASSERT_TRUE(found);
+    const auto error = std::ranges::find(found->errors, ReferenceLineKind::least_squares,
+                                         &StraightnessError::line);
+    ASSERT_NE(error, found->errors.end()) << found->reason;
+    held += std::abs(*error->value - truth) <= *error->expanded_uncertainty ? 1 : 0;
+  }
+  EXPECT_GE(held, 35);  // of 40 at 95.45 %: fewer in 1 %; at 71.5 %, in 98 %
 }
 
 // Both runs read the same 400 places: 50 of them, once, from end to end; 4 (s² - s) µm from the

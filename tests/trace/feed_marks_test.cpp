@@ -217,6 +217,72 @@ TEST(FeedMarks, OfHighOrderFoldedToASlowWaveAreNoOtherEffect) {
   }
 }
 
+/// Readings of `count` samples from `first_mm` on, of cuts of one face, the third one outward.
+struct Coarse {
+  turning::Carriage carriage;
+  std::vector<double> feeds_mm;  // per turn
+  double radius_mm, nose_mm, first_mm, step_mm;
+  int count;
+  double noise_mm;
+};
+
+std::vector<Profile> read(const Coarse& design, std::uint64_t seed) {
+  std::vector<Profile> out;
+  for (const double feed : design.feeds_mm) {
+    turning::Cut cut;
+    cut.radius_mm = design.radius_mm;
+    cut.spindle_rpm = 400.0;
+    cut.feed_mm_per_min = feed * cut.spindle_rpm;
+    cut.inward = out.size() < 2;
+    cut.nose_radius_mm = design.nose_mm;
+    const turning::Face face(
+        cut, [&](const turning::ToolPoint& p) { return turning::one_lever(design.carriage, p); });
+    turning::Stylus stylus;
+    stylus.noise = {.white = design.noise_mm};
+    Profile& profile = out.emplace_back();
+    profile.name = "cut" + std::to_string(out.size());
+    profile.free_tilt = design.first_mm < 0.0;
+    for (int i = 0; i < design.count; ++i)
+      profile.positions.push_back(design.first_mm + design.step_mm * i);
+    RandomStream random(seed, profile.name);
+    profile.values = turning::trace(face, profile.positions, stylus, random);
+    Setup& setup = profile.setup;
+    setup.feed_mm_per_min = cut.feed_mm_per_min;
+    setup.spindle_rpm = cut.spindle_rpm;
+    setup.cut_direction = cut.inward ? CutDirection::inward : CutDirection::outward;
+    setup.cut_radius_mm = cut.radius_mm;
+    setup.nose_radius_mm = cut.nose_radius_mm;
+    setup.first_mm = profile.positions.front();
+    setup.last_mm = profile.positions.back();
+  }
+  return out;
+}
+
+// 100 and 200 µm a turn, read every 99.75 µm: all harmonics of grooves 1.6 to 6.3 µm deep fold to
+// slow waves, which the samples do not tell from other errors. In the low band they stand far above
+// its noise of 4 nm; as many as that shows are in the model.
+TEST(FeedMarks, WhoseHarmonicsAreAllSlowLeaveNothing) {
+  const Coarse design{{{0.0, 0.0, 1e-7, -7e-10}, {}, turning::kFaceSquareness},
+                      {0.1, 0.2},
+                      100.0,
+                      0.8,
+                      -99.7,
+                      199.4 / 1999.0,
+                      2000,
+                      1e-5};
+  int explained = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Problem problem = problem_of();
+    problem.low_band.level = 3;
+    const Closed result = closed(problem, read(design, seed));
+    SCOPED_TRACE(story(result));
+    EXPECT_EQ(named(result), std::vector<std::string>());
+    expect_within_4u(result.final.parameters, "squareness.dbeta_xz", turning::kFaceSquareness);
+    explained += result.verdict == TraceVerdict::explained ? 1 : 0;
+  }
+  EXPECT_GE(explained, 7);  // of 8, where 5 % of clean faces may be unnamed: fewer in 6 %
+}
+
 // Under a random walk cuts differ by more than the noise of each says, so the verdict may be
 // unnamed; the marks are taken all the same, and nothing else has a name.
 TEST(FeedMarks, AreTakenFromTheSamplesBesideARandomWalk) {
@@ -272,6 +338,32 @@ TEST(FeedMarks, DoNotHideThatACutIsInAnotherUnit) {
     ASSERT_THAT(result.blunders, SizeIs(1));
     EXPECT_EQ(result.blunders[0].profile, "cut2");
     EXPECT_EQ(result.blunders[0].what, factor < 1.0 ? BlunderKind::metre : BlunderKind::per_metre);
+  }
+}
+
+// 176 and 439 µm a turn, read every 88 µm: the fifth harmonic of the second cut is slow. What the
+// samples say of the marks is all that is known of them; of any size, they would hide that the cone
+// of 4.4 µm is too small.
+TEST(FeedMarks, ThatAreSlowDoNotHideThatACutIsInAnotherUnit) {
+  const Coarse design{{{0.0, 0.0}, {}, 5.8e-5},
+                      {0.17568, 0.4392, 0.17568},
+                      76.25,
+                      1.32,
+                      0.305,
+                      0.08787,
+                      861,
+                      7.5e-6};
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    Problem problem = problem_of();
+    problem.low_band.level = 3;
+    problem.low_band.wavelet = "db4";
+    std::vector<Profile> profiles = read(design, seed);
+    for (double& value : profiles[1].values) value /= 25.4;
+    const Closed result = closed(problem, profiles);
+    SCOPED_TRACE(story(result));
+    ASSERT_THAT(result.blunders, SizeIs(1));
+    EXPECT_EQ(result.blunders[0].profile, "cut2");
+    EXPECT_EQ(result.blunders[0].what, BlunderKind::inch);
   }
 }
 

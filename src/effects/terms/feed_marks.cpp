@@ -85,8 +85,8 @@ Spectrum resolved(const LineTest& lines, const Eigen::VectorXd& phase, double si
   for (int h = 1; h <= kMostHarmonics; ++h) {
     const Eigen::VectorXd own = h * phase;
     bool is_seen = h <= kMostTested && lines.is_fast(own);
-    if (is_seen && !lines.stands_apart(own, phases, kMostShared)) continue;
-    is_seen = is_seen && (h == 1 || lines.p_value(own) <= significance);
+    is_seen = is_seen && lines.stands_apart(own, phases, kMostShared) &&
+              (h == 1 || lines.p_value(own) <= significance);
     if (is_seen) phases.push_back(own);
     (is_seen ? orders : out.bounded).push_back(h);
   }
