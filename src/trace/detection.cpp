@@ -264,8 +264,11 @@ std::vector<NotSeparable> inseparable(const Model& model, const Solution& fit, c
     const Candidate& candidate = *candidates[i];
     const Eigen::MatrixXd columns = stacked_columns(model, candidate.term, candidate.grid.middle(),
                                                     data.rows() - data.values());
-    if (project(data, columns).rank > 0 || columns.isZero(0.0)) return;
-    found[i] = {candidate.name(), made_by(model, fit, columns.col(0))};
+    const bool is_whole = project(data, columns).rank == 0;
+    if (!is_whole && !candidate.term.effect->shapes().empty()) return;
+    for (Eigen::Index j = 0; j < columns.cols() && !found[i]; ++j)
+      if (!columns.col(j).isZero(0.0) && (is_whole || project(data, columns.col(j)).rank == 0))
+        found[i] = {candidate.name(), made_by(model, fit, columns.col(j))};
   });
   std::vector<NotSeparable> out;
   for (std::optional<NotSeparable>& each : found)

@@ -22,6 +22,37 @@ TEST(Conflict, CupIsOneColumnWithTheStraightnessOfAFace) {
               ::testing::Contains(::testing::FieldsAre("cup", HasSubstr("straightness.b2"))));
 }
 
+// r³ cos 3θ is the same at 0°, 120° and 240°, and there b_3; 100° and 200° tell them apart. The
+// faces have no lobes, and no grooves.
+TEST(Conflict, ThreeLobesAreOneColumnWithTheStraightnessOfRadiiAtTheJaws) {
+  const turning::Carriage carriage{{0.0, 0.0, 2e-7, -6e-9}, {}, turning::kFaceSquareness};
+  const auto lobes = ::testing::FieldsAre("chucking_lobes", HasSubstr("straightness.b3"));
+  Problem problem = problem_of();
+  problem.low_band.level = 0;
+  for (const double turn : {120.0, 100.0}) {
+    std::vector<Profile> radii(3);
+    for (std::size_t c = 0; c < radii.size(); ++c) {
+      Profile& radius = radii[c];
+      radius.name = "radius" + std::to_string(c);
+      radius.free_tilt = false;
+      RandomStream random(3, radius.name);
+      for (int i = 0; i < 200; ++i) {
+        ToolPoint point;
+        point.r = point.x = radius.positions.emplace_back(0.2 + 0.2 * i);
+        radius.values.push_back(turning::one_lever(carriage, point) + 1e-5 * random.normal());
+      }
+      auto& setup = radius.setup;
+      setup.azimuth_deg = turn * static_cast<double>(c);
+      setup.cut_radius_mm = 40.0;
+      setup.first_mm = radius.positions.front();
+      setup.last_mm = radius.positions.back();
+    }
+    const TraceResult result = close_loop(problem, radii);
+    SCOPED_TRACE(story(result));
+    EXPECT_EQ(::testing::Value(result.not_separable, ::testing::Contains(lobes)), turn == 120.0);
+  }
+}
+
 /// The straightness of make_faces() as an autocollimator reads it on the slide, to 0.02 µrad.
 Profile autocollimator() {
   Profile profile;

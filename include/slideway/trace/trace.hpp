@@ -147,7 +147,7 @@ struct NotTestable {
   std::string effect, needs;
 };
 
-/// An effect whose columns are those of another here.
+/// An effect whose columns, or one of them, are those of another here.
 struct NotSeparable {
   std::string effect, same_as;
 };
