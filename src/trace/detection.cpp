@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kNormal = 1e9;  // degrees of freedom: Student's t is normal
 constexpr int kSpreadShapes = 5;
-constexpr int kMostRounds = 8;  // of a limit that depends on itself
+constexpr double kNearZero = 1e-9;  // of a range, about zero
+constexpr int kMostRounds = 8;      // of a limit that depends on itself
 
 /// Values of the first shape from one end of what the search looks at to the other, in the
 /// logarithm unless they are positions, at the nodes of Chebyshev: what lies between them can be
@@ -31,14 +32,17 @@ std::vector<std::vector<double>> spread_shapes(const Candidate& candidate) {
   std::vector<std::vector<double>> out(kSpreadShapes, candidate.grid.middle());
   for (int i = 0; i < kSpreadShapes; ++i) {
     const double share = 0.5 - 0.5 * std::cos(kPi * (i + 0.5) / kSpreadShapes);
-    out[static_cast<std::size_t>(i)][0] =
+    const double value =
         linear ? first + share * (last - first) : first * std::pow(last / first, share);
+    out[static_cast<std::size_t>(i)][0] =
+        std::abs(value) > kNearZero * (last - first) ? value : 0.0;
   }
   return out;
 }
 
-/// Share of a candidate's column each parameter of the model takes, as a column of its own.
-std::string made_by(const Model& model, const Solution& fit, const Eigen::VectorXd& column) {
+/// The parameters of the model that make a candidate's column; none: levelling does.
+std::vector<std::string> made_by(const Model& model, const Solution& fit,
+                                 const Eigen::VectorXd& column) {
   const Linearisation& linear = fit.linear;
   const Eigen::MatrixXd columns =
       stack(linear, linear.prior_rows.cols(), [&](std::size_t i) { return linear.columns[i]; });
@@ -57,7 +61,7 @@ std::string made_by(const Model& model, const Solution& fit, const Eigen::Vector
         (columns * back.col(p) * parameters[p]).norm() / std::max(column.norm(), 1e-300);
     if (share > model.gates.absorbed_share) out.push_back(names[static_cast<std::size_t>(p)]);
   }
-  return out.empty() ? "offset and tilt of the traces" : joined(out);
+  return out;
 }
 
 /// One effect at one shape.
@@ -164,10 +168,13 @@ double squareness_moved(const Design& design, const Case& one) {
   const std::optional<Limit> limit = limit_of(design, one, seen_in);
   if (!limit) return 0.0;  // the model makes its columns: not separable
   Eigen::VectorXd signal = one.columns * one.amplitudes(limit->size);
-  if (count_of(limit->undescribed) == 0)
-    return std::abs(design.squareness_moved->to(std::move(signal)));
-  return std::abs(ParameterResponse(design.fitted.fit, *design.squareness, limit->undescribed)
-                      .to(std::move(signal)));
+  const double moved =
+      count_of(limit->undescribed) == 0
+          ? design.squareness_moved->to(std::move(signal))
+          : ParameterResponse(design.fitted.fit, *design.squareness, limit->undescribed)
+                .to(std::move(signal));
+  constexpr double kNoAngle = 1e-15;  // rad: 1 nm in 1000 km
+  return std::abs(moved) < kNoAngle ? 0.0 : std::abs(moved);
 }
 
 /// Whether no profile would hold more of this signal than so many times its own range.
@@ -266,9 +273,15 @@ std::vector<NotSeparable> inseparable(const Model& model, const Solution& fit, c
                                                     data.rows() - data.values());
     const bool is_whole = project(data, columns).rank == 0;
     if (!is_whole && !candidate.term.effect->shapes().empty()) return;
-    for (Eigen::Index j = 0; j < columns.cols() && !found[i]; ++j)
-      if (!columns.col(j).isZero(0.0) && (is_whole || project(data, columns.col(j)).rank == 0))
-        found[i] = {candidate.name(), made_by(model, fit, columns.col(j))};
+    for (Eigen::Index j = 0; j < columns.cols() && !found[i]; ++j) {
+      const Eigen::VectorXd column = columns.col(j);
+      if (column.isZero(0.0) || !(is_whole || project(data, column).rank == 0)) continue;
+      const std::vector<std::string> by = made_by(model, fit, column);
+      if (!by.empty())
+        found[i] = {candidate.name(), joined(by)};
+      else if (is_whole)
+        found[i] = {candidate.name(), "offset and tilt of the traces"};
+    }
   });
   std::vector<NotSeparable> out;
   for (std::optional<NotSeparable>& each : found)
