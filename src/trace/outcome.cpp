@@ -54,13 +54,17 @@ AcceptedEffect as_accepted(const SearchRound& round, const TestedCandidate& choi
   return out;
 }
 
-std::vector<std::string> outranked_by(const SearchRound& round, const TestedCandidate& measured,
+std::vector<std::string> outranked_by(const SearchRound& round, const TestedCandidate& chosen,
                                       const Gates& gates) {
   std::vector<std::string> out;
-  for (const TestedCandidate* each : round.outranked(measured, gates))
-    out.push_back(measured.name() + " was measured and " + each->name() +
-                  " was not: it stands, though the other explains as much; difference in BIC " +
-                  significant(each->refined.delta_bic - measured.refined.delta_bic, 2));
+  for (const TestedCandidate* each : round.outranked(chosen, gates))
+    out.push_back((is_in_fewer_readings(*each, chosen)
+                       ? "one instrument is taken to err alike in all that it reads, so " +
+                             chosen.name() + " stands, though " + each->name() + " explains as much"
+                       : chosen.name() + " was measured and " + each->name() +
+                             " was not: it stands, though the other explains as much") +
+                  "; difference in BIC " +
+                  significant(each->refined.delta_bic - chosen.refined.delta_bic, 2));
   return out;
 }
 

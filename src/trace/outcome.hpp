@@ -16,8 +16,8 @@ std::vector<TriedEffect> tried(const SearchRound& round, const Gates& gates,
 AcceptedEffect as_accepted(const SearchRound& round, const TestedCandidate& choice,
                            const Gates& gates, std::optional<double> before_rms_um);
 
-/// By how much what nobody measured explains less, or more, than a measured cause: a note of each.
-std::vector<std::string> outranked_by(const SearchRound& round, const TestedCandidate& measured,
+/// By how much what `chosen` outranks explains less, or more, than it: a note of each.
+std::vector<std::string> outranked_by(const SearchRound& round, const TestedCandidate& chosen,
                                       const Gates& gates);
 
 /// Why the form that the fit puts into the carriages cannot be theirs, or "": the run-out or a

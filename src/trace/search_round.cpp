@@ -78,10 +78,12 @@ bool is_measured(const TestedCandidate& tested) {
   return tested.refined.candidate->term.effect->description().measured;
 }
 
-/// Neither measured nor of the carriages, which a measured cause outranks.
-bool ranks_below(const TestedCandidate& each, const TestedCandidate& measured) {
-  return is_measured(measured) && !is_measured(each) &&
-         !each.refined.candidate->term.effect->is_carriage();
+/// Whether `each` is neither measured nor of the carriages, and `chosen` a measured cause; or has
+/// an error of the instrument in fewer of its readings than `chosen`.
+bool ranks_below(const TestedCandidate& each, const TestedCandidate& chosen) {
+  return is_in_fewer_readings(each, chosen) ||
+         (is_measured(chosen) && !is_measured(each) &&
+          !each.refined.candidate->term.effect->is_carriage());
 }
 
 /// Whether two parts of the residual are one and the same rather than each its own.
@@ -220,6 +222,16 @@ bool TestedCandidate::is_possible() const {
   return refined.projection.rank > 0 && folded.empty() && implausible(refined).empty();
 }
 
+bool is_in_fewer_readings(const TestedCandidate& part, const TestedCandidate& whole) {
+  const Candidate &a = *part.refined.candidate, &b = *whole.refined.candidate;
+  const auto is_in_whole = [&](const std::string& name) {
+    return b.term.profiles.empty() || std::ranges::count(b.term.profiles, name) > 0;
+  };
+  return a.term.effect->description().of_instrument && a.effect_name() == b.effect_name() &&
+         a.name() != b.name() && !a.term.profiles.empty() &&
+         std::ranges::all_of(a.term.profiles, is_in_whole);
+}
+
 double SearchRound::least_of_effect(const TestedCandidate& part) const {
   double least = part.refined.delta_bic;
   if (!is_of_place(*part.refined.candidate)) return least;
@@ -242,19 +254,20 @@ const TestedCandidate* SearchRound::choice(const Gates& gates,
              better.refined.delta_bic < least - gates.tie_bic && alike(better, *each, gates);
     };
     if (std::none_of(tested.begin(), each, stands_before)) {
-      const TestedCandidate* measured = measured_instead(*each, gates, excluded);
-      return measured ? measured : &*each;
+      const TestedCandidate* better_known = better_known_than(*each, gates, excluded);
+      return better_known ? better_known : &*each;
     }
   }
   return nullptr;
 }
 
-const TestedCandidate* SearchRound::measured_instead(
+const TestedCandidate* SearchRound::better_known_than(
     const TestedCandidate& choice, const Gates& gates,
     const std::vector<std::string>& excluded) const {
   if (is_measured(choice) || choice.refined.candidate->term.effect->is_carriage()) return nullptr;
   const auto at = std::ranges::find_if(tested, [&](const TestedCandidate& each) {
-    return is_measured(each) && each.refused(gates).empty() &&
+    return (is_measured(each) || is_in_fewer_readings(choice, each)) &&
+           each.refused(gates).empty() &&
            each.refined.delta_bic <= choice.refined.delta_bic + gates.tie_bic &&
            std::ranges::count(excluded, each.name()) == 0 && alike(each, choice, gates);
   });

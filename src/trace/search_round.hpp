@@ -31,6 +31,9 @@ struct TestedCandidate {
   [[nodiscard]] bool is_possible() const;
 };
 
+/// Whether `part` is an error of the instrument that `whole` has in more of its readings.
+[[nodiscard]] bool is_in_fewer_readings(const TestedCandidate& part, const TestedCandidate& whole);
+
 /// A search of what one model leaves over.
 struct SearchRound {
   Whitened data;
@@ -41,21 +44,22 @@ struct SearchRound {
   [[nodiscard]] const TestedCandidate* choice(const Gates& gates,
                                               const std::vector<std::string>& excluded = {}) const;
 
-  /// The measured cause that explains what `choice`, which is none, would be accepted for, within
-  /// tie_bic of it: it has a reason of its own. Null: none.
-  [[nodiscard]] const TestedCandidate* measured_instead(
+  /// What explains that for which `choice` would be accepted, within tie_bic of it, and has a
+  /// reason of its own: a measured cause, which `choice` is not; an error of the instrument in all
+  /// that it reads, not in some readings alone. Null: none.
+  [[nodiscard]] const TestedCandidate* better_known_than(
       const TestedCandidate& choice, const Gates& gates,
       const std::vector<std::string>& excluded = {}) const;
 
   /// Other effects, and the same one in other cuts, that take the same part of the residual, within
   /// tie_bic of `chosen`: those that pass, those that take more cuts to be told, and those too
   /// uncertain to pass that need no more unknowns. Where the chosen one is a carriage's polynomial,
-  /// which comes near every smooth effect, all that are possible; where it is a measured cause, not
-  /// what is neither measured nor a carriage's.
+  /// which comes near every smooth effect, all that are possible. Not those that outranked() has.
   [[nodiscard]] std::vector<const TestedCandidate*> rivals(const TestedCandidate& chosen,
                                                            const Gates& gates) const;
 
-  /// Where `chosen` is a measured cause: what would be its rivals were it none.
+  /// What would be rivals of `chosen`, were it no measured cause, or no error of the instrument in
+  /// all that it reads.
   [[nodiscard]] std::vector<const TestedCandidate*> outranked(const TestedCandidate& chosen,
                                                               const Gates& gates) const;
 
