@@ -213,8 +213,9 @@ std::vector<Eigen::Index> extremes(const Eigen::VectorXd& deviation) {
 template <typename SpreadBetween>
 double reach_of_pairs(const Eigen::VectorXd& deviation, const SpreadBetween& spread_between) {
   double out = 0.0;
+  const std::vector<Eigen::Index> lowest = extremes(-deviation);
   for (const Eigen::Index high : extremes(deviation))
-    for (const Eigen::Index low : extremes(-deviation)) {
+    for (const Eigen::Index low : lowest) {
       const Spread spread = spread_between(high, low);
       const double U = coverage_factor(spread.degrees_of_freedom) * spread.standard_uncertainty;
       out = std::max(out, deviation[high] - deviation[low] + U);

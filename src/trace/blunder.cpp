@@ -237,8 +237,8 @@ class Finder {
   [[nodiscard]] Expected in_unit(Expected expected, const std::string& profile,
                                  double factor) const {
     for (const ModelTerm& term : model_.terms) {
+      if (!is_shown_by(term, profile)) continue;
       const auto count = std::ssize(term.priors);
-      if (!is_of_one(term, profile) || count == 0 || count != term.effect->amplitudes()) continue;
       Eigen::VectorXd values(count), uncertainties(count);
       for (Eigen::Index k = 0; k < count; ++k) {
         const Prior& prior = term.priors[static_cast<std::size_t>(k)];
@@ -258,6 +258,12 @@ class Finder {
 
   static bool is_of_one(const ModelTerm& term, const std::string& profile) {
     return term.profiles == std::vector<std::string>{profile};
+  }
+
+  /// Whether the samples of a profile say what the effect is, which it alone has.
+  static bool is_shown_by(const ModelTerm& term, const std::string& profile) {
+    return is_of_one(term, profile) && !term.priors.empty() &&
+           std::ssize(term.priors) == term.effect->amplitudes();
   }
 
   /// The priors but those of effects of one profile.
@@ -294,10 +300,14 @@ class Finder {
     Observation observation = recorded(i, list);
     const ProfileTriangle triangle = triangle_of(observation, noise);
     const auto count = static_cast<double>(observation.values.size() - observation.left_out());
+    const AsItIs in_another_setup({triangle, expected, count});
+    const bool shows_own = std::ranges::any_of(
+        model_.terms, [&](const ModelTerm& term) { return is_shown_by(term, profile.name); });
     const auto in = [&](double unit) {
-      return Prediction(triangle, in_unit(expected, profile.name, unit), count);
+      return shows_own ? Prediction(triangle, in_unit(expected, profile.name, unit), count)
+                       : in_another_setup.prediction;
     };
-    const AsItIs in_another_unit(in(1.0)), in_another_setup({triangle, expected, count});
+    const AsItIs in_another_unit = shows_own ? AsItIs(in(1.0)) : in_another_setup;
     const double own = in_long_run_[i] / in_long_run_[of_sister.value_or(i)];
     for (const Hypothesis& each : list) {
       observation.profile = each.profile ? &*each.profile : &profile;
