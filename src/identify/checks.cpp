@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <span>
 
+#include "error_of_causes.hpp"
 #include "noise_bounds.hpp"
 #include "residual.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/identify/linear_algebra.hpp"
-#include "slideway/identify/profile_bases.hpp"
 #include "slideway/identify/reference_line.hpp"
 
 namespace slideway {
@@ -177,79 +174,26 @@ void explain_noise(const Solution& fit, ModelResult& out) {
   }
 }
 
-/// Columns of effects of one amplitude at the places of the low-band values, whose spacing is that
-/// which a measured cause is averaged over, side by side.
-Eigen::MatrixXd columns_at_values(const std::vector<std::unique_ptr<Effect>>& effects,
-                                  const Observation& observation, const Machine& machine,
-                                  std::span<const double> shape) {
-  const Profile& profile = *observation.profile;
-  std::vector<double> positions = observation.low_band.positions(profile.positions);
-  const bool falls = positions.front() > positions.back();
-  std::ranges::sort(positions);
-  const Stations stations(positions, profile.setup, machine);
-  Eigen::MatrixXd out(stations.size(), std::ssize(effects));
-  for (std::size_t i = 0; i < effects.size(); ++i)
-    effects[i]->columns(stations, shape, out.middleCols(static_cast<Eigen::Index>(i), 1));
-  out *= low_band_scale(observation);
-  if (falls) return out.colwise().reverse();
-  return out;
-}
-
-/// Of the sum of squares of a measured cause's column beside all else that is free, the part that
-/// the noise of its log makes on average.
-double share_of_noise(const Model& model, const Solution& fit, const ModelTerm& term) {
-  constexpr int kDraws = 32;  // of a sum of n squares: to (2 / 32 n)^½
-  const Linearisation& linear = fit.linear;
-  const Eigen::Index priors = linear.prior_rows.rows(), own = term.first_amplitude;
-  Eigen::Index values = 0;
-  for (const Observation* observation : linear.observations) values += observation->values.size();
-  Eigen::MatrixXd others(values + priors, linear.prior_rows.cols());
-  Eigen::MatrixXd causes = Eigen::MatrixXd::Zero(values + priors, 1 + kDraws);
-  others.bottomRows(priors) = linear.prior_rows;
-  std::vector<std::unique_ptr<Effect>> draws;
-  for (int d = 0; d < kDraws; ++d)
-    draws.push_back(term.effect->noise_of_cause(static_cast<std::uint64_t>(d)));
-  const std::span<const double> shape = shapes_of(term, fit.estimate.shapes);
-  Eigen::Index row = 0;
-  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
-    const Observation& observation = *linear.observations[i];
-    const Eigen::Index count = observation.values.size();
-    others.middleRows(row, count) = linear.columns[i];
-    causes.block(row, 0, count, 1) = linear.columns[i].col(own);
-    if (term.acts_on(*observation.profile))
-      causes.block(row, 1, count, kDraws) =
-          columns_at_values(draws, observation, model.machine, shape);
-    fit.noise[i].whiten(others.middleRows(row, count));
-    fit.noise[i].whiten(causes.middleRows(row, count));
-    row += count;
-  }
-  causes.bottomRows(priors).col(0) = linear.prior_rows.col(own);
-  others.col(own).setZero();
-  const ProfileBases levelling = own_bases(linear.observations, fit.noise);
-  const Eigen::MatrixXd span = orthonormal(levelling.beside(std::move(others)));
-  levelling.take_out(causes);
-  project_out(span, causes);
-  const Eigen::RowVectorXd squares = causes.colwise().squaredNorm();
-  return squares[0] > 0.0 ? std::min(squares.tail(kDraws).mean() / squares[0], 1.0) : 1.0;
-}
-
-/// Errors in variables: an estimate is too small by the share that noise has of the sum of squares
-/// of its measured cause (Fuller 1987, Measurement Error Models, Eq. (1.1.7)).
-void explain_noise_of_causes(const Model& model, const Solution& fit, ModelResult& out) {
+/// Errors in variables: what U holds of the error of the log.
+void explain_error_of_causes(const Model& model, const Solution& fit, ModelResult& out) {
   constexpr double kMatters = 0.1;  // of U
+  const Eigen::MatrixXd changes =
+      response_to_causes(model, fit.linear, fit.noise, fit.estimate, fit.uncertainty.basis);
+  if (changes.cols() == 0) return;
   for (const ModelTerm& term : model.terms) {
     if (!term.effect->description().measured) continue;
-    const std::string name = term.name + "." + term.effect->parameters().front().name;
-    const FittedParameter* size = out.find(name);
-    if (!size || !size->value || !size->expanded_uncertainty) continue;
-    const double share = share_of_noise(model, fit, term);
-    const double bias = std::abs(*size->value) * share / (1.0 - share);
-    if (!(bias > kMatters * *size->expanded_uncertainty)) continue;
-    const std::string why = ", because the log is noisy; U does not include this";
-    out.notes.push_back(share < 1.0 ? name + " is too small by about " + significant(bias, 2) +
-                                          " " + size->unit + " (" + significant(100.0 * share, 2) +
-                                          " % of it)" + why
-                                    : name + " says nothing: what moves in the log is noise" + why);
+    for (std::size_t p = 0; p < term.effect->parameters().size(); ++p) {
+      const std::string name = term.name + "." + term.effect->parameters()[p].name;
+      const FittedParameter* found = out.find(name);
+      if (!found || !found->value || !found->standard_uncertainty) continue;
+      const Eigen::Index row = term.first_parameter + static_cast<Eigen::Index>(p);
+      const double error = (fit.parameters.jacobian.row(row) * changes).norm();
+      const double share = std::pow(error / *found->standard_uncertainty, 2);
+      if (share > kMatters)
+        out.notes.push_back(name + ": " + significant(100.0 * std::min(share, 1.0), 2) +
+                            " % of the variance in its U comes from the noise and the spacing of "
+                            "the log");
+    }
   }
 }
 
@@ -298,7 +242,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   explain_other_form(model, fit, out);
   explain_lone_curve(model, fit, out);
   explain_noise(fit, out);
-  explain_noise_of_causes(model, fit, out);
+  explain_error_of_causes(model, fit, out);
   check_plausibility(model, fit, out);
   for (const Observation& observation : model.observations) {
     if (observation.low_band.resampled())

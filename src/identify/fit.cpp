@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "error_of_causes.hpp"
 #include "face_slope.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/identify/left_out.hpp"
@@ -103,6 +104,10 @@ void find_null_directions(const Model& model, const Compressed& compressed, Solu
 void find_uncertainty(const Model& model, const Compressed& compressed, Solution& fit) {
   const double inflation = fit.uncertainty.inflation;
   fit.uncertainty = assess(fit.linear, compressed, fit.noise, fit.rank.basis, inflation);
+  if (const Eigen::MatrixXd changes =
+          response_to_causes(model, fit.linear, fit.noise, fit.estimate, fit.rank.basis);
+      changes.cols() > 0)
+    fit.uncertainty.add(changes * changes.transpose(), compressed);
   if (!fit.estimate.curve) return;
   fit.uncertainty.has_curve = true;
   fit.uncertainty.add(covariance_of_curve_prior(model, fit.linear, fit.noise, fit.estimate),

@@ -216,6 +216,11 @@ std::span<const Gate> gate_table() {
       Gate{"noise_spread", &Gates::noise_spread, "", 0.1, 4.0,
            "Largest variance of the logarithm of a noise level that a test of fit allows for.",
            "1: a factor of e either way; a flat likelihood has none"},
+      Gate{"most_hidden", &Gates::most_hidden, "", 0.0, 1000.0,
+           "U allows a form without a name to hide in the model's parameters so many times what "
+           "the model leaves.",
+           "3: a smooth form of which nine tenths of the square look like the carriages'; more "
+           "is coincidence"},
       Gate{"nearly_alike", &Gates::nearly_alike, "", 0.5, 0.9999,
            "Two effects are called nearly one shape if their correlation in a profile is larger.",
            "above 0.95 nine tenths of the variance of one are the other's"},

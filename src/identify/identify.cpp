@@ -102,6 +102,7 @@ Result summarise_inputs(const Problem& problem, const std::vector<Profile>& prof
     for (const std::string& doubt : profile.doubts)
       result.notes.push_back(profile.name + ": " + doubt);
   }
+  result.notes.insert(result.notes.end(), problem.remarks.begin(), problem.remarks.end());
   result.assumed = assumptions(problem, profiles);
   result.closure = summarise_closure(profiles);
   return result;

@@ -211,6 +211,18 @@ void require_metadata(const ModelTerm& term, const Profile& profile) {
                      profile.name + "'");
 }
 
+/// Refuses an effect of the user's own that no profile can have.
+void require_profile(const Model& model, const DeclaredEffect& declared, const ModelTerm& term) {
+  if (!declared.options.own || std::ranges::any_of(model.observations, [&](const auto& each) {
+        return term.acts_on(*each.profile) && term.effect->applies_to(each.profile->setup);
+      }))
+    return;
+  throw UsageError(
+      "effect '" + term.name +
+      "' is in no profile; accepted: a size in um for heights, in urad for slopes, and "
+      "variables that the profiles have");
+}
+
 /// Of a profile that lacks metadata, or that does not show the effect, nothing is known.
 void require_columns(const Model& model, const ModelTerm& term, const Profile& profile) {
   if (!term.acts_on(profile) || !term.effect->lacking(profile.setup).empty()) return;
@@ -278,6 +290,7 @@ void append_term(Model& model, const DeclaredEffect& declared, const TravelRange
   if (taken) term.name.append("[").append(declared.options.body.value_or("")).append("]");
   for (const Observation& observation : model.observations)
     require_metadata(term, *observation.profile);
+  require_profile(model, declared, term);
   model.terms.push_back(std::move(term));
 }
 

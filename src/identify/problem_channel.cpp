@@ -105,17 +105,29 @@ Channel read_channel(const Section& section, const ProblemRules& rules, Problem&
       (file.states_units ? unit_of(section, "value_unit", file.trace.value_unit, asked) : asked)
           .value_or("unit of the log");
   take(file, scale_of_places(section, channel, file), channel);
+  if (const std::vector<std::size_t> outliers = outliers_of(channel); !outliers.empty())
+    problem.remarks.push_back("channel '" + channel.name + "': " + std::to_string(outliers.size()) +
+                              " of " + std::to_string(channel.values.size()) +
+                              " values do not belong to it and are left out (" +
+                              significant(channel.values[outliers.front()], 4) + " " +
+                              channel.unit + " at " + significant(channel.at[outliers.front()], 4) +
+                              (channel.clock == IndependentVariable::slide ? " mm)" : " s)"));
   return channel;
 }
 
-/// What the loop asks of every log: the quantity, or what follows it later or slowly.
+/// What the loop asks of every log: what follows it later and slowly, one of these, or neither.
 DeclaredEffect follower_of(const Section& section, const Channel& channel, const Problem& problem) {
   check_name_is_free(section, "name", channel.name, problem.own_effects);
   try {
-    return {channel.name,
-            {.own = channel_effect(channel,
-                                   {.name = channel.name, .free_lag = true, .free_tau = true})},
-            {}};
+    std::vector<ChannelResponse> responses;
+    for (const bool free_tau : {true, false})
+      for (const bool free_lag : {true, false})
+        responses.push_back({.name = channel.name, .free_lag = free_lag, .free_tau = free_tau});
+    std::vector<EffectFactory> made = channel_effects(channel, responses);
+    EffectOptions options{.own = std::move(made.front())};
+    made.erase(made.begin());
+    options.simpler = std::move(made);
+    return {channel.name, std::move(options), {}};
   } catch (const UsageError& error) {
     section.fail("file", error.what());
   }

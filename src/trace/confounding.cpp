@@ -102,7 +102,7 @@ std::vector<Confounding> confounding_of(const Problem& problem,
   const std::vector<Stretch> all = stretches_of(model);
   std::vector<Rival> whole;
   for (const Candidate& candidate : dictionary.candidates)
-    if (candidate.term.profiles.empty())
+    if (candidate.stands_for_effect())
       whole.push_back({&candidate, levelled(all, *candidate.columns)});
   std::vector<Confounding> out;
   for (const std::string& effect : effects) {

@@ -46,7 +46,7 @@ std::vector<std::string> made_by(const Model& model, const Solution& fit,
   const Linearisation& linear = fit.linear;
   const Eigen::MatrixXd columns =
       stack(linear, linear.prior_rows.cols(), [&](std::size_t i) { return linear.columns[i]; });
-  const Eigen::VectorXd amplitudes = BesideLevelling(linear, columns, column).values;
+  const Eigen::VectorXd amplitudes = beside_levelling(linear, columns, column);
   const Eigen::VectorXd parameters = fit.parameters.jacobian * amplitudes;
   const Eigen::MatrixXd back =
       Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(fit.parameters.jacobian)

@@ -35,11 +35,12 @@ std::optional<ThinProfile> thin(const Observation& observation) {
   const Eigen::Index samples = observation.low_band.samples();
   const Eigen::Index stride = Eigen::Index{1} << (options.level - kThinLevel);
   const double scale = std::sqrt(static_cast<double>(stride));
-  const double step = (all.back() - all.front()) / static_cast<double>(samples - 1);
+  const auto last = static_cast<double>(samples - 1);
   std::vector<double> positions;
   for (Eigen::Index i = 0; i < samples; i += stride)
-    positions.push_back(all.front() +
-                        (static_cast<double>(i) + 0.5 * static_cast<double>(stride - 1)) * step);
+    positions.push_back(std::lerp(
+        all.front(), all.back(),
+        std::min((static_cast<double>(i) + 0.5 * static_cast<double>(stride - 1)) / last, 1.0)));
   options.level = kThinLevel;
   LowBand low_band(options, positions);
   if (low_band.values() != observation.values.size() || low_band.resampled()) return std::nullopt;
@@ -191,7 +192,7 @@ void add_hypotheses(const Model& model, const Problem& problem, const std::strin
   if (!added && !missing.empty()) out.not_testable.push_back({name, missing});
 }
 
-/// An effect that is looked for with the options the problem gives it.
+/// An effect that is looked for with the options the problem gives it, and simpler ones.
 void add_own(const Model& model, const Problem& problem, const DeclaredEffect& own,
              const Viewer& viewer, Dictionary& out) {
   if (std::ranges::count(problem.effects, own.name, &DeclaredEffect::name) > 0) return;
@@ -199,10 +200,17 @@ void add_own(const Model& model, const Problem& problem, const DeclaredEffect& o
   candidate.term.name = term_name(own.name, own.options.profiles);
   candidate.term.profiles = own.options.profiles;
   candidate.options = own.options;
+  candidate.options.simpler.clear();
   candidate.term.effect = make_effect(own.name, own.options, model.machine, model.range);
   const std::string missing = needs(model, candidate.term);
   if (!missing.empty()) return out.not_testable.push_back({candidate.term.name, missing});
-  add(model, viewer, std::move(candidate), out);
+  add(model, viewer, candidate, out);
+  candidate.is_simpler = true;
+  for (const EffectFactory& simpler : own.options.simpler) {
+    candidate.options.own = simpler;
+    candidate.term.effect = make_effect(own.name, candidate.options, model.machine, model.range);
+    add(model, viewer, candidate, out);
+  }
 }
 
 /// The effects of one rate at those of lines that are too fast for the low band.

@@ -22,6 +22,7 @@ struct Candidate {
   std::string takes;           // Effect::lacking_to_be_told(); empty: it may be named
   bool coarse = false;         // the grid: shapes are refined over all of it
   bool is_fast = false;        // its shapes are those of fast_lines()
+  bool is_simpler = false;     // another one of its name has more shapes
   bool is_searched = true;     // false: each surface has a form of its own, looked for alone
   /// Stacked rows by (#amplitudes * #atoms), not whitened; shared with the same effect in some
   /// profiles alone.
@@ -31,6 +32,10 @@ struct Candidate {
   std::vector<RowRange> rows;  // of the columns, those it acts on
 
   [[nodiscard]] const std::string& name() const { return term.name; }  // "step[feed2]"
+  /// Of all profiles; of several of one name, that with the whole of its shapes.
+  [[nodiscard]] bool stands_for_effect() const {
+    return term.profiles.empty() && !is_fast && !is_simpler;
+  }
   [[nodiscard]] const std::string& effect_name() const { return term.effect->description().name; }
   [[nodiscard]] Eigen::Index amplitudes() const { return term.effect->amplitudes(); }
   [[nodiscard]] Eigen::Index atoms() const { return std::ssize(grid.points()); }

@@ -75,7 +75,8 @@ ModelExtender::Key ModelExtender::key_of(const std::vector<AcceptedEffect>& effe
         effect.name() + (effect.candidate->is_fast
                              ? significant(effect.candidate->grid.points()[0][0], 12)
                              : ""),
-        effect.candidate->options.degree.value_or(effect.candidate->term.effect->amplitudes()));
+        effect.candidate->options.degree.value_or(effect.candidate->term.effect->amplitudes() +
+                                                  static_cast<int>(effect.shape.size())));
   std::ranges::sort(key);
   return key;
 }

@@ -90,7 +90,7 @@ class ModelExtender {
   [[nodiscard]] FittedModel in_declared_band(const std::vector<AcceptedEffect>& effects);
 
   using Key =
-      std::vector<std::pair<std::string, int>>;  // names with degrees, or amplitudes, in order
+      std::vector<std::pair<std::string, int>>;  // names with degrees, or unknowns, in order
 
   static Key key_of(const std::vector<AcceptedEffect>& effects);
   [[nodiscard]] Eigen::VectorXd shapes_of(const std::vector<AcceptedEffect>& effects) const;

@@ -57,10 +57,14 @@ AcceptedEffect as_accepted(const SearchRound& round, const TestedCandidate& choi
 std::vector<std::string> outranked_by(const SearchRound& round, const TestedCandidate& chosen,
                                       const Gates& gates) {
   std::vector<std::string> out;
+  const bool measured = chosen.refined.candidate->term.effect->description().measured;
   for (const TestedCandidate* each : round.outranked(chosen, gates))
     out.push_back((is_in_fewer_readings(*each, chosen)
-                       ? "one instrument is taken to err alike in all that it reads, so " +
-                             chosen.name() + " stands, though " + each->name() + " explains as much"
+                       ? std::string(measured ? "a measured cause is taken to act in all profiles"
+                                              : "one instrument is taken to err alike in all that "
+                                                "it reads") +
+                             ", so " + chosen.name() + " stands, though " + each->name() +
+                             " explains as much"
                        : chosen.name() + " was measured and " + each->name() +
                              " was not: it stands, though the other explains as much") +
                   "; difference in BIC " +
@@ -132,7 +136,7 @@ void report_unnamed(const FittedModel& fitted, const Whitened& data, double p_va
   std::optional<Unnamed>& unnamed = closed.trace.unnamed;
   Eigen::VectorXd folded;
   if (wave) folded = wave->refined.columns * wave->refined.projection.amplitudes;
-  unnamed = describe(fitted.model, structure, data, fitted.fit.linear, folded);
+  unnamed = describe(fitted, structure, data, folded);
   unnamed->p_value = p_value;
   closed.widening = widening(fitted.model, fitted.fit, structure, tested);
 }

@@ -78,8 +78,8 @@ bool is_measured(const TestedCandidate& tested) {
   return tested.refined.candidate->term.effect->description().measured;
 }
 
-/// Whether `each` is neither measured nor of the carriages, and `chosen` a measured cause; or has
-/// an error of the instrument in fewer of its readings than `chosen`.
+/// Whether `each` is neither measured nor of the carriages, and `chosen` a measured cause; or is
+/// the same in fewer readings.
 bool ranks_below(const TestedCandidate& each, const TestedCandidate& chosen) {
   return is_in_fewer_readings(each, chosen) ||
          (is_measured(chosen) && !is_measured(each) &&
@@ -227,7 +227,8 @@ bool is_in_fewer_readings(const TestedCandidate& part, const TestedCandidate& wh
   const auto is_in_whole = [&](const std::string& name) {
     return b.term.profiles.empty() || std::ranges::count(b.term.profiles, name) > 0;
   };
-  return a.term.effect->description().of_instrument && a.effect_name() == b.effect_name() &&
+  const Description& effect = a.term.effect->description();
+  return (effect.of_instrument || effect.measured) && a.effect_name() == b.effect_name() &&
          a.name() != b.name() && !a.term.profiles.empty() &&
          std::ranges::all_of(a.term.profiles, is_in_whole);
 }
@@ -255,18 +256,30 @@ const TestedCandidate* SearchRound::choice(const Gates& gates,
     };
     if (std::none_of(tested.begin(), each, stands_before)) {
       const TestedCandidate* better_known = better_known_than(*each, gates, excluded);
-      return better_known ? better_known : &*each;
+      return simplest_law(better_known ? *better_known : *each, gates);
     }
   }
   return nullptr;
 }
 
+const TestedCandidate* SearchRound::simplest_law(const TestedCandidate& choice,
+                                                 const Gates& gates) const {
+  const TestedCandidate* out = &choice;
+  for (const TestedCandidate& each : tested)
+    if (each.name() == choice.name() &&
+        each.refined.candidate->amplitudes() == choice.refined.candidate->amplitudes() &&
+        each.refined.shape.size() < out->refined.shape.size() && each.refused(gates).empty() &&
+        each.refined.delta_bic <= choice.refined.delta_bic + gates.tie_bic)
+      out = &each;
+  return out;
+}
+
 const TestedCandidate* SearchRound::better_known_than(
     const TestedCandidate& choice, const Gates& gates,
     const std::vector<std::string>& excluded) const {
-  if (is_measured(choice) || choice.refined.candidate->term.effect->is_carriage()) return nullptr;
+  if (choice.refined.candidate->term.effect->is_carriage()) return nullptr;
   const auto at = std::ranges::find_if(tested, [&](const TestedCandidate& each) {
-    return (is_measured(each) || is_in_fewer_readings(choice, each)) &&
+    return ((is_measured(each) && !is_measured(choice)) || is_in_fewer_readings(choice, each)) &&
            each.refused(gates).empty() &&
            each.refined.delta_bic <= choice.refined.delta_bic + gates.tie_bic &&
            std::ranges::count(excluded, each.name()) == 0 && alike(each, choice, gates);

@@ -31,7 +31,8 @@ struct TestedCandidate {
   [[nodiscard]] bool is_possible() const;
 };
 
-/// Whether `part` is an error of the instrument that `whole` has in more of its readings.
+/// Whether `part` is an error of the instrument, or a measured cause, that `whole` has in more
+/// readings.
 [[nodiscard]] bool is_in_fewer_readings(const TestedCandidate& part, const TestedCandidate& whole);
 
 /// A search of what one model leaves over.
@@ -45,8 +46,8 @@ struct SearchRound {
                                               const std::vector<std::string>& excluded = {}) const;
 
   /// What explains that for which `choice` would be accepted, within tie_bic of it, and has a
-  /// reason of its own: a measured cause, which `choice` is not; an error of the instrument in all
-  /// that it reads, not in some readings alone. Null: none.
+  /// reason of its own: a measured cause, which `choice` is not; that, or an error of the
+  /// instrument, in all readings, not in some alone. Null: none.
   [[nodiscard]] const TestedCandidate* better_known_than(
       const TestedCandidate& choice, const Gates& gates,
       const std::vector<std::string>& excluded = {}) const;
@@ -58,12 +59,15 @@ struct SearchRound {
   [[nodiscard]] std::vector<const TestedCandidate*> rivals(const TestedCandidate& chosen,
                                                            const Gates& gates) const;
 
-  /// What would be rivals of `chosen`, were it no measured cause, or no error of the instrument in
-  /// all that it reads.
+  /// What would be rivals of `chosen`, were it no measured cause, or no error of the instrument.
   [[nodiscard]] std::vector<const TestedCandidate*> outranked(const TestedCandidate& chosen,
                                                               const Gates& gates) const;
 
  private:
+  /// Of the same effect with fewer shapes, within tie_bic of `choice`: the one with the fewest.
+  [[nodiscard]] const TestedCandidate* simplest_law(const TestedCandidate& choice,
+                                                    const Gates& gates) const;
+
   /// The least difference in BIC of an effect and, where it is one of the place of each trace, of
   /// the same effect of all: each has its own, though one for all may explain more than any.
   [[nodiscard]] double least_of_effect(const TestedCandidate& part) const;

@@ -55,7 +55,8 @@ std::string too_small(ModelExtender& extender, const Gates& gates,
 const TestedCandidate* find_tested(const SearchRound& round, const AcceptedEffect& effect,
                                    const Gates& gates) {
   const auto is_it = [&](const TestedCandidate& each) {
-    return each.name() == effect.name() && (effect.is_expected || each.refused(gates).empty());
+    return each.name() == effect.name() && each.refined.shape.size() == effect.shape.size() &&
+           (effect.is_expected || each.refused(gates).empty());
   };
   const auto found = std::ranges::find_if(round.tested, is_it);
   return found == round.tested.end() ? nullptr : &*found;

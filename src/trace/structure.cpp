@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "response.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/uncertainty.hpp"
 #include "slideway/signal/spectrum.hpp"
@@ -63,6 +64,18 @@ Eigen::VectorXd deviations_of(const Eigen::MatrixXd& columns, const Eigen::Matri
       Eigen::MatrixXd::Identity(sizes.size(), sizes.size()) + scaled.transpose() * scaled);
   const Eigen::MatrixXd rows = columns * sizes.asDiagonal();
   return information.matrixL().solve(rows.transpose()).colwise().norm().transpose();
+}
+
+/// Signals in the low bands without what they put into the model and the levelling.
+Eigen::MatrixXd beside_model(const Solution& fit, Eigen::MatrixXd signals) {
+  signals -= stacked_model(fit.linear) * response(fit, signals);
+  Eigen::Index row = 0;
+  for (const Observation* observation : fit.linear.observations) {
+    const Eigen::Index count = observation->values.size();
+    signals.middleRows(row, count) = levelled(*observation, signals.middleRows(row, count));
+    row += count;
+  }
+  return signals;
 }
 
 /// The values of one profile over the variable, one half of a diameter, without what is left out.
@@ -148,8 +161,9 @@ const Clock& clock_of(const Unnamed& unnamed) {
   return found == std::end(kClocks) ? std::end(kClocks)[-1] : *found;
 }
 
-Unnamed describe(const Model& model, const Structure& found, const Whitened& data,
-                 const Linearisation& linear, const Eigen::VectorXd& wave) {
+Unnamed describe(const FittedModel& fitted, const Structure& found, const Whitened& data,
+                 const Eigen::VectorXd& wave) {
+  const Linearisation& linear = fitted.fit.linear;
   Unnamed out = found.description;
   out.has_folded_wave = wave.size() > 0;
   double largest = -1.0;
@@ -157,8 +171,7 @@ Unnamed describe(const Model& model, const Structure& found, const Whitened& dat
   Eigen::MatrixXd columns =
       stack(linear, found.columns.front().cols(), [&](std::size_t i) { return found.columns[i]; });
   const Eigen::MatrixXd white = data.outside(columns);
-  columns = BesideLevelling(linear, stacked_model(linear), columns)
-                .rest;  // the other part shows as parameters
+  columns = beside_model(fitted.fit, std::move(columns));  // the other part shows as parameters
   const Eigen::VectorXd process = columns * found.process.coefficients;
   for (std::size_t i = 0; i < found.columns.size(); ++i) {
     const Observation& observation = *linear.observations[i];
@@ -182,7 +195,7 @@ Unnamed describe(const Model& model, const Structure& found, const Whitened& dat
   }
   const Eigen::VectorXd deviations = deviations_of(
       columns.middleRows(data.first_row(which), data.count(which)), white, found.process.sizes);
-  set_curve(readings_of(model, linear, out.clock)[which],
+  set_curve(readings_of(fitted.model, linear, out.clock)[which],
             process.segment(data.first_row(which), data.count(which)), deviations,
             *linear.observations[which], out);
   return out;

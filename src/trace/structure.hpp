@@ -22,8 +22,8 @@ double shared_evidence(const FittedModel& fitted);
 
 /// Size, place and form of what is left.
 /// @param wave  the low band of a wave besides, stacked; empty: none
-Unnamed describe(const Model& model, const Structure& structure, const Whitened& data,
-                 const Linearisation& linear, const Eigen::VectorXd& wave);
+Unnamed describe(const FittedModel& fitted, const Structure& structure, const Whitened& data,
+                 const Eigen::VectorXd& wave);
 
 /// What a variable of a process is called in a formula.
 struct Clock {

@@ -67,7 +67,7 @@ void Suspects::choose_suspects() {
   Candidates chosen;
   for (const Candidate& candidate : dictionary_.candidates) {
     const Effect& effect = *candidate.term.effect;
-    if (!candidate.term.profiles.empty() || candidate.raises_degree || effect.is_carriage() ||
+    if (!candidate.stands_for_effect() || candidate.raises_degree || effect.is_carriage() ||
         !effect.has_one_size())
       continue;
     Suspect& suspect = suspects_.emplace_back();
@@ -177,7 +177,7 @@ void Suspects::find_pairs() {
   white = data.outside(std::move(white));
   Candidates rivals;
   for (const Candidate& candidate : dictionary_.candidates)
-    if (candidate.term.profiles.empty()) rivals.push_back(&candidate);
+    if (candidate.stands_for_effect()) rivals.push_back(&candidate);
   std::vector<std::vector<std::vector<Place>>> found(rivals.size());
   parallel_for(rivals.size(),
                [&](std::size_t r) { found[r] = likely_places(*rivals[r], data, white); });

@@ -352,7 +352,7 @@ class Loop {
     const FittedModel& base = extender_.base();
     Candidates everywhere;
     for (const Candidate& each : extender_.dictionary().candidates)
-      if (each.term.profiles.empty() && !each.is_fast) everywhere.push_back(&each);
+      if (each.stands_for_effect()) everywhere.push_back(&each);
     const std::vector<Noise>&searched = own_noise_ ? *own_noise_ : data.noise(),
           &of_fit = own_noise_ ? *own_noise_ : fitted.fit.noise;
     out.detection_limits = detection_limits(base, {base.fit.linear, searched}, of_fit, everywhere,

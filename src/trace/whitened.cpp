@@ -20,15 +20,13 @@ Eigen::MatrixXd model_span(const Linearisation& linear) {
   return out;
 }
 
-BesideLevelling::BesideLevelling(const Linearisation& linear, Eigen::MatrixXd columns,
-                                 Eigen::MatrixXd targets)
-    : rest(std::move(targets)) {
+Eigen::MatrixXd beside_levelling(const Linearisation& linear, Eigen::MatrixXd columns,
+                                 Eigen::MatrixXd targets) {
   ProfileBases nuisances;
   for (const Observation* observation : linear.observations) nuisances.add(observation->nuisances);
   columns = nuisances.beside(std::move(columns));
-  nuisances.take_out(rest);
-  values = least_squares(columns, rest).values;
-  rest -= columns * values;
+  nuisances.take_out(targets);
+  return least_squares(columns, targets).values;
 }
 
 /// Amplitudes' and shapes' columns, stacked, with the priors' rows.

@@ -113,13 +113,10 @@ Eigen::MatrixXd stack(const Linearisation& linear, Eigen::Index columns, Of&& of
 }
 
 /// Least squares of stacked targets by stacked columns, the nuisances of each profile left free:
-/// they are taken out of both first (Frisch, Waugh and Lovell).
-struct BesideLevelling {
-  BesideLevelling(const Linearisation& linear, Eigen::MatrixXd columns, Eigen::MatrixXd targets);
-
-  Eigen::MatrixXd values;  // of the columns, one column each target
-  Eigen::MatrixXd rest;    // of the targets
-};
+/// they are taken out of both first (Frisch, Waugh and Lovell). Of the columns, one column each
+/// target.
+Eigen::MatrixXd beside_levelling(const Linearisation& linear, Eigen::MatrixXd columns,
+                                 Eigen::MatrixXd targets);
 
 /// Columns of the model's amplitudes and shapes, stacked, with the rows of the priors.
 Eigen::MatrixXd stacked_model(const Linearisation& linear);

@@ -60,6 +60,20 @@ double share_within_readings(const Linearisation& linear, const Eigen::MatrixXd&
   return share;
 }
 
+/// The same, for the model's changes by them to be no larger than so many times what it leaves.
+double share_that_hides(const Solution& fit, const Eigen::MatrixXd& changes, double most) {
+  double hidden = 0.0, left = 0.0;
+  for (std::size_t i = 0; i < fit.noise.size(); ++i) {
+    const Observation& observation = *fit.linear.observations[i];
+    const auto in_noise = [&](const Eigen::MatrixXd& columns) {
+      return (levelled(observation, columns) / fit.noise[i].standard_deviation()).squaredNorm();
+    };
+    hidden += in_noise(fit.linear.columns[i] * changes);
+    left += in_noise(fit.linear.residuals[i]);
+  }
+  return hidden > most * most * left ? most * std::sqrt(left / hidden) : 1.0;
+}
+
 /// What a candidate makes in the readings.
 Eigen::VectorXd signal_of(const Linearisation& linear, const Refined& refined) {
   const Eigen::VectorXd signal = refined.columns * refined.projection.amplitudes;
@@ -94,7 +108,10 @@ Widening widening(const Model& model, const Solution& fit, const Structure& stru
   const Eigen::MatrixXd process = stack(fit.linear, structure.columns[0].cols(),
                                         [&](std::size_t i) { return structure.columns[i]; }) *
                                   structure.process.sizes.asDiagonal();
-  out.process = share_within_readings(fit.linear, process) * response(fit, process);
+  const Eigen::MatrixXd moved = response(fit, process);
+  out.process = std::min(share_within_readings(fit.linear, process),
+                         share_that_hides(fit, moved, model.gates.most_hidden)) *
+                moved;
   for (const TestedCandidate& each : refused) {
     if (each.refined.delta_bic > -model.gates.delta_bic || !each.is_possible()) continue;
     out.add(response(fit, signal_of(fit.linear, each.refined)));

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "effects/effect_cases.hpp"
+#include "own/local_trend.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/random.hpp"
 #include "slideway/effects/contract.hpp"
@@ -16,9 +17,12 @@ namespace slideway::channel_test {
 namespace {
 
 using namespace testing_support;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::Gt;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Lt;
 
 Channel log_of(const std::function<double(double)>& q, double last = 300.0, double step = 0.5) {
   Channel out{.name = "spindle_temperature", .unit = "degC"};
@@ -134,37 +138,105 @@ TEST(ChannelEffect, NeedsALogOfTheWholeCutWithoutAWideGap) {
               ElementsAre("feed_mm_per_min"));
 }
 
-// 4000 normal deviates: the median of |second differences| has 1.6 % of scatter, correlation of
-// neighbours included.
-TEST(ChannelEffect, KnowsTheNoiseOfALogThatMoves) {
-  RandomStream random(3, "log");
-  const Channel noisy = log_of(
-      [&](double t) { return 20.0 + 3.0 * (1.0 - std::exp(-t / 50.0)) + 0.05 * random.normal(); },
-      2000.0);
-  EXPECT_NEAR(noise_of(noisy), 0.05, 0.05 * 0.07);
+// The mean of a quantity whose slope is a random walk is the cubic smoothing spline with the
+// penalty 1 / its variance (Wahba 1978). Values by scipy 1.10.1, make_smoothing_spline(t, y,
+// lam=lam), to nine places; the diffuse start is one of 1e8 times the variance of a reading.
+TEST(LocalTrend, IsTheSmoothingSpline) {
+  const std::vector<double> t{0.0, 1.0, 2.5, 3.0, 4.5, 5.0, 6.0, 7.0, 9.0, 10.0, 12.0};
+  const std::vector<double> y{1.0, 1.4, 0.9, 2.0, 2.2, NAN, 3.1, 2.7, 2.9, 3.5, 3.2};
+  const std::array<std::size_t, 5> shown{0, 2, 5, 8, 10};
+  const auto expect = [&](double penalty, const std::array<double, 5>& values) {
+    const std::vector<double> found = LocalTrend{.slope = 1.0 / penalty}.smoothed(t, y);
+    for (std::size_t k = 0; k < shown.size(); ++k)
+      EXPECT_NEAR(found[shown[k]], values[k], 2e-7) << penalty << " at " << t[shown[k]];
+  };
+  expect(0.1, {1.049872042, 1.323089813, 2.571382912, 2.987817569, 3.226695603});
+  expect(10.0, {0.958147478, 1.614160224, 2.360032065, 3.114225672, 3.362299681});
 }
 
-// 11.5 values a station: white noise of 2 has a variance of 4/11.5 in their means, whatever the log
-// does beside. The median of its second differences has 5 % of scatter at 600 values, twice that in
-// a variance; of ten draws the sum of squares has 6 %. Three times both together are allowed.
-TEST(ChannelEffect, KnowsTheNoiseInItsColumns) {
-  constexpr int kDraws = 10;
+Channel warming(RandomStream& random, double noise, double step = 2.0) {
+  return log_of(
+      [&](double t) {
+        return 20.0 + 4.0 * (1.0 - std::exp(-t / 40.0)) + 3.0 * (1.0 - std::exp(-t / 250.0)) +
+               noise * random.normal();
+      },
+      300.0, step);
+}
+
+// A log of 0.1 degC every 2 s is a mean of three values a station: 0.06 in the column, if nothing
+// is smoothed. What is known of the error is its own size: of 30 logs with about ten independent
+// parts each, the ratio of the squares has 8 % of scatter and the model of the walk its own; a
+// factor of two is allowed.
+TEST(ChannelEffect, IsFreeOfMostOfTheNoiseOfItsLogAndKnowsTheRest) {
   const Case face = all_cases()[0];
   const Stations stations(face.positions, face.setup, lathe());
-  RandomStream random(3, "log");
-  for (const double signal : {0.0, 1000.0}) {
-    const Channel log =
-        log_of([&](double t) { return signal * t / 300.0 + 2.0 * random.normal(); });
-    const auto effect = channel_effect(log, {.name = "T"})(lathe(), kTravel);
-    double squares = 0.0;
-    for (int d = 0; d < kDraws; ++d) {
-      Eigen::MatrixXd column(stations.size(), 1);
-      effect->noise_of_cause(static_cast<std::uint64_t>(d))->columns(stations, {}, column);
-      squares += column.squaredNorm();
-    }
-    const double count = static_cast<double>(kDraws * stations.size());
-    EXPECT_NEAR(squares / count, 4.0 / 11.5, 0.35 * 4.0 / 11.5);
+  double squares = 0.0, drawn = 0.0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    RandomStream random(seed, "log");
+    const auto effect = channel_effect(warming(random, 0.1), {.name = "T"})(lathe(), kTravel);
+    const Eigen::VectorXd truth = column(warming(random, 0.0), {.name = "T"}, face);
+    squares += (columns(*effect, face, {}).col(0) - truth).squaredNorm();
+    drawn += columns(*effect->noise_of_cause(seed), face, {}).squaredNorm();
   }
+  const auto count = 30.0 * static_cast<double>(stations.size());
+  EXPECT_LT(std::sqrt(squares / count), 0.06 / 1.5);
+  EXPECT_THAT(squares / drawn, AllOf(Gt(0.5), Lt(2.0)));
+}
+
+// A wave of 100 s read every 10 s: straight lines miss it by (2π/100)² 10²/8 = 5 % of its size, the
+// cubic spline through it by 5/384 (2π/100)⁴ 10⁴ = 0.2 % (de Boor 2001, A practical guide to
+// splines, chapter V).
+TEST(ChannelEffect, IsNoPolygonWhereItsLogIsCoarse) {
+  const Case face = all_cases()[0];
+  const auto wave = [](double t) { return std::sin(2.0 * kPi * t / 100.0); };
+  const Eigen::VectorXd y = column(log_of(wave, 300.0, 10.0), {.name = "T"}, face);
+  const Eigen::VectorXd fine = column(log_of(wave, 300.0, 0.1), {.name = "T"}, face);
+  for (Eigen::Index i = 3; i + 3 < y.size(); ++i)
+    if (time_at(face, i) > 20.0 && time_at(face, i) < 280.0) EXPECT_NEAR(y[i], fine[i], 0.01);
+}
+
+// A sensor that tells 0.5 degC is wrong by up to 0.25 at every value; its runs of one value are
+// right in their middles.
+TEST(ChannelEffect, TakesARunOfOneValueAsOneReading) {
+  const Case face = all_cases()[0];
+  RandomStream random(1, "log");
+  Channel coarse = warming(random, 0.0);
+  for (double& value : coarse.values) value = std::round(2.0 * value) / 2.0;
+  const Eigen::VectorXd y = column(coarse, {.name = "T"}, face);
+  const Eigen::VectorXd truth = column(warming(random, 0.0), {.name = "T"}, face);
+  double squares = 0.0;
+  for (Eigen::Index i = 2; i + 2 < y.size(); ++i) squares += std::pow(y[i] - truth[i], 2);
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(y.size())), 0.5 / std::sqrt(12.0) / 2.0);
+}
+
+TEST(OutliersOfALog, AreSinglePeaksAndCodesOfASensorThatWasNotRead) {
+  RandomStream random(1, "log");
+  Channel log = warming(random, 0.02);
+  EXPECT_THAT(outliers_of(log), IsEmpty());
+  log.values[50] += 3.0;
+  EXPECT_THAT(outliers_of(log), ElementsAre(50));
+  log.values[100] = log.values[101] = 999.0;
+  EXPECT_THAT(outliers_of(log), ElementsAre(50, 100, 101));
+}
+
+// Power that is switched: every value belongs to it.
+TEST(OutliersOfALog, AreNotWhatIsSwitched) {
+  RandomStream random(1, "log");
+  const Channel power = log_of(
+      [&](double t) { return (std::fmod(t, 60.0) < 20.0 ? 2.0 : 0.0) + 0.02 * random.normal(); });
+  EXPECT_THAT(outliers_of(power), IsEmpty());
+  const Channel clean = log_of([&](double t) { return std::fmod(t, 60.0) < 20.0 ? 2.0 : 0.0; });
+  EXPECT_THAT(outliers_of(clean), IsEmpty());
+}
+
+// One log in a thousand may have one by chance; of 1000 more than five have with 6e-4.
+TEST(OutliersOfALog, AreRareByChance) {
+  int with = 0;
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    RandomStream random(seed, "log");
+    with += outliers_of(warming(random, 0.1)).empty() ? 0 : 1;
+  }
+  EXPECT_LE(with, 5);
 }
 
 TEST(ChannelEffect, KeepsTheContractOfTheCatalogue) {

@@ -126,6 +126,34 @@ TEST(OwnEffect, ThatWasMeasuredMayActAtOnce) { LateCause{0.0}.expect_found(); }
 
 TEST(OwnEffect, ThatWasMeasuredMayActLater) { LateCause{8.0}.expect_found(); }
 
+// The face follows at once. A log of 0.03 degC, smoothed, leaves a lag and a time constant
+// nothing to explain; with both free they made up for its noise.
+TEST(OwnEffect, OfANoisyLogHasNoLagThatTheDataDoNotAskFor) {
+  for (const std::uint64_t seed : {21, 22, 23}) {
+    Channel log{.name = "spindle_temperature", .unit = "degC"};
+    RandomStream random(seed, "sensor");
+    for (int i = 0; i <= 200; ++i) {
+      log.at.push_back(2.0 * i);
+      log.values.push_back(temperature(2.0 * i) + 0.03 * random.normal());
+    }
+    std::vector<EffectFactory> laws =
+        channel_effects(log, {{.name = log.name, .free_lag = true, .free_tau = true},
+                              {.name = log.name, .free_tau = true},
+                              {.name = log.name, .free_lag = true},
+                              {.name = log.name}});
+    Problem problem = problem_of();
+    problem.trace.own = problem.own_effects = {
+        {log.name, {.own = laws[0], .simpler = {laws.begin() + 1, laws.end()}}, {}}};
+    const Closed result = closed(problem, warm_faces(seed));
+    SCOPED_TRACE(story(result));
+    EXPECT_THAT(named(result), ElementsAre("spindle_temperature"));
+    const TraceRound* round = round_of(result, "spindle_temperature");
+    ASSERT_NE(round, nullptr);
+    ASSERT_EQ(round->parameters.size(), 1U);
+    expect_within_4u(round->parameters, "spindle_temperature.a", 0.2);
+  }
+}
+
 /// A log that rises evenly: a linear drift fits as well, and nobody measured that.
 TEST(OwnEffect, ThatWasMeasuredOutranksADriftThatFitsAsWell) {
   Channel log{.name = "room_temperature", .unit = "degC"};

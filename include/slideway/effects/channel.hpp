@@ -28,14 +28,19 @@ struct ChannelResponse {
   bool since_start = false;     // q is counted from its value where the cut starts
 };
 
-/// Standard deviation of the white noise of a log, from its second differences (median, so that
-/// what moves does not count).
-double noise_of(const Channel& channel);
+/// Values of a log that do not belong to it: single ones far from both neighbours, and those of one
+/// number, such as 0 where a sensor was not read, that lies further away from all others than these
+/// from one another. In order.
+std::vector<std::size_t> outliers_of(const Channel& log);
 
-/// The effect h = gain · q, on the clock reading_time also of slopes: q, straight between its
-/// values, is taken through the response and averaged over the spacing of the stations, which is
-/// the filter against aliases.
+/// The effect h = gain · q, on the clock reading_time also of slopes: q, the log without its
+/// outliers and noise, is taken through the response and averaged over the spacing of the stations,
+/// which is the filter against aliases.
 /// @throws UsageError  fewer than three values, places that do not increase, a number beyond 1e30
 EffectFactory channel_effect(Channel channel, const ChannelResponse& response);
+
+/// The same of several responses to one log, as many factories.
+std::vector<EffectFactory> channel_effects(Channel channel,
+                                           const std::vector<ChannelResponse>& responses);
 
 }  // namespace slideway

@@ -152,6 +152,8 @@ struct EffectOptions {
   std::vector<int> harmonics = {};                     // of feed marks in one cut, rising
   bool each_half = false;  // of them: each half of a diameter has its own
   EffectFactory own = {};  // makes an effect that is not in the catalogue; empty: it is
+  /// The same one with fewer shapes: laws that a search says where they explain as much.
+  std::vector<EffectFactory> simpler = {};
 };
 
 /// A normal prior on one parameter, in the parameter's unit.
@@ -288,7 +290,7 @@ class Effect {
   /// search_range().
   [[nodiscard]] virtual std::string fault(const Stations& stations) const;
 
-  /// The effect with a draw of the noise of its cause in the place of that; null: none was
+  /// The effect with a draw of the error of its cause in the place of that; null: none was
   /// measured.
   [[nodiscard]] virtual std::unique_ptr<Effect> noise_of_cause(std::uint64_t seed) const;
 

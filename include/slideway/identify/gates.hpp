@@ -88,6 +88,7 @@ struct Gates {
   double noise_spread = 1.0;
 
   // What is said beside the verdict.
+  double most_hidden = 3.0;
   double nearly_alike = 0.95;
   double ranking_p = 0.05;
   double ranking_lead = 0.8;

@@ -87,6 +87,7 @@ struct Problem {
   std::vector<DeclaredEffect> effects;
   std::vector<DeclaredEffect> own_effects;    // all that are not of the catalogue, by their names
   std::vector<std::filesystem::path> beside;  // files it names that hold no profile
+  std::vector<std::string> remarks;           // on what those hold
   std::optional<Runout> runout;
   TraceOptions trace;
   std::optional<Truth> truth;

@@ -7,21 +7,19 @@
 
 #include "../linear_effect.hpp"
 #include "../variable_range.hpp"
+#include "measured_log.hpp"
 #include "slideway/base/error.hpp"
-#include "slideway/base/random.hpp"
-#include "slideway/base/statistics.hpp"
 #include "slideway/base/text.hpp"
 
 namespace slideway {
 namespace {
 
-constexpr double kLongestLag = 0.25;       // of the log
-constexpr double kFastest = 0.1;           // of the spacing of the log: at once
-constexpr double kSlowest = 2.0;           // times the log: a first-order lag that integrates
-constexpr double kWidestGap = 0.2;         // of a profile's stretch on the clock
-constexpr double kOfTheEnds = 1e-9;        // rounding of where a log and a profile begin
-constexpr double kNormalMad = 1.4826;      // standard deviation over median absolute deviation
-constexpr double kSecondDifference = 6.0;  // its variance over that of white noise
+constexpr double kLongestLag = 0.25;  // of the log
+constexpr double kFastest = 0.1;      // of the spacing of the log: at once
+constexpr double kSlowest = 2.0;      // times the log: a first-order lag that integrates
+constexpr double kWidestGap = 0.2;    // of a profile's stretch on the clock
+constexpr double kEven = 1.5;         // mean spacings: what is wider is a gap
+constexpr double kOfTheEnds = 1e-9;   // rounding of where a log and a profile begin
 
 /// A quantity that is straight between its places, constant beyond them, after a first-order lag,
 /// and its integral.
@@ -177,10 +175,16 @@ std::vector<Shape> shapes_of(const ChannelResponse& response) {
 
 class ChannelEffect : public LinearEffect {
  public:
-  ChannelEffect(std::shared_ptr<const Channel> channel, const ChannelResponse& response)
-      : LinearEffect(describe(*channel, response), parameters_of(*channel, response),
+  /// @param log       as it was read
+  /// @param quantity  what it says of the quantity, or a draw of the error of that
+  /// @param measured  where draws come from
+  ChannelEffect(std::shared_ptr<const Channel> log, std::shared_ptr<const Channel> quantity,
+                std::shared_ptr<const MeasuredLog> measured, const ChannelResponse& response)
+      : LinearEffect(describe(*log, response), parameters_of(*log, response),
                      diagonal_map(1, kMicrometre), shapes_of(response)),
-        channel_(std::move(channel)),
+        channel_(std::move(log)),
+        quantity_(std::move(quantity)),
+        measured_(std::move(measured)),
         response_(response) {}
 
   [[nodiscard]] bool applies_to(const Setup& setup) const override {
@@ -227,7 +231,8 @@ class ChannelEffect : public LinearEffect {
     return response_.free_tau ? shape.back() : response_.tau_s.value_or(0.0);
   }
 
-  std::shared_ptr<const Channel> channel_;
+  std::shared_ptr<const Channel> channel_, quantity_;
+  std::shared_ptr<const MeasuredLog> measured_;
   ChannelResponse response_;
 };
 
@@ -248,11 +253,17 @@ std::vector<std::string> ChannelEffect::lacking(const Setup& setup) const {
   if (earliest < at.front() - rounding || range.high > at.back() + rounding)
     return {"the log " + channel_->name + where + " (it has " + significant(at.front(), 5) +
             " to " + significant(at.back(), 5) + ")"};
+  const double spacing = (at.back() - at.front()) / static_cast<double>(at.size() - 1);
   for (std::size_t i = 1; i < at.size(); ++i) {
     const double gap = std::min(at[i], range.high) - std::max(at[i - 1], range.low);
-    if (gap > kWidestGap * range.extent())
-      return {"the log " + channel_->name + where + " without the gap at " +
-              significant(at[i - 1], 5) + " " + unit_of_clock(*channel_)};
+    if (gap <= kWidestGap * range.extent()) continue;
+    const std::string unit = " " + unit_of_clock(*channel_);
+    if (at[i] - at[i - 1] < kEven * spacing)
+      return {"the log " + channel_->name + where + " at least every " +
+              significant(kWidestGap * range.extent(), 2) + unit + " (it has every " +
+              significant(spacing, 2) + unit + ")"};
+    return {"the log " + channel_->name + where + " without the gap at " +
+            significant(at[i - 1], 5) + unit};
   }
   return {};
 }
@@ -260,7 +271,7 @@ std::vector<std::string> ChannelEffect::lacking(const Setup& setup) const {
 void ChannelEffect::columns(const Stations& stations, std::span<const double> shape,
                             Eigen::Ref<Eigen::MatrixXd> out) const {
   if (!applies_to(stations.setup())) return void(out.setZero());
-  const Response response(*channel_, tau(shape));
+  const Response response(*quantity_, tau(shape));
   const Eigen::VectorXd clock = readings(stations, reading());
   const double width = range_of(clock).step, later = lag(shape);
   const double start = response_.since_start ? response.value(start_of(stations) - later) : 0.0;
@@ -272,7 +283,7 @@ void ChannelEffect::columns(const Stations& stations, std::span<const double> sh
 void ChannelEffect::derivatives(const Stations& stations, std::span<const double> shape,
                                 Eigen::Ref<Eigen::MatrixXd> out) const {
   if (shape.empty() || !applies_to(stations.setup())) return void(out.setZero());
-  const Response response(*channel_, tau(shape));
+  const Response response(*quantity_, tau(shape));
   const Eigen::VectorXd clock = readings(stations, reading());
   const double width = range_of(clock).step, later = lag(shape);
   const double begin = start_of(stations) - later, unit = unit_of(stations);
@@ -288,27 +299,19 @@ void ChannelEffect::derivatives(const Stations& stations, std::span<const double
   }
 }
 
-// White, as noise_of() has it.
 std::unique_ptr<Effect> ChannelEffect::noise_of_cause(std::uint64_t seed) const {
-  auto noise = std::make_shared<Channel>(*channel_);
-  const double size = noise_of(*channel_);
-  RandomStream random(seed, channel_->name);
-  for (double& value : noise->values) value = size * random.normal();
-  return std::make_unique<ChannelEffect>(std::move(noise), response_);
+  return std::make_unique<ChannelEffect>(
+      channel_, std::make_shared<const Channel>(measured_->error(seed)), measured_, response_);
 }
 
 }  // namespace
 
-double noise_of(const Channel& channel) {
-  std::vector<double> differences;
-  for (std::size_t i = 1; i + 1 < channel.values.size(); ++i)
-    differences.push_back(
-        std::abs(channel.values[i - 1] - 2.0 * channel.values[i] + channel.values[i + 1]));
-  if (differences.empty()) return 0.0;
-  return kNormalMad * median(differences) / std::sqrt(kSecondDifference);
+EffectFactory channel_effect(Channel channel, const ChannelResponse& response) {
+  return channel_effects(std::move(channel), {response}).front();
 }
 
-EffectFactory channel_effect(Channel channel, const ChannelResponse& response) {
+std::vector<EffectFactory> channel_effects(Channel channel,
+                                           const std::vector<ChannelResponse>& responses) {
   if (channel.at.size() < 3 || channel.at.size() != channel.values.size())
     throw UsageError("channel '" + channel.name + "' has fewer than three values");
   if (std::ranges::adjacent_find(channel.at, std::ranges::greater_equal()) != channel.at.end())
@@ -321,12 +324,19 @@ EffectFactory channel_effect(Channel channel, const ChannelResponse& response) {
     throw UsageError("channel '" + channel.name + "' has numbers beyond 1e30");
   if (std::ranges::adjacent_find(channel.at, is_close) != channel.at.end())
     throw UsageError("channel '" + channel.name + "' has places closer than 1e-30 to each other");
-  if (!is_possible(response.lag_s) || !is_possible(response.tau_s.value_or(0.0)))
+  if (std::ranges::any_of(responses, [&](const ChannelResponse& each) {
+        return !is_possible(each.lag_s) || !is_possible(each.tau_s.value_or(0.0));
+      }))
     throw UsageError("a lag_s or tau_s beyond 1e30");
-  auto shared = std::make_shared<const Channel>(std::move(channel));
-  return [shared, response](const Machine&, const TravelRange&) {
-    return std::make_unique<ChannelEffect>(shared, response);
-  };
+  auto log = std::make_shared<const Channel>(std::move(channel));
+  auto measured = std::make_shared<const MeasuredLog>(*log);
+  const std::shared_ptr<const Channel> quantity(measured, &measured->quantity());
+  std::vector<EffectFactory> out;
+  for (const ChannelResponse& response : responses)
+    out.emplace_back([=](const Machine&, const TravelRange&) {
+      return std::make_unique<ChannelEffect>(log, quantity, measured, response);
+    });
+  return out;
 }
 
 }  // namespace slideway

@@ -81,7 +81,11 @@ std::pair<std::size_t, std::string> culprit(const Formula& formula, const Values
 class FaultFinder {
  public:
   FaultFinder(const FormulaParts& parts, const Stations& stations)
-      : parts_(parts), stations_(stations), evaluation_(parts.expression()), along_(evaluation_) {}
+      : parts_(parts), stations_(stations), evaluation_(parts.expression()), along_(evaluation_) {
+    for (Eigen::Index i = 1; i < stations.size(); ++i)
+      if (std::abs(stations.trace(i)) < std::abs(stations.trace(nearest_to_axis_)))
+        nearest_to_axis_ = i;
+  }
 
   std::string find() {
     std::vector<double> middle;
@@ -115,10 +119,12 @@ class FaultFinder {
 
   std::string at_shape(const std::vector<double>& shape, Eigen::Index most) {
     const Eigen::Index stride = std::max<Eigen::Index>(1, stations_.size() / most);
+    std::vector<Eigen::Index> looked_at{nearest_to_axis_, stations_.size() - 1};
+    for (Eigen::Index i = 0; i < stations_.size(); i += stride) looked_at.push_back(i);
     for (std::size_t j = 0; j < parts_.amplitudes(); ++j) {
       Eigen::Index peak = 0;
       double largest = -1.0;
-      for (Eigen::Index i = 0; i < stations_.size(); i += stride) {
+      for (const Eigen::Index i : looked_at) {
         const Values values = values_at(i, j, shape);
         const double size = along_(values);
         if (!std::isfinite(size)) return told(values, values, i, "is not finite at ");
@@ -180,6 +186,7 @@ class FaultFinder {
   const Stations& stations_;
   Expression::Evaluation evaluation_;
   Along along_;
+  Eigen::Index nearest_to_axis_ = 0;
 };
 
 }  // namespace

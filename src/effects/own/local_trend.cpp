@@ -1,0 +1,176 @@
+#include "local_trend.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace slideway {
+namespace {
+
+constexpr double kDiffuse = 1e8;  // variance of the start, in those of a reading
+constexpr int kLevels[] = {-4, 4}, kSlopes[] = {-11, 3};  // decades of the ratios
+constexpr int kMostScans = 6;
+
+/// Level and slope with their covariance, in variances of a reading.
+struct State {
+  Eigen::Vector2d mean{0.0, 0.0};
+  Eigen::Matrix2d covariance{{kDiffuse, 0.0}, {0.0, kDiffuse}};
+};
+
+Eigen::Matrix2d transition(double step) { return Eigen::Matrix2d{{1.0, step}, {0.0, 1.0}}; }
+
+/// What the walks add over a step.
+Eigen::Matrix2d walked(const LocalTrend& trend, double step) {
+  const double cross = trend.slope * step * step / 2.0;
+  return Eigen::Matrix2d{{trend.level * step + trend.slope * step * step * step / 3.0, cross},
+                         {cross, trend.slope * step}};
+}
+
+State predicted(const LocalTrend& trend, const State& before, double step) {
+  const Eigen::Matrix2d f = transition(step);
+  return {f * before.mean, f * before.covariance * f.transpose() + walked(trend, step)};
+}
+
+/// Of a reading before it is known: its error and the variance of that.
+struct Innovation {
+  double error = 0.0, variance = 1.0;
+};
+
+Innovation update(State& state, double reading) {
+  const Innovation out{reading - state.mean[0], state.covariance(0, 0) + 1.0};
+  const Eigen::Vector2d gain = state.covariance.col(0) / out.variance;
+  state.mean += gain * out.error;
+  state.covariance -= out.variance * gain * gain.transpose();
+  return out;
+}
+
+/// Minus twice the restricted log likelihood, and the noise at its best.
+struct Deviance {
+  double value = INFINITY, noise = 0.0;
+};
+
+Deviance deviance_of(const LocalTrend& trend, std::span<const double> at,
+                     std::span<const double> readings) {
+  State state;
+  state.mean[0] = readings[0];
+  double squares = 0.0, logs = 0.0;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (i > 0) state = predicted(trend, state, (at[i] - at[i - 1]) / trend.spacing);
+    const Innovation innovation = update(state, readings[i]);
+    if (i < 2) continue;  // of the diffuse start
+    squares += innovation.error * innovation.error / innovation.variance;
+    logs += std::log(innovation.variance);
+  }
+  const auto freedom = static_cast<double>(at.size() - 2);
+  const double variance = squares / freedom;
+  if (!(variance > 0.0)) return {-INFINITY, 0.0};
+  return {freedom * std::log(variance) + logs, std::sqrt(variance)};
+}
+
+/// The ratios of most likelihood on a grid of decades, then of half ones, one ratio at a time.
+class Search {
+ public:
+  Search(std::span<const double> at, std::span<const double> readings)
+      : at_(at), readings_(readings) {
+    best_.spacing = (at.back() - at.front()) / static_cast<double>(at.size() - 1);
+    try_out(0.0, 0.0);
+  }
+
+  LocalTrend best() {
+    scan(&LocalTrend::slope, kSlopes);
+    const LocalTrend smooth = best_;
+    const Deviance of_smooth = least_;
+    best_.slope = 0.0;
+    least_ = deviance_of(best_, at_, readings_);
+    scan(&LocalTrend::level, kLevels);
+    if (of_smooth.value <= least_.value) best_ = smooth, least_ = of_smooth;
+    for (int i = 0; i < kMostScans; ++i) {
+      const double before = least_.value;
+      scan(&LocalTrend::level, kLevels);
+      scan(&LocalTrend::slope, kSlopes);
+      if (!(least_.value < before)) break;
+    }
+    for (double LocalTrend::*ratio : {&LocalTrend::level, &LocalTrend::slope})
+      for (const double factor : {std::sqrt(0.1), std::sqrt(10.0)}) {
+        LocalTrend tried = best_;
+        tried.*ratio *= factor;
+        try_out(tried.level, tried.slope);
+      }
+    best_.noise = least_.noise;
+    return best_;
+  }
+
+ private:
+  void try_out(double level, double slope) {
+    LocalTrend tried = best_;
+    tried.level = level;
+    tried.slope = slope;
+    const Deviance found = deviance_of(tried, at_, readings_);
+    if (found.value < least_.value) best_ = tried, least_ = found;
+  }
+
+  void scan(double LocalTrend::*ratio, const int (&decades)[2]) {
+    LocalTrend tried = best_;
+    for (int decade = decades[0] - 1; decade <= decades[1]; ++decade) {
+      tried.*ratio = decade < decades[0] ? 0.0 : std::pow(10.0, decade);
+      try_out(tried.level, tried.slope);
+    }
+  }
+
+  std::span<const double> at_, readings_;
+  LocalTrend best_;
+  Deviance least_;
+};
+
+}  // namespace
+
+LocalTrend LocalTrend::of(std::span<const double> at, std::span<const double> readings) {
+  return Search(at, readings).best();
+}
+
+std::vector<double> LocalTrend::smoothed(std::span<const double> at,
+                                         std::span<const double> readings) const {
+  const std::size_t n = at.size();
+  std::vector<State> before(n), after(n);  // the reading
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i > 0) before[i] = predicted(*this, after[i - 1], (at[i] - at[i - 1]) / spacing);
+    after[i] = before[i];
+    if (std::isfinite(readings[i])) update(after[i], readings[i]);
+  }
+  std::vector<double> out(n);
+  Eigen::Vector2d mean = after.back().mean;
+  out.back() = mean[0];
+  for (std::size_t i = n - 1; i-- > 0;) {
+    const Eigen::Matrix2d f = transition((at[i + 1] - at[i]) / spacing);
+    mean = after[i].mean + after[i].covariance * f.transpose() *
+                               before[i + 1].covariance.inverse() * (mean - before[i + 1].mean);
+    out[i] = mean[0];
+  }
+  return out;
+}
+
+std::vector<double> LocalTrend::error(std::span<const double> at, std::span<const double> readings,
+                                      RandomStream& random) const {
+  std::vector<double> truth(at.size()), drawn(at.size(), NAN);
+  Eigen::Vector2d state = Eigen::Vector2d::Zero();  // whatever it is: the start is diffuse
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (i > 0) {
+      const double step = (at[i] - at[i - 1]) / spacing, u = random.normal(), v = random.normal();
+      const double of_slope = noise * std::sqrt(slope * step);
+      // ∫ of a walk: its half of the end, and what is independent of that.
+      state = transition(step) * state;
+      state[0] += noise * std::sqrt(level * step) * random.normal() +
+                  of_slope * step * (u / 2.0 + v / std::sqrt(12.0));
+      state[1] += of_slope * u;
+    }
+    truth[i] = state[0];
+    const double read = noise * random.normal();
+    if (std::isfinite(readings[i])) drawn[i] = truth[i] + read;
+  }
+  std::vector<double> out = smoothed(at, drawn);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] -= truth[i];
+  return out;
+}
+
+}  // namespace slideway

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+#include "local_trend.hpp"
+#include "slideway/effects/channel.hpp"
+
+namespace slideway {
+
+/// What a log says of the quantity that it measured: values that do not belong to it are left out,
+/// runs of one value of a coarse resolution count as one reading in their middle, and the white
+/// noise is smoothed away (LocalTrend). In the place of the log the quantity makes a Berkson error:
+/// it is independent of what is known and leaves the gain without bias (Carroll et al. 2006,
+/// Measurement Error in Nonlinear Models, section 2.2.3).
+class MeasuredLog {
+ public:
+  explicit MeasuredLog(const Channel& log);
+
+  /// The mean, at places of the log and where they are few between them.
+  [[nodiscard]] const Channel& quantity() const { return quantity_; }
+
+  /// A draw of the error of quantity().
+  [[nodiscard]] Channel error(std::uint64_t seed) const;
+
+ private:
+  Channel quantity_;
+  LocalTrend trend_;
+  std::vector<double> readings_;  // at the places of quantity_; NaN: none there
+};
+
+}  // namespace slideway
