@@ -174,8 +174,8 @@ void explain_noise(const Solution& fit, ModelResult& out) {
   }
 }
 
-/// Errors in variables: what U holds of the error of the log.
-void explain_error_of_causes(const Model& model, const Solution& fit, ModelResult& out) {
+/// What is ahead of its cause, and errors in variables: what U holds of the error of the log.
+void explain_measured_causes(const Model& model, const Solution& fit, ModelResult& out) {
   constexpr double kMatters = 0.1;  // of U
   const Eigen::MatrixXd changes =
       response_to_causes(model, fit.linear, fit.noise, fit.estimate, fit.uncertainty.basis);
@@ -187,6 +187,11 @@ void explain_error_of_causes(const Model& model, const Solution& fit, ModelResul
       const FittedParameter* found = out.find(name);
       if (!found || !found->value || !found->standard_uncertainty) continue;
       const Eigen::Index row = term.first_parameter + static_cast<Eigen::Index>(p);
+      if (term.effect->parameters()[p].symbol == "lag" && found->expanded_uncertainty &&
+          *found->value + *found->expanded_uncertainty < 0.0)
+        out.notes.push_back(name +
+                            " is below 0: no effect is ahead of its cause, so the clock of " +
+                            "the log or the start of the cuts is wrong by about as much");
       const double error = (fit.parameters.jacobian.row(row) * changes).norm();
       const double share = std::pow(error / *found->standard_uncertainty, 2);
       if (share > kMatters)
@@ -242,7 +247,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   explain_other_form(model, fit, out);
   explain_lone_curve(model, fit, out);
   explain_noise(fit, out);
-  explain_error_of_causes(model, fit, out);
+  explain_measured_causes(model, fit, out);
   check_plausibility(model, fit, out);
   for (const Observation& observation : model.observations) {
     if (observation.low_band.resampled())

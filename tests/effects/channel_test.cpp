@@ -125,16 +125,21 @@ TEST(ChannelEffect, NeedsALogOfTheWholeCutWithoutAWideGap) {
     return channel_effect(channel, {.name = "T"})(lathe(), kTravel)->lacking(setup);
   };
   const auto flat = [](double) { return 1.0; };
-  EXPECT_THAT(lacking(log_of(flat)), IsEmpty());
-  EXPECT_THAT(lacking(log_of(flat, 200.0)),
+  const auto ramp = [](double t) { return t; };
+  EXPECT_THAT(lacking(log_of(flat)), ElementsAre("a log spindle_temperature that changes"));
+  EXPECT_THAT(lacking(log_of(ramp)), IsEmpty());
+  EXPECT_THAT(lacking(log_of(ramp, 200.0)),
               ElementsAre("the log spindle_temperature from 0 to 300 s (it has 0 to 200)"));
-  Channel gap = log_of(flat);
+  EXPECT_THAT(lacking(log_of(ramp, 400.0, 80.0)),
+              ElementsAre("the log spindle_temperature from 0 to 300 s at least every 60 s (it has "
+                          "every 80 s)"));
+  Channel gap = log_of(ramp);
   gap.at.erase(gap.at.begin() + 200, gap.at.begin() + 400);
   gap.values.resize(gap.at.size());
   EXPECT_THAT(lacking(gap), ElementsAre(HasSubstr("without the gap at 99.5")));
   slideway::Setup bare = setup;
   bare.feed_mm_per_min.reset();
-  EXPECT_THAT(channel_effect(log_of(flat), {.name = "T"})(lathe(), kTravel)->lacking(bare),
+  EXPECT_THAT(channel_effect(log_of(ramp), {.name = "T"})(lathe(), kTravel)->lacking(bare),
               ElementsAre("feed_mm_per_min"));
 }
 

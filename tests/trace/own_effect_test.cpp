@@ -126,6 +126,9 @@ TEST(OwnEffect, ThatWasMeasuredMayActAtOnce) { LateCause{0.0}.expect_found(); }
 
 TEST(OwnEffect, ThatWasMeasuredMayActLater) { LateCause{8.0}.expect_found(); }
 
+// The clock of the log is 12 s ahead.
+TEST(OwnEffect, ThatWasMeasuredByAWrongClockIsFoundAheadOfIt) { LateCause{-12.0}.expect_found(); }
+
 // The face follows at once. A log of 0.03 degC, smoothed, leaves a lag and a time constant
 // nothing to explain; with both free they made up for its noise.
 TEST(OwnEffect, OfANoisyLogHasNoLagThatTheDataDoNotAskFor) {

@@ -15,6 +15,7 @@ namespace slideway {
 namespace {
 
 constexpr double kLongestLag = 0.25;  // of the log
+constexpr double kEarliest = 0.05;    // of it: where its clock is wrong
 constexpr double kFastest = 0.1;      // of the spacing of the log: at once
 constexpr double kSlowest = 2.0;      // times the log: a first-order lag that integrates
 constexpr double kWidestGap = 0.2;    // of a profile's stretch on the clock
@@ -157,8 +158,8 @@ std::vector<Parameter> parameters_of(const Channel& channel, const ChannelRespon
       acts_on_the_reading(channel) ? ", slope: µrad/(" + channel.unit + ")" : "";
   std::vector<Parameter> out{{"a", "a", "µm/(" + channel.unit + ")" + slope, 0.1}};
   if (response.free_lag)
-    out.push_back(
-        {"lag_s", "lag", unit_of_clock(channel), length / 100.0, 0.0, kLongestLag * length});
+    out.push_back({"lag_s", "lag", unit_of_clock(channel), length / 100.0, -kEarliest * length,
+                   kLongestLag * length});
   if (response.free_tau)
     out.push_back({"tau_s", "τ", unit_of_clock(channel), length / 10.0,
                    kFastest * length / static_cast<double>(channel.at.size()), kSlowest * length});
@@ -167,7 +168,7 @@ std::vector<Parameter> parameters_of(const Channel& channel, const ChannelRespon
 
 std::vector<Shape> shapes_of(const ChannelResponse& response) {
   std::vector<Shape> out;
-  if (response.free_lag) out.push_back({.parameter = 1, .may_begin = true});
+  if (response.free_lag) out.push_back({.parameter = 1});
   if (response.free_tau)
     out.push_back({.parameter = response.free_lag ? 2 : 1, .logarithmic = true, .may_begin = true});
   return out;
@@ -239,6 +240,8 @@ class ChannelEffect : public LinearEffect {
 std::vector<std::string> ChannelEffect::lacking(const Setup& setup) const {
   std::vector<std::string> keys = Effect::lacking(setup);
   if (!keys.empty()) return keys;
+  if (std::ranges::min(quantity_->values) == std::ranges::max(quantity_->values))
+    return {"a log " + channel_->name + " that changes"};
   std::vector<double> ends{setup.first_mm, setup.last_mm};
   if (setup.kind == Kind::face && setup.first_mm < setup.center_mm &&
       setup.center_mm < setup.last_mm)
