@@ -81,7 +81,7 @@ std::optional<ShownBySamples> Effect::shown_by(const Stations& /*stations*/,
 
 std::string Effect::fault(const Stations& /*stations*/) const { return ""; }
 
-std::unique_ptr<Effect> Effect::noise_of_cause(std::uint64_t /*seed*/) const { return nullptr; }
+std::unique_ptr<Effect> Effect::error_of_cause(std::size_t /*draw*/) const { return nullptr; }
 
 std::vector<std::string> Effect::lacking_of_machine(const TravelRange& /*range*/) const {
   return {};

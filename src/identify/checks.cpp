@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "error_of_causes.hpp"
 #include "noise_bounds.hpp"
 #include "residual.hpp"
 #include "slideway/base/distribution.hpp"
@@ -175,29 +174,30 @@ void explain_noise(const Solution& fit, ModelResult& out) {
 }
 
 /// What is ahead of its cause, and errors in variables: what U holds of the error of the log.
+void explain_measured_cause(const Parameter& parameter, const FittedParameter& found,
+                            double error_of_log, ModelResult& out) {
+  constexpr double kMatters = 0.1;  // of the variance
+  if (parameter.symbol == "lag" && *found.value + *found.expanded_uncertainty < 0.0)
+    out.notes.push_back(found.name +
+                        " is below 0: no effect is ahead of its cause, so the clock of the log or "
+                        "the start of the cuts is wrong by about as much");
+  const double share = std::pow(error_of_log / *found.standard_uncertainty, 2);
+  if (share > kMatters)
+    out.notes.push_back(found.name + ": " + significant(100.0 * std::min(share, 1.0), 2) +
+                        " % of the variance in its U comes from the noise and the spacing of the "
+                        "log");
+}
+
 void explain_measured_causes(const Model& model, const Solution& fit, ModelResult& out) {
-  constexpr double kMatters = 0.1;  // of U
-  const Eigen::MatrixXd changes =
-      response_to_causes(model, fit.linear, fit.noise, fit.estimate, fit.uncertainty.basis);
-  if (changes.cols() == 0) return;
+  if (fit.uncertainty.by_causes.cols() == 0) return;
   for (const ModelTerm& term : model.terms) {
     if (!term.effect->description().measured) continue;
-    for (std::size_t p = 0; p < term.effect->parameters().size(); ++p) {
-      const std::string name = term.name + "." + term.effect->parameters()[p].name;
-      const FittedParameter* found = out.find(name);
-      if (!found || !found->value || !found->standard_uncertainty) continue;
-      const Eigen::Index row = term.first_parameter + static_cast<Eigen::Index>(p);
-      if (term.effect->parameters()[p].symbol == "lag" && found->expanded_uncertainty &&
-          *found->value + *found->expanded_uncertainty < 0.0)
-        out.notes.push_back(name +
-                            " is below 0: no effect is ahead of its cause, so the clock of " +
-                            "the log or the start of the cuts is wrong by about as much");
-      const double error = (fit.parameters.jacobian.row(row) * changes).norm();
-      const double share = std::pow(error / *found->standard_uncertainty, 2);
-      if (share > kMatters)
-        out.notes.push_back(name + ": " + significant(100.0 * std::min(share, 1.0), 2) +
-                            " % of the variance in its U comes from the noise and the spacing of "
-                            "the log");
+    Eigen::Index row = term.first_parameter;
+    for (const Parameter& parameter : term.effect->parameters()) {
+      const double error = (fit.parameters.jacobian.row(row++) * fit.uncertainty.by_causes).norm();
+      const FittedParameter* found = out.find(term.name + "." + parameter.name);
+      if (found && found->value && found->expanded_uncertainty)
+        explain_measured_cause(parameter, *found, error, out);
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "error_of_causes.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "slideway/identify/linear_algebra.hpp"
@@ -9,7 +10,7 @@
 namespace slideway {
 namespace {
 
-constexpr int kDraws = 32;  // of a variance: to (2 / 32)^½, of U to an eighth
+constexpr auto kDraws = static_cast<Eigen::Index>(kDrawsOfCause);
 
 /// Columns of effects of one amplitude at the places of the low-band values, whose spacing is that
 /// which a measured cause is averaged over, side by side.
@@ -34,8 +35,7 @@ Eigen::MatrixXd errors_of(const Model& model, const Linearisation& linear,
                           const std::vector<Noise>& noise, const Estimate& estimate,
                           const ModelTerm& term, Eigen::Index rows) {
   std::vector<std::unique_ptr<Effect>> draws;
-  for (int d = 0; d < kDraws; ++d)
-    draws.push_back(term.effect->noise_of_cause(static_cast<std::uint64_t>(d)));
+  for (std::size_t d = 0; d < kDrawsOfCause; ++d) draws.push_back(term.effect->error_of_cause(d));
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, kDraws);
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {

@@ -104,9 +104,9 @@ void find_null_directions(const Model& model, const Compressed& compressed, Solu
 void find_uncertainty(const Model& model, const Compressed& compressed, Solution& fit) {
   const double inflation = fit.uncertainty.inflation;
   fit.uncertainty = assess(fit.linear, compressed, fit.noise, fit.rank.basis, inflation);
-  if (const Eigen::MatrixXd changes =
-          response_to_causes(model, fit.linear, fit.noise, fit.estimate, fit.rank.basis);
-      changes.cols() > 0)
+  fit.uncertainty.by_causes =
+      response_to_causes(model, fit.linear, fit.noise, fit.estimate, fit.rank.basis);
+  if (const Eigen::MatrixXd& changes = fit.uncertainty.by_causes; changes.cols() > 0)
     fit.uncertainty.add(changes * changes.transpose(), compressed);
   if (!fit.estimate.curve) return;
   fit.uncertainty.has_curve = true;

@@ -156,6 +156,9 @@ struct EffectOptions {
   std::vector<EffectFactory> simpler = {};
 };
 
+/// Draws of the error of a measured cause: a variance is known to (2 / 32)^½, U to an eighth.
+inline constexpr std::size_t kDrawsOfCause = 32;
+
 /// A normal prior on one parameter, in the parameter's unit.
 struct Prior {
   std::string parameter;
@@ -291,8 +294,8 @@ class Effect {
   [[nodiscard]] virtual std::string fault(const Stations& stations) const;
 
   /// The effect with a draw of the error of its cause in the place of that; null: none was
-  /// measured.
-  [[nodiscard]] virtual std::unique_ptr<Effect> noise_of_cause(std::uint64_t seed) const;
+  /// measured. REQUIRES draw < kDrawsOfCause.
+  [[nodiscard]] virtual std::unique_ptr<Effect> error_of_cause(std::size_t draw) const;
 
   /// Keys of [machine] the effect cannot do without and the problem does not give.
   [[nodiscard]] virtual std::vector<std::string> lacking_of_machine(const TravelRange& range) const;

@@ -35,6 +35,7 @@ struct Uncertainty {
   std::vector<Eigen::MatrixXd> information;  // G_i, r by r, per fitted observation
   std::vector<double> size_freedom;          // per fitted observation; 0: its size is known
   std::vector<Eigen::MatrixXd> nuisance_covariances;  // levelling, per fitted observation
+  Eigen::MatrixXd by_causes;  // response_to_causes(): of (amplitudes, shapes), a column a draw
   bool has_curve = false;  // whose prior is estimated from the same data: no better known than the
                            // noise
 

@@ -196,7 +196,7 @@ class ChannelEffect : public LinearEffect {
                Eigen::Ref<Eigen::MatrixXd> out) const override;
   void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
-  [[nodiscard]] std::unique_ptr<Effect> noise_of_cause(std::uint64_t seed) const override;
+  [[nodiscard]] std::unique_ptr<Effect> error_of_cause(std::size_t draw) const override;
   [[nodiscard]] double resolution(int shape, double value,
                                   const Stations& stations) const override {
     const double coarser = shapes().size() > 1 ? 2.0 : 1.0;  // a grid of two is finer between
@@ -302,9 +302,10 @@ void ChannelEffect::derivatives(const Stations& stations, std::span<const double
   }
 }
 
-std::unique_ptr<Effect> ChannelEffect::noise_of_cause(std::uint64_t seed) const {
+std::unique_ptr<Effect> ChannelEffect::error_of_cause(std::size_t draw) const {
   return std::make_unique<ChannelEffect>(
-      channel_, std::make_shared<const Channel>(measured_->error(seed)), measured_, response_);
+      channel_, std::shared_ptr<const Channel>(measured_, &measured_->error(draw)), measured_,
+      response_);
 }
 
 }  // namespace

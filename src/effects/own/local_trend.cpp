@@ -1,9 +1,7 @@
 #include "local_trend.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace slideway {
 namespace {

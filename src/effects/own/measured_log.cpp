@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "slideway/base/statistics.hpp"
+#include "slideway/profile/outliers.hpp"
 
 namespace slideway {
 namespace {
@@ -12,9 +12,6 @@ namespace {
 constexpr std::size_t kLeastReadings = 8;  // to tell noise from what moves
 constexpr std::size_t kFinePlaces = 2000;  // of the quantity
 constexpr double kMostBetween = 64.0;      // places between two readings
-constexpr double kFalseAlarm = 1e-3;       // a log
-constexpr double kNeighbours = 0.3;        // of an outlier, that they deviate to the other side
-constexpr double kSecondDifference = 1.5;  // variance of a value less the mean of its neighbours
 constexpr double kRareCode = 0.1;          // of the values
 constexpr double kConstantRuns = 0.5;      // of the steps, where the resolution is coarse
 constexpr double kOfRange = 1e-9;          // of the range
@@ -22,16 +19,6 @@ constexpr double kOfRange = 1e-9;          // of the range
 double range_of(const std::vector<double>& values) {
   const auto [low, high] = std::ranges::minmax(values);
   return high - low;
-}
-
-/// Smallest step between two neighbours that is none of rounding; 0: there is none.
-double resolution_of(const std::vector<double>& values) {
-  const double rounding = kOfRange * range_of(values);
-  double least = INFINITY;
-  for (std::size_t i = 1; i < values.size(); ++i)
-    if (const double step = std::abs(values[i] - values[i - 1]); step > rounding)
-      least = std::min(least, step);
-  return std::isfinite(least) ? least : 0.0;
 }
 
 /// Each value less the straight line between its neighbours; 0 at the ends.
@@ -45,18 +32,12 @@ std::vector<double> deviations_of(const Channel& log) {
 }
 
 void add_single_ones(const Channel& log, std::vector<bool>& out) {
-  const std::vector<double> deviations = deviations_of(log);
-  const double usual = std::max(deviation_of_most(deviations),
-                                std::sqrt(kSecondDifference) * resolution_of(log.values));
-  const double limit =
-      std::sqrt(2.0 * std::log(static_cast<double>(deviations.size()) / kFalseAlarm)) * usual;
-  for (std::size_t i = 1; i + 1 < deviations.size(); ++i) {
-    const double own = std::abs(deviations[i]), sign = deviations[i] > 0.0 ? 1.0 : -1.0;
-    const auto is_pulled = [&](std::size_t j) {
-      return j == 0 || j + 1 == deviations.size() || -sign * deviations[j] > kNeighbours * own;
-    };
-    if (own > limit && is_pulled(i - 1) && is_pulled(i + 1)) out[i] = true;
-  }
+  const std::vector<Outlier> found = find_outliers(log.at, log.values);
+  const auto is_found = [&](std::size_t index) {
+    return std::ranges::binary_search(found, index, {}, &Outlier::index);
+  };
+  for (const Outlier& each : found)
+    if (!is_found(each.index - 1) && !is_found(each.index + 1)) out[each.index] = true;
 }
 
 /// The rare values of one number at one end of the sorted ones, further away from the rest than the
@@ -143,14 +124,18 @@ MeasuredLog::MeasuredLog(const Channel& log) : quantity_(readings_of(log)) {
   quantity_.values = trend_.smoothed(quantity_.at, readings_);
 }
 
-Channel MeasuredLog::error(std::uint64_t seed) const {
-  Channel out = quantity_;
-  RandomStream random(seed, quantity_.name);
-  if (trend_.noise > 0.0)
-    out.values = trend_.error(quantity_.at, readings_, random);
-  else
-    std::ranges::fill(out.values, 0.0);
-  return out;
+const Channel& MeasuredLog::error(std::size_t draw) const {
+  std::call_once(drawn_, [&] {
+    errors_.assign(kDrawsOfCause, quantity_);
+    for (std::size_t d = 0; d < kDrawsOfCause; ++d) {
+      RandomStream random(d, quantity_.name);
+      if (trend_.noise > 0.0)
+        errors_[d].values = trend_.error(quantity_.at, readings_, random);
+      else
+        std::ranges::fill(errors_[d].values, 0.0);
+    }
+  });
+  return errors_[draw];
 }
 
 }  // namespace slideway

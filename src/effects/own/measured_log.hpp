@@ -1,6 +1,8 @@
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
+#include <mutex>
+#include <vector>
 
 #include "local_trend.hpp"
 #include "slideway/effects/channel.hpp"
@@ -19,13 +21,15 @@ class MeasuredLog {
   /// The mean, at places of the log and where they are few between them.
   [[nodiscard]] const Channel& quantity() const { return quantity_; }
 
-  /// A draw of the error of quantity().
-  [[nodiscard]] Channel error(std::uint64_t seed) const;
+  /// A draw of the error of quantity(), of kDrawsOfCause, all made when the first is asked for.
+  [[nodiscard]] const Channel& error(std::size_t draw) const;
 
  private:
   Channel quantity_;
   LocalTrend trend_;
   std::vector<double> readings_;  // at the places of quantity_; NaN: none there
+  mutable std::once_flag drawn_;
+  mutable std::vector<Channel> errors_;
 };
 
 }  // namespace slideway
