@@ -81,7 +81,7 @@ std::optional<ShownBySamples> Effect::shown_by(const Stations& /*stations*/,
 
 std::string Effect::fault(const Stations& /*stations*/) const { return ""; }
 
-std::unique_ptr<Effect> Effect::error_of_cause(std::size_t /*draw*/) const { return nullptr; }
+Departures Effect::departures() const { return {}; }
 
 std::vector<std::string> Effect::lacking_of_machine(const TravelRange& /*range*/) const {
   return {};

@@ -148,6 +148,17 @@ void explain_other_form(const Model& model, const Solution& fit, ModelResult& ou
       "polynomial, not the slide's. Declare form = \"curve\", or a higher degree");
 }
 
+void explain_other_shapes(const Model& model, const Solution& fit, ModelResult& out) {
+  const std::vector<std::string> names = model.parameter_names();
+  for (const OtherShape& each : fit.other_shapes)
+    out.notes.push_back(names[static_cast<std::size_t>(each.parameter)] + ": " +
+                        significant(each.value, 3) + " fits nearly as well (chi-square larger by " +
+                        significant(each.chi_square_more, 2) + "); " +
+                        (each.in_uncertainty
+                             ? "every U reaches as far"
+                             : "U, that of the formula's linear model, does not reach it"));
+}
+
 /// Nothing but a second reading tells a slow noise of the first from a curve that may have any
 /// form.
 void explain_lone_curve(const Model& model, const Solution& fit, ModelResult& out) {
@@ -189,17 +200,27 @@ void explain_measured_cause(const Parameter& parameter, const FittedParameter& f
 }
 
 void explain_measured_causes(const Model& model, const Solution& fit, ModelResult& out) {
-  if (fit.uncertainty.by_causes.cols() == 0) return;
+  if (fit.uncertainty.departures.to_causes.cols() == 0) return;
   for (const ModelTerm& term : model.terms) {
     if (!term.effect->description().measured) continue;
     Eigen::Index row = term.first_parameter;
     for (const Parameter& parameter : term.effect->parameters()) {
-      const double error = (fit.parameters.jacobian.row(row++) * fit.uncertainty.by_causes).norm();
+      const double error =
+          (fit.parameters.jacobian.row(row++) * fit.uncertainty.departures.to_causes).norm();
       const FittedParameter* found = out.find(term.name + "." + parameter.name);
       if (found && found->value && found->expanded_uncertainty)
         explain_measured_cause(parameter, *found, error, out);
     }
   }
+}
+
+void explain_laws(const Model& model, const Solution& fit, ModelResult& out) {
+  if (fit.uncertainty.departures.to_laws.cols() == 0) return;
+  out.notes.push_back(
+      "the drift of the instrument's zero is taken as a line in time; every U allows for a bend "
+      "of it, " +
+      significant(100.0 * model.gates.drift_bend, 2) +
+      " % of what it makes in all: one run there and one back do not show a bend, two of each do");
 }
 
 /// Priors that the fit leaves further off than they allow. χ² of their residuals is at most that of
@@ -245,9 +266,11 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   explain_scaling(fit, out);
   explain_resolution(fit, out);
   explain_other_form(model, fit, out);
+  explain_other_shapes(model, fit, out);
   explain_lone_curve(model, fit, out);
   explain_noise(fit, out);
   explain_measured_causes(model, fit, out);
+  explain_laws(model, fit, out);
   check_plausibility(model, fit, out);
   for (const Observation& observation : model.observations) {
     if (observation.low_band.resampled())

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "error_of_causes.hpp"
+#include "departures.hpp"
 #include "face_slope.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/identify/left_out.hpp"
@@ -104,10 +104,11 @@ void find_null_directions(const Model& model, const Compressed& compressed, Solu
 void find_uncertainty(const Model& model, const Compressed& compressed, Solution& fit) {
   const double inflation = fit.uncertainty.inflation;
   fit.uncertainty = assess(fit.linear, compressed, fit.noise, fit.rank.basis, inflation);
-  fit.uncertainty.by_causes =
-      response_to_causes(model, fit.linear, fit.noise, fit.estimate, fit.rank.basis);
-  if (const Eigen::MatrixXd& changes = fit.uncertainty.by_causes; changes.cols() > 0)
-    fit.uncertainty.add(changes * changes.transpose(), compressed);
+  fit.uncertainty.departures =
+      response_to_departures(model, fit.linear, fit.noise, fit.estimate, fit.rank.basis);
+  const DepartureResponse& departures = fit.uncertainty.departures;
+  for (const Eigen::MatrixXd* changes : {&departures.to_causes, &departures.to_laws})
+    if (changes->cols() > 0) fit.uncertainty.add(*changes * changes->transpose(), compressed);
   if (!fit.estimate.curve) return;
   fit.uncertainty.has_curve = true;
   fit.uncertainty.add(covariance_of_curve_prior(model, fit.linear, fit.noise, fit.estimate),
@@ -264,9 +265,14 @@ FittedModel fit_as_complete(FittedModel fitted) {
   return fit_model(std::move(fitted.model), fitted.fit.estimate.shapes);
 }
 
+void allow_for_others(const Problem& problem, FittedModel& fitted) {
+  allow_for_other_form(problem, fitted);
+  allow_for_other_shapes(problem, fitted);
+}
+
 FittedModel fit_declared(const Problem& problem, const std::vector<Profile>& profiles) {
   FittedModel out = fit_model(build_model(problem, profiles));
-  allow_for_other_form(problem, out);
+  allow_for_others(problem, out);
   return out;
 }
 

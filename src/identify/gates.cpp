@@ -221,6 +221,12 @@ std::span<const Gate> gate_table() {
            "the model leaves.",
            "3: a smooth form of which nine tenths of the square look like the carriages'; more "
            "is coincidence"},
+      Gate{
+          "drift_bend", &Gates::drift_bend, "of the drift", 0.0, 2.0,
+          "U allows the drift of an instrument's zero to bend: by so much of what it makes in all, "
+          "in the middle of the session (standard deviation).",
+          "a first-order settling of time constant τ bends by ½ tanh(T/4τ): 0.2 root mean square "
+          "for sessions T up to 3 τ"},
       Gate{"nearly_alike", &Gates::nearly_alike, "", 0.5, 0.9999,
            "Two effects are called nearly one shape if their correlation in a profile is larger.",
            "above 0.95 nine tenths of the variance of one are the other's"},

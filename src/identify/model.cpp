@@ -94,7 +94,6 @@ namespace {
 
 TravelRange travel_range(const std::vector<Profile>& profiles, const Machine& machine) {
   TravelRange range{INFINITY, -INFINITY, INFINITY, -INFINITY};
-  double read_from_s = INFINITY;
   for (const Profile& profile : profiles) {
     const SlideRange own = slide_range(profile, machine);
     const double foot = profile.setup.base_mm.value_or(0.0) / 2.0;  // beyond the centre of a bridge
@@ -104,10 +103,10 @@ TravelRange travel_range(const std::vector<Profile>& profiles, const Machine& ma
         std::max(range.coarsest_feed_mm, profile.setup.feed_per_revolution().value_or(0.0));
     range.z_min = std::min(range.z_min, profile.setup.z_mm);
     range.z_max = std::max(range.z_max, profile.setup.z_mm);
-    if (profile.setup.reading_times)
-      read_from_s = std::min(read_from_s, std::ranges::min(profile.setup.reading_times->times_s));
+    if (!profile.setup.reading_times) continue;
+    const auto [first, last] = std::ranges::minmax(profile.setup.reading_times->times_s);
+    range.read.push_back({profile.name, first, last});
   }
-  if (std::isfinite(read_from_s)) range.read_from_s = read_from_s;
   return range;
 }
 

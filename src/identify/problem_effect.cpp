@@ -234,8 +234,14 @@ void read_candidate(const Section& section, const std::vector<Channel>& channels
     return other.name == effect.name && other.options.profiles.empty();
   });
   std::erase(options.candidates, effect.name);
-  for (const EffectOptions& each : by_scope(section, *as_made, effect.options, problem))
-    options.own.push_back({effect.name, each, {}});
+  std::vector<EffectOptions> looked_for = by_scope(section, *as_made, effect.options, problem);
+  // Of several cuts that have it, each alone explains little: it is looked for in all of them
+  // first. What acts in all profiles, the search takes apart itself.
+  if (looked_for.size() > 1 && section.text("scope") == "profile") {
+    if (effect.options.profiles.empty()) looked_for.clear();
+    looked_for.insert(looked_for.begin(), effect.options);
+  }
+  for (EffectOptions& each : looked_for) options.own.push_back({effect.name, std::move(each), {}});
   remember(section, effect, problem);
 }
 

@@ -66,6 +66,22 @@ std::vector<double> positions_of(const PlannedCut& cut, const Profile* like) {
   return out;
 }
 
+/// The same stations read from the other end, in the same time.
+std::shared_ptr<const ReadingTimes> backwards(ReadingTimes times) {
+  const auto [first, last] = std::ranges::minmax(times.times_s);
+  for (double& time : times.times_s) time = first + (last - time);
+  return std::make_shared<const ReadingTimes>(std::move(times));
+}
+
+/// When the stations of a pass along the slide are read: as those of the one it is like, or from
+/// the other end where it goes the other way.
+std::shared_ptr<const ReadingTimes> times_of(const Setup& pass, const Setup& like) {
+  const std::shared_ptr<const ReadingTimes>& times = like.reading_times;
+  if (!times || pass.kind == Kind::face || !pass.cut_direction) return times;
+  const bool rises = times->times_s.back() >= times->times_s.front();
+  return (pass.cut_direction == CutDirection::outward) == rises ? times : backwards(*times);
+}
+
 /// The keys in which a cut differs from a profile, in words.
 std::string difference(const Setup& cut, const Setup& like) {
   std::vector<std::string> out;
@@ -97,7 +113,7 @@ CutToCome to_come(const PlannedCut& cut, const std::vector<Profile>& profiles) {
   CutToCome out{"", cut.like, cut.entry.profile, cut.cost, cut.time_min};
   if (!is_new && !cut.entry.source.window && !out.profile.setup.cut_radius_mm)
     out.profile.setup.cut_radius_mm = like->setup.cut_radius_mm;
-  if (!is_new) out.profile.setup.reading_times = like->setup.reading_times;
+  if (!is_new) out.profile.setup.reading_times = times_of(out.profile.setup, like->setup);
   out.profile.positions = positions_of(cut, is_new ? nullptr : &*like);
   complete(out.profile);
   const std::string what = out.profile.setup.kind == Kind::face ? "a cut" : "a pass";
@@ -160,19 +176,10 @@ void add_speeds(const Profile& like, Range& out) {
     }
 }
 
-/// The same stations read from the other end, in the same time.
-ReadingTimes backwards(ReadingTimes times) {
-  const auto [first, last] = std::ranges::minmax(times.times_s);
-  for (double& time : times.times_s) time = first + (last - time);
-  return times;
-}
-
 void add_direction(const Profile& like, Range& out) {
   if (like.setup.reading_times)
-    out.add("back", "the pass back", false, [&](Profile& p) {
-      p.setup.reading_times =
-          std::make_shared<const ReadingTimes>(backwards(*like.setup.reading_times));
-    });
+    out.add("back", "the pass back", false,
+            [&](Profile& p) { p.setup.reading_times = backwards(*like.setup.reading_times); });
   if (!like.setup.cut_direction || like.setup.reading_times) return;
   const bool inward = like.setup.cut_direction == CutDirection::inward;
   const bool is_face = like.setup.kind == Kind::face;

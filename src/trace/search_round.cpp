@@ -333,6 +333,15 @@ std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& c
   return out;
 }
 
+std::vector<const TestedCandidate*> SearchRound::in_more_readings(
+    const TestedCandidate& chosen) const {
+  std::vector<const TestedCandidate*> out;
+  if (!chosen.refined.candidate->term.effect->departures().of_law) return out;
+  for (const TestedCandidate& each : tested)
+    if (is_in_fewer_readings(chosen, each) && each.is_possible()) out.push_back(&each);
+  return out;
+}
+
 std::vector<const TestedCandidate*> SearchRound::outranked(const TestedCandidate& chosen,
                                                            const Gates& gates) const {
   std::vector<const TestedCandidate*> out = as_good_as(chosen, gates);

@@ -59,6 +59,11 @@ struct SearchRound {
   [[nodiscard]] std::vector<const TestedCandidate*> rivals(const TestedCandidate& chosen,
                                                            const Gates& gates) const;
 
+  /// The same effect in more readings, where its law is only nearly what it is taken as: what is
+  /// larger in some readings may still be in all.
+  [[nodiscard]] std::vector<const TestedCandidate*> in_more_readings(
+      const TestedCandidate& chosen) const;
+
   /// What would be rivals of `chosen`, were it no measured cause, or no error of the instrument.
   [[nodiscard]] std::vector<const TestedCandidate*> outranked(const TestedCandidate& chosen,
                                                               const Gates& gates) const;

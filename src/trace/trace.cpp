@@ -248,11 +248,10 @@ class Loop {
   };
 
   WithoutEffect without_effect(const Selection& selection, std::size_t i) {
-    const Gates& gates = problem_.trace.gates;
     const std::vector<AcceptedEffect> others = all_but(selection.effects, i);
     const SearchRound& round = extender_.search(others);
-    const TestedCandidate& own = *find_tested(round, selection.effects[i], gates);
-    return {extender_.extended(others), round, own, round.rivals(own, gates)};
+    const TestedCandidate& own = *find_tested(round, selection.effects[i], problem_.trace.gates);
+    return {extender_.extended(others), round, own, round.rivals(own, problem_.trace.gates)};
   }
 
   /// Which measurement tells an effect from its rivals.
@@ -330,7 +329,8 @@ class Loop {
     for (const auto& each : selection.otherwise) widened().add_absence(fitted, *each);
     for (std::size_t i = 0; i < selection.effects.size(); ++i) {
       const WithoutEffect place = without_effect(selection, i);
-      if (!place.rivals.empty()) widened().add_rivals(fitted, place.fitted, place.rivals);
+      for (const auto& rivals : {place.rivals, place.round.in_more_readings(place.own)})
+        if (!rivals.empty()) widened().add_rivals(fitted, place.fitted, rivals);
     }
   }
 
@@ -393,7 +393,7 @@ ClosedLoop close_loop(const Problem& problem, const std::vector<Profile>& profil
   trace.rounds.insert(trace.rounds.begin(), known.rounds.begin(), known.rounds.end());
   if ((!known.notes.empty() || !known.rounds.empty()) && !out.extended)
     out.extended = std::move(known.fitted);
-  if (out.extended) allow_for_other_form(problem, *out.extended);
+  if (out.extended) allow_for_others(problem, *out.extended);
   return out;
 }
 

@@ -181,7 +181,8 @@ TEST(ChannelEffect, IsFreeOfMostOfTheNoiseOfItsLogAndKnowsTheRest) {
     const auto effect = channel_effect(warming(random, 0.1), {.name = "T"})(lathe(), kTravel);
     const Eigen::VectorXd truth = column(warming(random, 0.0), {.name = "T"}, face);
     squares += (columns(*effect, face, {}).col(0) - truth).squaredNorm();
-    drawn += columns(*effect->error_of_cause(seed), face, {}).squaredNorm();
+    for (const auto& part : effect->departures().parts)
+      drawn += columns(*part, face, {}).squaredNorm();
   }
   const auto count = 30.0 * static_cast<double>(stations.size());
   EXPECT_LT(std::sqrt(squares / count), 0.06 / 1.5);

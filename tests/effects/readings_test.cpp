@@ -77,7 +77,7 @@ TEST(SlideReadings, BaseAveragesAWaveByTheSinc) {
 // 0.3 a minute from the first reading of all on, be it µm or µrad; turned over, the other way.
 TEST(InstrumentReadings, ZeroDriftsWithTheTimeOfTheReading) {
   TravelRange session = kTravel;
-  session.read_from_s = 700.0;
+  session.read = {{"there", 700.0, 900.0}, {"back", 910.0, 1000.0}};
   const auto effect = make("zero_drift", session);
   const Eigen::VectorXd rate = Eigen::VectorXd::Constant(1, 0.3);
   for (Case each : {slide(Quantity::height), slide(Quantity::slope, 100.0)}) {
@@ -90,6 +90,21 @@ TEST(InstrumentReadings, ZeroDriftsWithTheTimeOfTheReading) {
       EXPECT_NEAR(z[i], unit * 0.3 * minutes, 1e-15 * unit);
     EXPECT_EQ(turned, -z);
   }
+}
+
+// From 700 to 1000 s it makes 0.3 times five minutes; the parabola through 0 at both ends has as
+// much in the middle, and 4 · 180 · 120 / 300 s = 4.8 minutes of it at 880 s.
+TEST(InstrumentReadings, ZeroMayBendByAParabolaOverTheSession) {
+  TravelRange session = kTravel;
+  session.read = {{"there", 700.0, 900.0}, {"back", 910.0, 1000.0}};
+  const Departures departures = make("zero_drift", session)->departures();
+  EXPECT_TRUE(departures.of_law);
+  ASSERT_EQ(departures.parts.size(), 1u);
+  Case each = slide(Quantity::height);
+  each.positions = {0.0, 300.0};  // read at 1000 and 880 s
+  const Eigen::VectorXd z = signal(*departures.parts[0], each, Eigen::VectorXd::Constant(1, 0.3));
+  EXPECT_NEAR(z[0], 0.0, 1e-15);
+  EXPECT_NEAR(z[1], 1e-3 * 0.3 * 4.8, 1e-15);
 }
 
 // P_2 = (3 u² - 1) / 2 and P_3 = (5 u³ - 3 u) / 2 of u = x / 300 - 1.

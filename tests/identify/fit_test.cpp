@@ -1,5 +1,6 @@
 #include "slideway/identify/fit.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -352,6 +353,44 @@ TEST(Fit, IsTheBestOneBesideAShapeAtItsBound) {
   // A hundredth of a standard uncertainty is what nobody sees.
   for (const char* name : {"own.a", "own.w"})
     EXPECT_NEAR(value(bounded, name), value(held, name), 0.01 * uncertainty(held, name)) << name;
+}
+
+/// A bump at 100 mm under noise, and its mirror image at 300 mm or none.
+ModelResult fit_of_bump(const DeclaredEffect& effect, bool is_mirrored, std::uint64_t seed) {
+  RandomStream random(seed, "bumps");
+  const std::vector<double> x = cases::spaced(0.0, 400.0, 100);
+  std::vector<double> z;
+  for (const double at : x)
+    z.push_back(2e-4 * std::exp(-std::pow((at - 100.0) / 30.0, 2)) + 1e-4 * random.normal());
+  for (std::size_t i = 0; i < z.size() / 2 && is_mirrored; ++i) z[z.size() - 1 - i] = z[i];
+  const std::vector<Profile> profiles{cases::profile("slide", Kind::slide, x, z)};
+  const FittedModel found = fit_declared(cases::problem(Lever::paper, 0, {effect}), profiles);
+  return summarise(found.model, found.fit);
+}
+
+// A reading that is its own mirror image has two bumps, and the model one: either place fits as
+// well, and a U from the slope of the model at one of them knows nothing of the other. Of one bump
+// no place fits but its own: U is that of the linearised model, 10 to 20 mm.
+TEST(Fit, ReachesAllPlacesOfAShapeThatTheDataAllow) {
+  const DeclaredEffect form = cases::effect("local_form");
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    const ModelResult two = fit_of_bump(form, true, seed);
+    const double found = value(two, "local_form.position_mm");
+    EXPECT_GT(2.0 * uncertainty(two, "local_form.position_mm"), std::abs(400.0 - 2.0 * found));
+    EXPECT_THAT(two.notes, ::testing::Contains(::testing::HasSubstr("every U reaches as far")));
+    EXPECT_LT(2.0 * uncertainty(fit_of_bump(form, false, seed), "local_form.position_mm"), 50.0);
+  }
+}
+
+// Published regressions have the uncertainties of their linear model.
+TEST(Fit, SaysOfAFormulaWhichOtherPlaceFits) {
+  DeclaredEffect own = cases::effect("own");
+  own.options.own = formula_effect({.name = "own",
+                                    .text = "a * exp(-((x - c) / 30)^2)",
+                                    .parameters = {{"a", "um", {}, {}}, {"c", "mm", 20.0, 380.0}}});
+  const ModelResult two = fit_of_bump(own, true, 1);
+  EXPECT_LT(2.0 * uncertainty(two, "own.c"), 50.0);
+  EXPECT_THAT(two.notes, ::testing::Contains(::testing::HasSubstr("does not reach it")));
 }
 
 }  // namespace

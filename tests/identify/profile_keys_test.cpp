@@ -169,6 +169,24 @@ TEST_F(ProblemFile, ConfinesAnEffectToProfiles) {
   EXPECT_THAT(problem.truth->effects[2].options.profiles, ElementsAre("feed20"));
 }
 
+// The search takes what acts in all profiles apart; what acts in some of them is looked for whole,
+// too: of two cuts that have it, either one alone explains little.
+TEST_F(ProblemFile, LooksForACandidateOfEachProfileInAllOfThemFirst) {
+  const std::string profiles = profile() + profile("", "feed8") + profile("", "feed20");
+  const auto looked_for = [&](const std::string& keys) {
+    std::vector<std::string> names;
+    for (const DeclaredEffect& own :
+         read(kMachine + profiles + kEffect +
+              "[[trace.candidate]]\nname = \"cup\"\nscope = \"profile\"\n" + keys)
+             .trace.own)
+      names.push_back(term_name(own.name, own.options.profiles));
+    return names;
+  };
+  EXPECT_THAT(looked_for(""), ElementsAre("cup"));
+  EXPECT_THAT(looked_for("profiles = [\"feed2\", \"feed8\"]\n"),
+              ElementsAre("cup[feed2,feed8]", "cup[feed2]", "cup[feed8]"));
+}
+
 TEST_F(ProblemFile, RefusesProfilesThatAreNone) {
   const auto refused = [&](const std::string& keys) {
     return refusal(kMachine + profile() + kEffect + "[[effect]]\nname = \"cup\"\n" + keys);

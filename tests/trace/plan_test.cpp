@@ -117,6 +117,28 @@ TEST(PlannedCut, BackAlongTheSlideTellsADriftFromItsForm) {
   EXPECT_LT(*turned, 0.5 * repeated.value_or(INFINITY));
 }
 
+// Read from 0 s at 0 mm to 90 s at 300 mm; the way back begins at 300 mm.
+TEST(PlannedCut, AlongTheSlideIsReadTheWayItSays) {
+  Profile pass;
+  pass.name = "there";
+  pass.setup.kind = Kind::slide;
+  pass.positions = {0.0, 100.0, 200.0, 300.0};
+  pass.values = {0.0, 0.0, 0.0, 0.0};
+  pass.setup.reading_times = std::make_shared<const ReadingTimes>(
+      ReadingTimes{.positions_mm = pass.positions, .times_s = {0.0, 20.0, 50.0, 90.0}});
+  Problem problem;
+  PlannedCut& cut = problem.planned.emplace_back();
+  cut.like = pass.name;
+  cut.entry.profile = pass;
+  const auto times_if = [&](std::optional<CutDirection> direction) {
+    cut.entry.profile.setup.cut_direction = direction;
+    return cuts_to_come(problem, {pass}).front().profile.setup.reading_times->times_s;
+  };
+  EXPECT_THAT(times_if(CutDirection::inward), ::testing::ElementsAre(90.0, 70.0, 40.0, 0.0));
+  EXPECT_THAT(times_if(CutDirection::outward), ::testing::ElementsAre(0.0, 20.0, 50.0, 90.0));
+  EXPECT_THAT(times_if({}), ::testing::ElementsAre(0.0, 20.0, 50.0, 90.0));
+}
+
 /// A face of the process, read with white noise alone.
 Profile white_face(const std::string& name, double feed_mm_per_min, std::uint64_t seed) {
   constexpr double kRadius = 10.0, kRpm = 110.0;

@@ -112,13 +112,19 @@ struct FaceSlope {
   [[nodiscard]] double rms() const;
 };
 
+/// When the stations of a profile were read.
+struct ReadingWindow {
+  std::string profile;
+  double from_s = 0.0, to_s = 0.0;
+};
+
 /// What an effect must know of all profiles together before it can choose its inner basis.
 struct TravelRange {
   double slide_min = 0.0, slide_max = 1.0;  // mm, over all profiles
   double z_min = 0.0, z_max = 0.0;          // mm
   double coarsest_feed_mm = 0.0;            // largest feed per turn; 0: unknown
   double beam_span_mm = 0.0;                // between the supports of the cross-beam; 0: unknown
-  double read_from_s = 0.0;                 // earliest reading time; 0: unknown
+  std::vector<ReadingWindow> read;          // of the profiles whose times are known
   std::shared_ptr<const FaceSlope> face_slope = nullptr;  // as a fit has it; null: unknown
 };
 
@@ -133,6 +139,7 @@ struct Knots {
 };
 
 class Effect;
+struct Departures;
 
 /// Makes an effect that is not in the catalogue: a user's own.
 using EffectFactory =
@@ -155,9 +162,6 @@ struct EffectOptions {
   /// The same one with fewer shapes: laws that a search says where they explain as much.
   std::vector<EffectFactory> simpler = {};
 };
-
-/// Draws of the error of a measured cause: a variance is known to (2 / 32)^½, U to an eighth.
-inline constexpr std::size_t kDrawsOfCause = 32;
 
 /// A normal prior on one parameter, in the parameter's unit.
 struct Prior {
@@ -293,12 +297,18 @@ class Effect {
   /// search_range().
   [[nodiscard]] virtual std::string fault(const Stations& stations) const;
 
-  /// The effect with a draw of the error of its cause in the place of that; null: none was
-  /// measured. REQUIRES draw < kDrawsOfCause.
-  [[nodiscard]] virtual std::unique_ptr<Effect> error_of_cause(std::size_t draw) const;
+  /// No parts: its cause and its law are taken as they are.
+  [[nodiscard]] virtual Departures departures() const;
 
   /// Keys of [machine] the effect cannot do without and the problem does not give.
   [[nodiscard]] virtual std::vector<std::string> lacking_of_machine(const TravelRange& range) const;
+};
+
+/// What the cause of an effect, or its law, may differ by from what it is taken as.
+struct Departures {
+  /// The law: each part is as large as the effect itself. Else each is a standard deviation.
+  bool of_law = false;
+  std::vector<std::unique_ptr<Effect>> parts = {};  // independent, of the effect's amplitudes
 };
 
 /// Columns of an effect in a reading along the slide itself, at slide coordinates x: heights in mm,

@@ -24,6 +24,14 @@ struct OtherForm {
   Eigen::MatrixXd moved;              // (amplitudes, shapes) per knot: what the fit is off by
 };
 
+/// A value of a shape parameter that the data allow beyond U about the estimate.
+struct OtherShape {
+  Eigen::Index parameter = 0;    // of the model
+  double value = 0.0;            // in the parameter's unit
+  double chi_square_more = 0.0;  // than at the estimate, all else fitted again
+  bool in_uncertainty = false;   // all uncertainties allow for it
+};
+
 /// A fitted model with all that later steps need of it.
 struct Solution {
   Estimate estimate;  // parameters the data leave free: at 0 (gauge)
@@ -36,7 +44,8 @@ struct Solution {
   Rank rank;
   NullDirections null;
   Uncertainty uncertainty;
-  std::optional<OtherForm> other_form;  // allow_for_other_form()
+  std::optional<OtherForm> other_form;   // allow_for_other_form()
+  std::vector<OtherShape> other_shapes;  // allow_for_other_shapes()
 };
 
 /// @throws UsageError  no profile is to be fitted
@@ -71,6 +80,16 @@ FittedModel fit_model(Model model, const std::optional<Eigen::VectorXd>& shapes 
 /// likelier than none by 1 / Gates::lack_of_fit_p. If so, all uncertainties allow for the second
 /// moments of that curve (OtherForm). Nothing where the model has no polynomial form.
 void allow_for_other_form(const Problem& problem, FittedModel& fitted);
+
+/// Whether shapes of declared effects have values that U does not reach, with a χ² that is larger
+/// by no more than the square of the coverage factor (profile likelihood: Venzon and Moolgavkar
+/// 1988). If so, all uncertainties allow for the largest such change of each shape, and for what
+/// the others become with it: a rectangular distribution of that half width. Those of a formula of
+/// the user's own do not: like published regressions it has the uncertainties of its linear model.
+void allow_for_other_shapes(const Problem& problem, FittedModel& fitted);
+
+/// Both.
+void allow_for_others(const Problem& problem, FittedModel& fitted);
 
 /// The same once more, the model taken to be complete: Model::complete.
 FittedModel fit_as_complete(FittedModel fitted);

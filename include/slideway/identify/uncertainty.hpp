@@ -15,6 +15,13 @@ struct Spread {
   std::optional<double> degrees_of_freedom;
 };
 
+/// Change of (amplitudes, shapes) by a standard deviation of each part of what effects may differ
+/// by from what they are taken as (Effect::departures()), a column each: R Rᵀ is what they add to
+/// the covariance of a fit.
+struct DepartureResponse {
+  Eigen::MatrixXd to_causes, to_laws;
+};
+
 /// Uncertainty of a generalised least-squares estimate.
 ///
 /// In coordinates w in which the information Σ_i G_i + priors is the unit matrix (G_i that of
@@ -35,7 +42,7 @@ struct Uncertainty {
   std::vector<Eigen::MatrixXd> information;  // G_i, r by r, per fitted observation
   std::vector<double> size_freedom;          // per fitted observation; 0: its size is known
   std::vector<Eigen::MatrixXd> nuisance_covariances;  // levelling, per fitted observation
-  Eigen::MatrixXd by_causes;  // response_to_causes(): of (amplitudes, shapes), a column a draw
+  DepartureResponse departures;
   bool has_curve = false;  // whose prior is estimated from the same data: no better known than the
                            // noise
 

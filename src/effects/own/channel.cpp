@@ -196,7 +196,7 @@ class ChannelEffect : public LinearEffect {
                Eigen::Ref<Eigen::MatrixXd> out) const override;
   void derivatives(const Stations& stations, std::span<const double> shape,
                    Eigen::Ref<Eigen::MatrixXd> out) const override;
-  [[nodiscard]] std::unique_ptr<Effect> error_of_cause(std::size_t draw) const override;
+  [[nodiscard]] Departures departures() const override;
   [[nodiscard]] double resolution(int shape, double value,
                                   const Stations& stations) const override {
     const double coarser = shapes().size() > 1 ? 2.0 : 1.0;  // a grid of two is finer between
@@ -302,10 +302,12 @@ void ChannelEffect::derivatives(const Stations& stations, std::span<const double
   }
 }
 
-std::unique_ptr<Effect> ChannelEffect::error_of_cause(std::size_t draw) const {
-  return std::make_unique<ChannelEffect>(
-      channel_, std::shared_ptr<const Channel>(measured_, &measured_->error(draw)), measured_,
-      response_);
+Departures ChannelEffect::departures() const {
+  Departures out;
+  for (const Channel& error : measured_->errors())
+    out.parts.push_back(std::make_unique<ChannelEffect>(
+        channel_, std::shared_ptr<const Channel>(measured_, &error), measured_, response_));
+  return out;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 namespace slideway {
 namespace {
 
+constexpr std::size_t kDraws = 32;         // a variance is known to (2 / 32)^½, U to an eighth
 constexpr std::size_t kLeastReadings = 8;  // to tell noise from what moves
 constexpr std::size_t kFinePlaces = 2000;  // of the quantity
 constexpr double kMostBetween = 64.0;      // places between two readings
@@ -124,18 +125,17 @@ MeasuredLog::MeasuredLog(const Channel& log) : quantity_(readings_of(log)) {
   quantity_.values = trend_.smoothed(quantity_.at, readings_);
 }
 
-const Channel& MeasuredLog::error(std::size_t draw) const {
+const std::vector<Channel>& MeasuredLog::errors() const {
   std::call_once(drawn_, [&] {
-    errors_.assign(kDrawsOfCause, quantity_);
-    for (std::size_t d = 0; d < kDrawsOfCause; ++d) {
+    if (!(trend_.noise > 0.0)) return;
+    errors_.assign(kDraws, quantity_);
+    for (std::size_t d = 0; d < kDraws; ++d) {
       RandomStream random(d, quantity_.name);
-      if (trend_.noise > 0.0)
-        errors_[d].values = trend_.error(quantity_.at, readings_, random);
-      else
-        std::ranges::fill(errors_[d].values, 0.0);
+      errors_[d].values = trend_.error(quantity_.at, readings_, random);
+      for (double& each : errors_[d].values) each /= std::sqrt(static_cast<double>(kDraws));
     }
   });
-  return errors_[draw];
+  return errors_;
 }
 
 }  // namespace slideway

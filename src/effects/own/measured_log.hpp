@@ -21,8 +21,8 @@ class MeasuredLog {
   /// The mean, at places of the log and where they are few between them.
   [[nodiscard]] const Channel& quantity() const { return quantity_; }
 
-  /// A draw of the error of quantity(), of kDrawsOfCause, all made when the first is asked for.
-  [[nodiscard]] const Channel& error(std::size_t draw) const;
+  /// The error of quantity(): independent parts of it, each one standard deviation.
+  [[nodiscard]] const std::vector<Channel>& errors() const;
 
  private:
   Channel quantity_;

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "../linear_effect.hpp"
 #include "../request.hpp"
 #include "../variable_range.hpp"
@@ -26,13 +29,17 @@ Description describe_zero_drift() {
           .of_instrument = true};
 }
 
+enum class Law { steady, bend };
+
 class ZeroDrift : public LinearEffect {
  public:
-  explicit ZeroDrift(const TravelRange& range)
+  ZeroDrift(double start_s, double end_s, Law law)
       : LinearEffect(describe_zero_drift(),
                      {{"rate_per_min", "a", "µm/min, slope: µrad/min", 0.01}},
                      diagonal_map(1, 1.0)),
-        start_s_(range.read_from_s) {}
+        start_s_(start_s),
+        end_s_(end_s),
+        law_(law) {}
 
   [[nodiscard]] bool applies_to(const Setup& /*setup*/) const override { return true; }
 
@@ -42,18 +49,40 @@ class ZeroDrift : public LinearEffect {
     const double unit =
         sign_of_instrument(setup) * (is_height(setup) ? kMicrometre : kMicroradian) / kMinute;
     for (Eigen::Index i = 0; i < stations.size(); ++i)
-      out(i, 0) = unit * (stations.reading_time(i) - start_s_);
+      out(i, 0) = unit * since_start(stations.reading_time(i));
+  }
+
+  /// A parabola over the session that is in its middle what the drift makes in all.
+  [[nodiscard]] Departures departures() const override {
+    Departures out{.of_law = true};
+    out.parts.push_back(std::make_unique<ZeroDrift>(start_s_, end_s_, Law::bend));
+    return out;
   }
 
  private:
-  double start_s_;
+  [[nodiscard]] double since_start(double time_s) const {
+    const double passed = time_s - start_s_, session = end_s_ - start_s_;
+    if (law_ == Law::steady) return passed;
+    return session > 0.0 ? 4.0 * passed * (session - passed) / session : 0.0;
+  }
+
+  double start_s_, end_s_;
+  Law law_;
 };
 
 }  // namespace
 
 std::unique_ptr<Effect> make_zero_drift(const Request& request) {
   request.accept_only({});
-  return std::make_unique<ZeroDrift>(request.range);
+  const std::vector<std::string>& profiles = request.options.profiles;
+  double start_s = INFINITY, end_s = -INFINITY;
+  for (const ReadingWindow& each : request.range.read) {
+    if (!profiles.empty() && std::ranges::count(profiles, each.profile) == 0) continue;
+    start_s = std::min(start_s, each.from_s);
+    end_s = std::max(end_s, each.to_s);
+  }
+  if (!(start_s <= end_s)) start_s = end_s = 0.0;
+  return std::make_unique<ZeroDrift>(start_s, end_s, Law::steady);
 }
 
 }  // namespace slideway

@@ -1,4 +1,4 @@
-#include "error_of_causes.hpp"
+#include "departures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,11 @@
 namespace slideway {
 namespace {
 
-constexpr auto kDraws = static_cast<Eigen::Index>(kDrawsOfCause);
+/// A term of the model and what it may differ by.
+struct Departing {
+  const ModelTerm* term = nullptr;
+  Departures by;
+};
 
 /// Columns of effects of one amplitude at the places of the low-band values, whose spacing is that
 /// which a measured cause is averaged over, side by side.
@@ -30,21 +34,22 @@ Eigen::MatrixXd columns_at_values(const std::vector<std::unique_ptr<Effect>>& ef
   return out;
 }
 
-/// Columns of draws of one term's error at its fitted size, in all low bands, white.
-Eigen::MatrixXd errors_of(const Model& model, const Linearisation& linear,
-                          const std::vector<Noise>& noise, const Estimate& estimate,
-                          const ModelTerm& term, Eigen::Index rows) {
-  std::vector<std::unique_ptr<Effect>> draws;
-  for (std::size_t d = 0; d < kDrawsOfCause; ++d) draws.push_back(term.effect->error_of_cause(d));
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, kDraws);
+/// Columns of the parts of one term's departures at its fitted size, in all low bands, white.
+Eigen::MatrixXd columns_of(const Model& model, const Linearisation& linear,
+                           const std::vector<Noise>& noise, const Estimate& estimate,
+                           const Departing& departing, Eigen::Index rows) {
+  const ModelTerm& term = *departing.term;
+  const double size = (departing.by.of_law ? model.gates.drift_bend : 1.0) *
+                      estimate.amplitudes[term.first_amplitude];
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, std::ssize(departing.by.parts));
   Eigen::Index row = 0;
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {
     const Observation& observation = *linear.observations[i];
     const Eigen::Index count = observation.values.size();
     if (term.acts_on(*observation.profile)) {
       out.middleRows(row, count) =
-          estimate.amplitudes[term.first_amplitude] *
-          columns_at_values(draws, observation, model.machine, shapes_of(term, estimate.shapes));
+          size * columns_at_values(departing.by.parts, observation, model.machine,
+                                   shapes_of(term, estimate.shapes));
       noise[i].whiten(out.middleRows(row, count));
     }
     row += count;
@@ -54,13 +59,14 @@ Eigen::MatrixXd errors_of(const Model& model, const Linearisation& linear,
 
 }  // namespace
 
-Eigen::MatrixXd response_to_causes(const Model& model, const Linearisation& linear,
-                                   const std::vector<Noise>& noise, const Estimate& estimate,
-                                   const Eigen::MatrixXd& basis) {
-  std::vector<const ModelTerm*> terms;
+DepartureResponse response_to_departures(const Model& model, const Linearisation& linear,
+                                         const std::vector<Noise>& noise, const Estimate& estimate,
+                                         const Eigen::MatrixXd& basis) {
+  std::vector<Departing> all;
   for (const ModelTerm& term : model.terms)
-    if (term.effect->description().measured) terms.push_back(&term);
-  if (terms.empty() || basis.cols() == 0) return {};
+    if (Departures by = term.effect->departures(); !by.parts.empty())
+      all.push_back({&term, std::move(by)});
+  if (all.empty() || basis.cols() == 0) return {};
   Eigen::Index values = 0;
   for (const Observation* observation : linear.observations) values += observation->values.size();
   Eigen::MatrixXd design(values + linear.prior_rows.rows(), basis.cols());
@@ -74,12 +80,12 @@ Eigen::MatrixXd response_to_causes(const Model& model, const Linearisation& line
   design.bottomRows(linear.prior_rows.rows()) = linear.prior_rows * basis;
   const ProfileBases levelling = own_bases(linear.observations, noise);
   levelling.take_out(design);
-  Eigen::MatrixXd out(basis.rows(), kDraws * std::ssize(terms));
-  for (std::size_t k = 0; k < terms.size(); ++k)
-    out.middleCols(static_cast<Eigen::Index>(k) * kDraws, kDraws) =
-        basis *
-        (design.transpose() * errors_of(model, linear, noise, estimate, *terms[k], design.rows()));
-  return out / std::sqrt(static_cast<double>(kDraws));
+  DepartureResponse out{Eigen::MatrixXd(basis.rows(), 0), Eigen::MatrixXd(basis.rows(), 0)};
+  for (const Departing& each : all)
+    append_columns(each.by.of_law ? out.to_laws : out.to_causes,
+                   basis * (design.transpose() *
+                            columns_of(model, linear, noise, estimate, each, design.rows())));
+  return out;
 }
 
 }  // namespace slideway

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "slideway/identify/fit.hpp"
+
+namespace slideway {
+
+/// What the effects of the model may differ by from what they are taken as changes in a fit.
+/// @param basis  in whose coordinates the information is the unit matrix (Uncertainty)
+DepartureResponse response_to_departures(const Model& model, const Linearisation& linear,
+                                         const std::vector<Noise>& noise, const Estimate& estimate,
+                                         const Eigen::MatrixXd& basis);
+
+}  // namespace slideway
