@@ -231,7 +231,7 @@ Solution with_profiles(const Model& model, const Solution& fit,
   out.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
   find_null_directions(model, compressed, out);
   find_uncertainty(model, compressed, out);
-  if (fit.other_form && !more.empty()) {
+  if ((fit.other_form || !fit.other_shapes.empty()) && !more.empty()) {
     const Solution without = with_profiles(model, fit, {});
     out.uncertainty.add(covariance_of(fit.uncertainty) - covariance_of(without.uncertainty),
                         compressed);

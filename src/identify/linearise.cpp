@@ -36,6 +36,8 @@ void set_priors(const Model& model, const Estimate& estimate, Linearisation& lin
     }
 }
 
+}  // namespace
+
 void set_residuals(const Model& model, const Estimate& estimate, Linearisation& linear) {
   linear.residuals.clear();
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {
@@ -48,8 +50,6 @@ void set_residuals(const Model& model, const Estimate& estimate, Linearisation& 
   }
   set_priors(model, estimate, linear);
 }
-
-}  // namespace
 
 Eigen::Index parameter_index(const ModelTerm& term, const std::string& name) {
   const std::vector<Parameter>& parameters = term.effect->parameters();

@@ -18,10 +18,16 @@ struct HeldFit {
   Eigen::VectorXd amplitudes;
 };
 
-HeldFit held_at(const Model& model, const Solution& fit, const Eigen::VectorXd& shapes) {
+/// @param moved  the term whose shapes are other ones than those of the fit
+HeldFit held_at(const Model& model, const Solution& fit, const ModelTerm& moved,
+                const Eigen::VectorXd& shapes) {
   Estimate at = fit.estimate;
   at.shapes = shapes;
-  Linearisation linear = linearise(model, at);
+  Linearisation linear = fit.linear;
+  for (std::size_t i = 0; i < linear.columns.size(); ++i)
+    linear.columns[i].middleCols(moved.first_amplitude, moved.effect->amplitudes()) =
+        low_band_columns(model, moved, *linear.observations[i], shapes_of(moved, shapes));
+  set_residuals(model, at, linear);
   const Eigen::Index count = model.amplitudes();
   // In the place of the shapes the residual: what is left of it stands on the diagonal.
   const auto hold = [&](Eigen::MatrixXd& columns, const Eigen::VectorXd& residual) {
@@ -40,11 +46,7 @@ HeldFit held_at(const Model& model, const Solution& fit, const Eigen::VectorXd& 
 
 std::vector<double> places_of(const Model& model, const ModelTerm& term, int shape) {
   const std::vector<double> grid = shape_grid(model, term, shape);
-  const std::size_t step = 1 + (grid.size() - 1) / kMostPlaces;
-  std::vector<double> out;
-  for (std::size_t i = 0; i < grid.size(); i += step) out.push_back(grid[i]);
-  if (out.back() != grid.back()) out.push_back(grid.back());
-  return out;
+  return every(1 + (grid.size() - 1) / kMostPlaces, grid);
 }
 
 /// What (amplitudes, shapes) change to get to a shape that a fit allows as well.
@@ -56,11 +58,11 @@ struct OtherPlace {
 /// Looks along one shape for values that the fit allows.
 class Profiled {
  public:
-  Profiled(const Model& model, const Solution& fit, const HeldFit& best, const ModelTerm& term,
-           int shape)
+  Profiled(const Model& model, const Solution& fit, const ModelTerm& term, int shape)
       : model_(model),
         fit_(fit),
-        best_(best),
+        term_(term),
+        best_(held_at(model, fit, term, fit.estimate.shapes)),
         index_(term.first_shape + shape),
         parameter_(term.first_parameter +
                    term.effect->shapes()[static_cast<std::size_t>(shape)].parameter),
@@ -89,7 +91,7 @@ class Profiled {
       reach = away(value);
     }
     if (!found) return std::nullopt;
-    const HeldFit held = held_at(model_, fit_, shapes_at(*found));
+    const HeldFit held = held_at(model_, fit_, term_, shapes_at(*found));
     Eigen::VectorXd change(held.amplitudes.size() + fit_.estimate.shapes.size());
     change << held.amplitudes - best_.amplitudes, shapes_at(*found) - fit_.estimate.shapes;
     return OtherPlace{{parameter_, *found, std::max(held.chi_square - best_.chi_square, 0.0)},
@@ -106,22 +108,16 @@ class Profiled {
     return out;
   }
   [[nodiscard]] double more_at(double value) const {
-    return held_at(model_, fit_, shapes_at(value)).chi_square - best_.chi_square;
+    return held_at(model_, fit_, term_, shapes_at(value)).chi_square - best_.chi_square;
   }
 
   const Model& model_;
   const Solution& fit_;
-  const HeldFit& best_;
+  const ModelTerm& term_;
+  HeldFit best_;
   Eigen::Index index_, parameter_;
   std::vector<double> places_;  // rising
 };
-
-const DeclaredEffect* declaration_of(const Problem& problem, const ModelTerm& term) {
-  const auto found = std::ranges::find_if(problem.effects, [&](const DeclaredEffect& each) {
-    return term.name == each.name || term.name.starts_with(each.name + "[");
-  });
-  return found == problem.effects.end() ? nullptr : &*found;
-}
 
 /// Whether it is a formula of the user's own: a regression, whose U is that of its linear model.
 bool is_regression(const DeclaredEffect& declared, const ModelTerm& term) {
@@ -137,19 +133,18 @@ void allow_for_other_shapes(const Problem& problem, FittedModel& fitted) {
     return each->profile->loss != Loss::none;
   });
   if (model.shapes() == 0 || has_loss || !fit.converged) return;
-  const HeldFit best = held_at(model, fit, fit.estimate.shapes);
   std::vector<OtherPlace> all;
-  for (const ModelTerm& term : model.terms) {
-    const DeclaredEffect* declared = declaration_of(problem, term);
-    for (std::size_t s = 0; declared && s < term.effect->shapes().size(); ++s) {
+  for (std::size_t e = 0; e < problem.effects.size(); ++e) {  // the first terms, in their order
+    const ModelTerm& term = model.terms[e];
+    for (std::size_t s = 0; s < term.effect->shapes().size(); ++s) {
       const Shape& kind = term.effect->shapes()[s];
       if (kind.stepwise || kind.higher_order ||
           !fit.null.identifiable[static_cast<std::size_t>(term.first_parameter) +
                                  static_cast<std::size_t>(kind.parameter)])
         continue;
-      auto found = Profiled(model, fit, best, term, static_cast<int>(s)).farthest();
+      auto found = Profiled(model, fit, term, static_cast<int>(s)).farthest();
       if (!found) continue;
-      found->shape.in_uncertainty = !is_regression(*declared, term);
+      found->shape.in_uncertainty = !is_regression(problem.effects[e], term);
       all.push_back(*std::move(found));
     }
   }

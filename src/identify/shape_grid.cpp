@@ -42,15 +42,14 @@ std::vector<double> places_between(const std::vector<CoarseProfile>& profiles,
   return out;
 }
 
-/// Every other value, the first and the last among them.
-std::vector<double> coarser(const std::vector<double>& axis) {
+}  // namespace
+
+std::vector<double> every(std::size_t step, const std::vector<double>& axis) {
   std::vector<double> out;
-  for (std::size_t i = 0; i < axis.size(); i += 2) out.push_back(axis[i]);
-  if (axis.size() % 2 == 0) out.push_back(axis.back());
+  for (std::size_t i = 0; i < axis.size(); i += step) out.push_back(axis[i]);
+  if ((axis.size() - 1) % step != 0) out.push_back(axis.back());
   return out;
 }
-
-}  // namespace
 
 std::vector<double> shape_grid(const Model& model, const ModelTerm& term, int shape) {
   const Effect& effect = *term.effect;
@@ -99,7 +98,7 @@ std::vector<std::vector<double>> shape_axes(const Model& model, const ModelTerm&
   };
   while (axes.size() > 1 && points() > static_cast<double>(kMostPoints)) {
     const auto longest = std::ranges::max_element(axes, {}, &std::vector<double>::size);
-    *longest = coarser(*longest);
+    *longest = every(2, *longest);
   }
   return axes;
 }

@@ -59,6 +59,7 @@ struct Wanted {
 Solution with_known_noise(Solution fit) {
   for (Noise& noise : fit.noise) noise.alternatives.clear();
   fit.other_form.reset();
+  fit.other_shapes.clear();
   return fit;
 }
 
@@ -330,8 +331,11 @@ class Planner {
     if (fitted_.fit.other_form)
       out.notes.emplace_back(
           "a curve beside the polynomial form of the slide is likelier than none; what it adds to "
-          "U "
-          "is taken to stay");
+          "U is taken to stay");
+    if (!fitted_.fit.other_shapes.empty())
+      out.notes.emplace_back(
+          "other values of a lag, a time constant or a place fit nearly as well; what they add to "
+          "U is taken to stay");
   }
 
   const Problem& problem_;

@@ -336,7 +336,8 @@ std::vector<const TestedCandidate*> SearchRound::rivals(const TestedCandidate& c
 std::vector<const TestedCandidate*> SearchRound::in_more_readings(
     const TestedCandidate& chosen) const {
   std::vector<const TestedCandidate*> out;
-  if (!chosen.refined.candidate->term.effect->departures().of_law) return out;
+  const Effect& effect = *chosen.refined.candidate->term.effect;
+  if (!effect.description().of_instrument || !effect.departures().of_law) return out;
   for (const TestedCandidate& each : tested)
     if (is_in_fewer_readings(chosen, each) && each.is_possible()) out.push_back(&each);
   return out;

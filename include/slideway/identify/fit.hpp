@@ -88,7 +88,7 @@ void allow_for_other_form(const Problem& problem, FittedModel& fitted);
 /// the user's own do not: like published regressions it has the uncertainties of its linear model.
 void allow_for_other_shapes(const Problem& problem, FittedModel& fitted);
 
-/// Both.
+/// allow_for_other_form(), then allow_for_other_shapes() beyond the U that it leaves.
 void allow_for_others(const Problem& problem, FittedModel& fitted);
 
 /// The same once more, the model taken to be complete: Model::complete.

@@ -13,7 +13,7 @@ struct ProfileToCome {
 };
 
 /// A fit as it will be once these profiles are measured, too: the estimate as it is, rank and
-/// uncertainties of all. What a form beside the polynomial adds (allow_for_other_form()) stays.
+/// uncertainties of all. What allow_for_others() has added stays.
 /// @param model  with the terms of the fit
 Solution with_profiles(const Model& model, const Solution& fit,
                        const std::vector<ProfileToCome>& more);

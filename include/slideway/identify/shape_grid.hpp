@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "slideway/identify/model.hpp"
@@ -10,6 +11,10 @@ namespace slideway {
 /// can show in their low band, in steps of Effect::resolution(); for a stepwise shape every place
 /// between two low-band values. The middle of the parameter's range where no profile shows it.
 std::vector<double> shape_grid(const Model& model, const ModelTerm& term, int shape);
+
+/// Every so many-th value of an axis, the first and the last among them. REQUIRES step > 0, a
+/// value.
+std::vector<double> every(std::size_t step, const std::vector<double>& axis);
 
 /// The grids of all shapes of a term. Where their product has more points than a search can look at
 /// (8192), the longest is made coarser by half, its ends kept, until it has not; a single one stays

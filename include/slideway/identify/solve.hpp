@@ -49,6 +49,9 @@ Linearisation linearise(const Model& model, const Estimate& estimate);
 /// The same at another estimate; columns are computed again only where a shape could move them.
 void relinearise(const Model& model, const Estimate& estimate, Linearisation& linear);
 
+/// Residuals and priors at an estimate, the columns as they are.
+void set_residuals(const Model& model, const Estimate& estimate, Linearisation& linear);
+
 /// relinearise() with nothing left of the values that are left out.
 void settle_residuals(const Model& model, Estimate& estimate, Linearisation& linear);
 
