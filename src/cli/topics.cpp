@@ -106,7 +106,9 @@ const std::vector<Section>& sections() {
         {"encoding", "text, if not detected: utf-8 utf-16 latin-1"},
         {"header_lines", "text, if not detected: lines before the first numbers"},
         {"line", R"(areal file: "row:12", "column:3", "diameter:30")"},
-        {"base_mm", "slope: foot spacing of the mirror or level; none: the local slope"},
+        {"base_mm",
+         "slope: foot spacing of the mirror or level, whose middle is the position; none: the "
+         "local slope"},
         {"window", "[from, to] in position_unit: keep only this part"},
         {"mask", "[[from, to], ...] in position_unit: parts that are left out"},
         {"leave_out", "\"spikes\", or data rows, the first one 1: [120, 121]"},

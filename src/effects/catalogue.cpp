@@ -87,6 +87,11 @@ bool is_part_of_straightness(const Description& effect) {
   return effect.motion == MotionError::none && effect.standard_name.starts_with("E_ZX,");
 }
 
+bool is_drift_of_instrument(const Description& effect) {
+  return effect.of_instrument && effect.variable == IndependentVariable::reading_time &&
+         !effect.measured;
+}
+
 const EffectOptions& needed_options(const std::string& name) { return specimen_of(name).options; }
 
 MotionError motion_error_of(const std::string& name) {

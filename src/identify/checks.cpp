@@ -159,6 +159,13 @@ void explain_other_shapes(const Model& model, const Solution& fit, ModelResult& 
                              : "U, that of the formula's linear model, does not reach it"));
 }
 
+void explain_parts(ModelResult& out) {
+  if (out.straightness && !out.straightness->parts.empty())
+    out.notes.push_back("E_ZX is that of the straightness and " +
+                        joined(out.straightness->parts, " and ") +
+                        " together: every reading of the slide shows them");
+}
+
 /// Nothing but a second reading tells a slow noise of the first from a curve that may have any
 /// form.
 void explain_lone_curve(const Model& model, const Solution& fit, ModelResult& out) {
@@ -181,6 +188,52 @@ void explain_noise(const Solution& fit, ModelResult& out) {
       out.notes.push_back(profile + " differs: its noise is " +
                           significant(*noise.unlike_sisters, 2) +
                           " times that of the profiles beside it");
+  }
+}
+
+/// The value of an observation that lies farthest from the model, and how many standard deviations
+/// of the others that is. None where noise makes one as far with at least probability `p_value` (of
+/// a largest externally studentised residual: Grubbs 1969; Rosner 1983).
+struct FarValue {
+  Eigen::Index at = 0;
+  double deviations = 0.0;
+};
+std::optional<FarValue> far_value(const Observation& observation, const Eigen::VectorXd& residual,
+                                  const Noise& noise, double p_value) {
+  Eigen::MatrixXd white = residual;
+  noise.whiten(white);
+  for (const Eigen::Index i : left_out_values(observation)) white(i, 0) = 0.0;
+  const double freedom = static_cast<double>(residual.size() - observation.left_out()) - 2.0;
+  FarValue out;
+  const double largest = white.col(0).cwiseAbs().maxCoeff(&out.at);
+  const double of_others = (white.squaredNorm() - largest * largest) / freedom;
+  if (!(freedom > 2.0) || !(of_others > 0.0)) return std::nullopt;
+  out.deviations = largest / std::sqrt(of_others);
+  const double tail = 2.0 * (freedom + 2.0) * student_tail(freedom, out.deviations);
+  if (tail >= p_value) return std::nullopt;
+  return out;
+}
+
+void explain_far_values(const Model& model, const Solution& fit, ModelResult& out) {
+  for (std::size_t i = 0; i < fit.noise.size(); ++i) {
+    const Observation& observation = *fit.linear.observations[i];
+    const Profile& profile = *observation.profile;
+    if (profile.loss != Loss::none) continue;
+    const Eigen::VectorXd& residual = fit.linear.residuals[i];
+    const auto far = far_value(observation, residual, fit.noise[i], model.gates.lack_of_fit_p);
+    if (!far) continue;
+    const bool height = profile.setup.quantity == Quantity::height;
+    out.notes.push_back(
+        "profile '" + profile.name + "': the value at " +
+        significant(
+            observation.low_band.positions(profile.positions)[static_cast<std::size_t>(far->at)],
+            6) +
+        " mm is " +
+        significant(std::abs(residual[far->at]) / low_band_scale(observation) /
+                        (height ? kMicrometre : kMicroradian),
+                    3) +
+        (height ? " µm" : " µrad") + " from the model, " + significant(far->deviations, 2) +
+        " standard deviations of the others: was it read wrongly? leave_out takes it out");
   }
 }
 
@@ -266,9 +319,11 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   explain_scaling(fit, out);
   explain_resolution(fit, out);
   explain_other_form(model, fit, out);
+  explain_parts(out);
   explain_other_shapes(model, fit, out);
   explain_lone_curve(model, fit, out);
   explain_noise(fit, out);
+  explain_far_values(model, fit, out);
   explain_measured_causes(model, fit, out);
   explain_laws(model, fit, out);
   check_plausibility(model, fit, out);

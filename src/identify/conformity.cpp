@@ -79,7 +79,7 @@ QuantityValue straightness(const ModelResult& summary) {
 
 /// Peak to valley of what the model has of E_ZX under other names, µm: by how much the straightness
 /// may be more or less.
-double parts_beside_um(const FittedModel& fitted) {
+double parts_beside_um(const FittedModel& fitted, const ModelResult& summary) {
   const Model& model = fitted.model;
   SlideRange travel{INFINITY, -INFINITY};
   for (const Observation* each : fitted.fit.linear.observations) {
@@ -93,7 +93,8 @@ double parts_beside_um(const FittedModel& fitted) {
   double sum = 0.0;
   for (const ModelTerm& term : model.terms) {
     if (!is_part_of_straightness(term.effect->description()) ||
-        !term.effect->applies_to(on_slide()))
+        !term.effect->applies_to(on_slide()) ||
+        (summary.straightness && std::ranges::count(summary.straightness->parts, term.name) > 0))
       continue;
     const Eigen::VectorXd form =
         form_columns(model, term, shapes_of(term, fitted.fit.estimate.shapes), on_slide(), x) *
@@ -137,7 +138,8 @@ std::vector<Conformity> conformity_of(const Problem& problem, const FittedModel&
   };
   if (flatness_um) decide(kFlatness, flatness(fitted), *flatness_um, false);
   if (straightness_um)
-    decide("straightness", straightness(summary), *straightness_um, false, parts_beside_um(fitted));
+    decide("straightness", straightness(summary), *straightness_um, false,
+           parts_beside_um(fitted, summary));
   if (squareness_um_per_m) decide("squareness", squareness(summary), *squareness_um_per_m, true);
   return out;
 }

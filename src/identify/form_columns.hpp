@@ -15,4 +15,9 @@ Setup on_slide();
 Eigen::MatrixXd form_columns(const Model& model, const ModelTerm& term,
                              std::span<const double> shapes, Setup setup, const Eigen::VectorXd& x);
 
+/// Their derivatives by each shape, side by side: #x by #shapes #amplitudes.
+Eigen::MatrixXd form_derivatives(const Model& model, const ModelTerm& term,
+                                 std::span<const double> shapes, Setup setup,
+                                 const Eigen::VectorXd& x);
+
 }  // namespace slideway

@@ -225,8 +225,8 @@ std::span<const Gate> gate_table() {
           "drift_bend", &Gates::drift_bend, "of the drift", 0.0, 2.0,
           "U allows the drift of an instrument's zero to bend: by so much of what it makes in all, "
           "in the middle of the session (standard deviation).",
-          "a first-order settling of time constant τ bends by ½ tanh(T/4τ): 0.2 root mean square "
-          "for sessions T up to 3 τ"},
+          "a first-order settling of time constant τ bends by ½ tanh(T/4τ), in a session there and "
+          "back by no more than 0.57 of the line that it shows: U holds that with k = 2"},
       Gate{"nearly_alike", &Gates::nearly_alike, "", 0.5, 0.9999,
            "Two effects are called nearly one shape if their correlation in a profile is larger.",
            "above 0.95 nine tenths of the variance of one are the other's"},

@@ -7,26 +7,48 @@
 #include "form_columns.hpp"
 #include "reported.hpp"
 #include "residual.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/reference_line.hpp"
 
 namespace slideway {
 namespace {
 
 constexpr Eigen::Index kPoints = 201;
+constexpr Eigen::Index kPointsOfWaves = 2001;  // of a wave of a fiftieth of the travel, 40 a cycle
 constexpr std::size_t kMostExtremes = 6;
-constexpr std::size_t kMostStations = 50;
+constexpr Eigen::Index kMostStations = 50;
 constexpr double kRounding = 1e-9;  // relative
+
+/// The form of a slide: of its straightness, and of what is part of it under another name.
+using Parts = std::vector<const ModelTerm*>;
 
 /// Where the straightness is evaluated: what one reading would see of it, and of it alone.
 class Locus {
  public:
-  Locus(const Model& model, const ModelTerm& term, const Solution& fit, const Reported& reported,
+  /// @param parts  the straightness itself is the first
+  Locus(const Model& model, const Parts& parts, const Solution& fit, const Reported& reported,
         const Setup& setup)
-      : model_(model), term_(term), fit_(fit), reported_(reported), setup_(setup) {}
+      : model_(model), parts_(parts), fit_(fit), reported_(reported), setup_(setup) {}
 
-  /// f_j at slide coordinates x.
-  [[nodiscard]] Eigen::MatrixXd columns(const Eigen::VectorXd& x) const {
-    return form_columns(model_, term_, shapes_of(term_, fit_.estimate.shapes), setup_, x);
+  /// At slide coordinates x: how the form changes with (amplitudes, shapes), and in the last column
+  /// the form itself, mm.
+  [[nodiscard]] Eigen::MatrixXd form(const Eigen::VectorXd& x) const {
+    const Eigen::VectorXd& amplitudes = fit_.estimate.amplitudes;
+    Eigen::MatrixXd out =
+        Eigen::MatrixXd::Zero(x.size(), amplitudes.size() + fit_.estimate.shapes.size() + 1);
+    for (const ModelTerm* part : parts_) {
+      const Eigen::VectorXd own =
+          amplitudes.segment(part->first_amplitude, part->effect->amplitudes());
+      const auto shapes = shapes_of(*part, fit_.estimate.shapes);
+      const Eigen::MatrixXd columns = form_columns(model_, *part, shapes, setup_, x);
+      out.middleCols(part->first_amplitude, own.size()) = columns;
+      out.rightCols<1>() += columns * own;
+      const Eigen::MatrixXd slopes = form_derivatives(model_, *part, shapes, setup_, x);
+      for (Eigen::Index s = 0; s < std::ssize(shapes); ++s)
+        out.col(amplitudes.size() + part->first_shape + s) =
+            slopes.middleCols(s * own.size(), own.size()) * own;
+    }
+    return out;
   }
 
   /// What the nearest polynomials leave of a curve beside them (OtherForm), per knot; no columns
@@ -36,18 +58,13 @@ class Locus {
     if (!form) return Eigen::MatrixXd::Zero(x.size(), 0);
     return form_columns(model_, form->curve, {}, setup_, x)
                .middleCols(form->curve.effect->knots()->first, form->nearest.cols()) -
-           columns(x) * form->nearest;
+           form_columns(model_, *parts_.front(), {}, setup_, x) * form->nearest;
   }
 
-  [[nodiscard]] double value(const Eigen::RowVectorXd& weighted) const {
-    return weighted.dot(fit_.estimate.amplitudes.segment(term_.first_amplitude, weighted.size()));
-  }
-
-  /// Of a weighted sum of the amplitudes, and the same of left_of_curve().
+  /// Of a weighted sum of rows of form(), and the same of left_of_curve().
   [[nodiscard]] Spread spread(const Eigen::RowVectorXd& weighted,
                               const Eigen::RowVectorXd& left) const {
-    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(fit_.uncertainty.basis.rows());
-    row.segment(term_.first_amplitude, weighted.size()) = weighted;
+    const Eigen::RowVectorXd row = weighted.head(weighted.size() - 1);
     Spread out = reported_.spread(row);
     if (left.size() == 0) return out;
     const OtherForm& form = *fit_.other_form;
@@ -57,12 +74,13 @@ class Locus {
     return out;
   }
 
-  /// Whether a weighted sum is the same along every direction that the data leave open.
+  /// Whether a weighted sum of rows of form() is the same along every direction that the data leave
+  /// open.
   [[nodiscard]] bool is_determined(const Eigen::RowVectorXd& weighted) const {
-    const Eigen::MatrixXd along =
-        fit_.null.amplitudes.middleRows(term_.first_amplitude, weighted.size());
+    const Eigen::MatrixXd& along = fit_.null.amplitudes;
+    const Eigen::RowVectorXd row = weighted.head(along.rows());
     for (Eigen::Index j = 0; j < along.cols(); ++j)
-      if (std::abs(weighted.dot(along.col(j))) > kRounding * weighted.norm() * along.col(j).norm())
+      if (std::abs(row.dot(along.col(j))) > kRounding * row.norm() * along.col(j).norm())
         return false;
     return true;
   }
@@ -77,24 +95,26 @@ class Locus {
                              share * at_ends.row(1));
     };
     const Eigen::Vector2d ends(travel.least, travel.greatest);
-    const Eigen::MatrixXd rows = from_line(columns(x), columns(ends)),
-                          left = from_line(left_of_curve(x), left_of_curve(ends));
+    Eigen::MatrixXd rows = from_line(form(x), form(ends)),
+                    left = from_line(left_of_curve(x), left_of_curve(ends));
+    for (Eigen::Index i = 0; i < x.size(); ++i)
+      if (share[i] == 0.0 || share[i] == 1.0) rows.row(i).setZero(), left.row(i).setZero();
     std::vector<QuantityValue> out(static_cast<std::size_t>(x.size()));
     for (Eigen::Index i = 0; i < x.size(); ++i)
-      Reported::set(value(rows.row(i)), spread(rows.row(i), left.row(i)), kMicrometre,
+      Reported::set(rows(i, rows.cols() - 1), spread(rows.row(i), left.row(i)), kMicrometre,
                     out[static_cast<std::size_t>(i)]);
     return out;
   }
 
  private:
   const Model& model_;
-  const ModelTerm& term_;
+  Parts parts_;
   const Solution& fit_;
   const Reported& reported_;
   Setup setup_;
 };
 
-/// Slide coordinates of the readings, of a bridge those of its feet; at most kMostStations.
+/// Slide coordinates of the readings, of a bridge those of its feet.
 Eigen::VectorXd station_positions(const Model& model, const ModelTerm& term) {
   std::vector<double> x;
   for (const Observation* observation : fitted_observations(model)) {
@@ -110,10 +130,52 @@ Eigen::VectorXd station_positions(const Model& model, const ModelTerm& term) {
   const double same = 1e-3 * (x.back() - x.front()) / static_cast<double>(x.size());
   x.erase(std::unique(x.begin(), x.end(), [&](double a, double b) { return b - a <= same; }),
           x.end());
-  const std::size_t count = std::min(kMostStations, x.size());
-  Eigen::VectorXd out(static_cast<Eigen::Index>(count));
-  for (std::size_t i = 0; i < count; ++i)
-    out[static_cast<Eigen::Index>(i)] = x[count == 1 ? 0 : i * (x.size() - 1) / (count - 1)];
+  return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
+}
+
+/// As evenly as they lie, with both ends.
+Eigen::VectorXd at_most(Eigen::Index count, const Eigen::VectorXd& x) {
+  if (x.size() <= count) return x;
+  Eigen::VectorXd out(count);
+  for (Eigen::Index i = 0; i < count; ++i) out[i] = x[i * (x.size() - 1) / (count - 1)];
+  return out;
+}
+
+/// All but offset and slope, which the reference line takes.
+bool is_determined(const ModelTerm& term, const Solution& fit) {
+  const std::vector<Parameter>& parameters = term.effect->parameters();
+  for (std::size_t p = 0; p < parameters.size(); ++p)
+    if (!fit.null.identifiable[term.first_parameter + static_cast<Eigen::Index>(p)] &&
+        !parameters[p].by_convention)
+      return false;
+  return true;
+}
+
+/// Whether a term acts in readings of the slide alone.
+bool is_of_slides(const Model& model, const ModelTerm& term) {
+  return std::ranges::none_of(fitted_observations(model), [&](const Observation* each) {
+    return each->profile->setup.kind != Kind::slide && term.acts_on(*each->profile);
+  });
+}
+
+/// The straightness with what is part of it under another name and is the slide's: every reading of
+/// the slide shows it. On faces alone it may be the workpiece's.
+Parts parts_of_form(const Model& model, const ModelTerm& straightness, const Solution& fit) {
+  const auto shows = [&](const ModelTerm& part) {
+    std::size_t readings = 0;
+    for (const Observation* each : fitted_observations(model)) {
+      if (each->profile->setup.kind != Kind::slide || !straightness.acts_on(*each->profile))
+        continue;
+      if (!part.acts_on(*each->profile)) return false;
+      ++readings;
+    }
+    return readings > 0;
+  };
+  Parts out{&straightness};
+  for (const ModelTerm& term : model.terms)
+    if (is_part_of_straightness(term.effect->description()) && shows(term) &&
+        is_determined(term, fit))
+      out.push_back(&term);
   return out;
 }
 
@@ -131,16 +193,6 @@ const Setup* one_face(const Model& model) {
   return out;
 }
 
-/// All but offset and slope, which the reference line takes.
-bool is_determined(const ModelTerm& term, const Solution& fit) {
-  const std::vector<Parameter>& parameters = term.effect->parameters();
-  for (std::size_t p = 0; p < parameters.size(); ++p)
-    if (!fit.null.identifiable[term.first_parameter + static_cast<Eigen::Index>(p)] &&
-        !parameters[p].by_convention)
-      return false;
-  return true;
-}
-
 void append(const std::vector<QuantityValue>& values, std::vector<double>& deviation,
             std::vector<double>& U) {
   for (const QuantityValue& each : values) {
@@ -152,10 +204,10 @@ void append(const std::vector<QuantityValue>& values, std::vector<double>& devia
 void add_tip(const Locus& tip, const Eigen::VectorXd& x, const SlideRange& travel,
              StraightnessCurve& out) {
   append(tip.deviations(x, travel), out.tip_um, out.tip_expanded_uncertainty_um);
-  const Eigen::MatrixXd ends = tip.columns(Eigen::Vector2d(travel.least, travel.greatest));
+  const Eigen::MatrixXd ends = tip.form(Eigen::Vector2d(travel.least, travel.greatest));
   const Eigen::RowVectorXd rise = ends.row(1) - ends.row(0);
   if (tip.is_determined(rise))
-    out.tip_slope_rad = tip.value(rise) / (travel.greatest - travel.least);
+    out.tip_slope_rad = rise[rise.size() - 1] / (travel.greatest - travel.least);
 }
 
 void add_error(const ReferenceLine& line, const Eigen::VectorXd& x, const Spread& spread,
@@ -232,30 +284,38 @@ std::optional<Straightness> straightness_of(const Model& model, const ModelTerm&
     out.reason = "these data do not tell the straightness from another effect";
     return out;
   }
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kPoints, travel.least, travel.greatest);
   const Reported reported(fit, more);
-  const Locus slide(model, term, fit, reported, on_slide());
-  const Eigen::MatrixXd columns = slide.columns(x),
+  const Parts parts = parts_of_form(model, term, fit);
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(parts.size() > 1 ? kPointsOfWaves : kPoints,
+                                                       travel.least, travel.greatest);
+  const Locus slide(model, parts, fit, reported, on_slide());
+  const Eigen::MatrixXd columns = slide.form(x),
                         forms = least_squares_line(x, x).deviations(x, columns);
-  if (forms.norm() <= kRounding * columns.norm()) {
+  const Eigen::Index amplitudes = fit.estimate.amplitudes.size();
+  if (forms.leftCols(amplitudes).norm() <= kRounding * columns.leftCols(amplitudes).norm()) {
     out.reason = "a straightness of degree 1 is a line, which deviates from no line";
     return out;
   }
-  if (const auto& prior = fit.estimate.curve; prior && &term == curve_term(model))
+  for (std::size_t i = 1; i < parts.size(); ++i) out.parts.push_back(parts[i]->name);
+  const bool is_curve = &term == curve_term(model);
+  if (const auto& prior = fit.estimate.curve; prior && is_curve)
     out.form = CurveForm{prior->length_mm, prior->amplitude_mm / kMicrometre, prior->roughness};
   out.curve.position_mm.assign(x.begin(), x.end());
   append(slide.deviations(x, travel), out.curve.deviation_um, out.curve.expanded_uncertainty_um);
   if (const Setup* const face = one_face(model))
-    add_tip(Locus(model, term, fit, reported, *face), x, travel, out.curve);
-  const Eigen::VectorXd stations = station_positions(model, term);
-  const std::vector<QuantityValue> heights = slide.deviations(stations, travel);
+    add_tip(Locus(model, parts, fit, reported, *face), x, travel, out.curve);
+  const Eigen::VectorXd stations = station_positions(model, term),
+                        told = at_most(kMostStations, stations);
+  const std::vector<QuantityValue> heights = slide.deviations(told, travel);
   for (std::size_t i = 0; i < heights.size(); ++i)
-    out.stations.push_back({stations[static_cast<Eigen::Index>(i)], *heights[i].value,
-                            heights[i].expanded_uncertainty});
-  const Eigen::VectorXd form =
-      forms * fit.estimate.amplitudes.segment(term.first_amplitude, columns.cols());
+    out.stations.push_back(
+        {told[static_cast<Eigen::Index>(i)], *heights[i].value, heights[i].expanded_uncertainty});
+  const Eigen::VectorXd form = forms.rightCols<1>();
   const Eigen::MatrixXd left = slide.left_of_curve(x);
   const double least_U = least_uncertainty(out.curve);
+  std::vector<ReferenceLine> lines_of_stations;
+  if (is_curve && is_of_slides(model, term))
+    lines_of_stations = reference_lines(stations, slide.form(stations).rightCols<1>());
   for (const ReferenceLine& line : reference_lines(x, form)) {
     const Eigen::VectorXd deviation = line.deviations(x, form);
     const Eigen::MatrixXd rows = line.deviations(x, columns), rest = line.deviations(x, left);
@@ -264,9 +324,13 @@ std::optional<Straightness> straightness_of(const Model& model, const ModelTerm&
     };
     Spread spread = spread_between(static_cast<Eigen::Index>(line.highest_at),
                                    static_cast<Eigen::Index>(line.lowest_at));
-    const double U = std::max(least_U, reach_of_pairs(deviation, spread_between) - line.error);
-    spread.standard_uncertainty =
-        std::max(spread.standard_uncertainty, U / coverage_factor(spread.degrees_of_freedom));
+    double U = std::max(least_U, reach_of_pairs(deviation, spread_between) - line.error);
+    // What a curve does between stations rests on its prior alone: beside a joint it overshoots.
+    const double k = coverage_factor(spread.degrees_of_freedom);
+    for (const ReferenceLine& of_stations : lines_of_stations)
+      if (of_stations.kind == line.kind)
+        U = std::max(U, std::abs(line.error - of_stations.error) + k * spread.standard_uncertainty);
+    spread.standard_uncertainty = std::max(spread.standard_uncertainty, U / k);
     add_error(line, x, spread, out);
   }
   return out;

@@ -1,6 +1,7 @@
 #include "slideway/profile/setup.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "slideway/base/units.hpp"
 
@@ -33,6 +34,15 @@ std::string_view symbol(IndependentVariable variable) {
       return "t_read";
   }
   return "";
+}
+
+std::optional<CutDirection> travel_direction(const Setup& setup) {
+  if (setup.cut_direction || setup.kind != Kind::slide || !setup.reading_times)
+    return setup.cut_direction;
+  const std::vector<double>& times = setup.reading_times->times_s;
+  if (std::ranges::is_sorted(times)) return CutDirection::outward;
+  if (std::ranges::is_sorted(times, std::greater())) return CutDirection::inward;
+  return std::nullopt;
 }
 
 std::vector<std::string> missing_for(IndependentVariable variable, const Setup& setup) {

@@ -32,11 +32,14 @@ std::string parts_beside(const Result& result) {
   const std::vector<std::string>& known = effect_names();
   std::vector<std::string> parts;
   std::string of;
-  if (const auto& form = result.final->straightness; form && !form->profiles.empty())
+  const auto& form = result.final->straightness;
+  if (form && !form->profiles.empty())
     of = ", of " + joined(form->profiles) + ", the largest of " + std::to_string(form->each.size());
   for (const std::string& term : result.final->effects) {
     const std::string name = term.substr(0, term.find('['));
-    if (std::ranges::count(known, name) == 0 || std::ranges::count(parts, name) > 0) continue;
+    if (std::ranges::count(known, name) == 0 || std::ranges::count(parts, name) > 0 ||
+        (form && std::ranges::count(form->parts, term) > 0))
+      continue;
     if (is_part_of_straightness(specimen(name).description())) parts.push_back(name);
   }
   return of + (parts.empty() ? "" : ", without " + effect_titles(parts, " and "));

@@ -146,6 +146,13 @@ std::string next_step(const Analysis& analysis) {
   if (std::string next = next_of_loop(analysis); !next.empty()) return next;
   if (is_lone_curve(result))
     return "read it once more, back: in one trace a drift looks like the slide's form";
+  if (const auto& form = result.final->straightness;
+      form && std::ranges::any_of(form->if_no, [](const std::string& name) {
+        return std::ranges::count(effect_names(), name) > 0 &&
+               is_drift_of_instrument(specimen(name).description());
+      }))
+    return "read it once more, back, with time_column: read one way, a drift of the zero looks "
+           "like the slide's form";
   if (!may_be_moved_unseen(*result.final, *analysis.trace)) return kNothingToDo;
   return planned(analysis) + "; unseen effects may move the squareness by " +
          most_unseen(*analysis.trace);

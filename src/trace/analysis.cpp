@@ -67,7 +67,7 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
       round.parameters =
           parameters_of(*out.result.final, term_name(round.accepted, round.profiles));
     doubt_what_is_uncertain(last->model, *out.result.final, *out.trace);
-    add_conditions(*out.trace, out.result);
+    add_conditions(last->model, *out.trace, out.result);
     add_next_cut(problem, profiles, *last, std::move(loop.searched), limit, out);
   }
   if (options.with_details)

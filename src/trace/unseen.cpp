@@ -1,9 +1,11 @@
 #include "slideway/trace/unseen.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/identify.hpp"
+#include "slideway/identify/solve.hpp"
 
 namespace slideway {
 namespace {
@@ -14,6 +16,27 @@ bool has_parameter_of(MotionError error, const std::string& names) {
     if (at = names.find_first_not_of(' ', at); motion_error_of(names.substr(at)) == error)
       return true;
   return false;
+}
+
+bool reads_slide(const Observation* observation) {
+  return observation->profile->setup.kind == Kind::slide;
+}
+
+/// Whether a zero that drifts at an even pace makes slopes as the form of the slide does: read
+/// there and back, or reversed, only one of the two changes its sign.
+bool may_hold_drift(const Model& model) {
+  if (std::ranges::any_of(model.terms, [](const ModelTerm& term) {
+        return is_drift_of_instrument(term.effect->description());
+      }))
+    return false;
+  bool rises = false, falls = false;
+  for (const Observation* each : fitted_observations(model)) {
+    const Setup& setup = each->profile->setup;
+    if (setup.quantity != Quantity::slope) return false;
+    const bool back = travel_direction(setup) == CutDirection::inward;
+    (back == setup.reversed ? rises : falls) = true;
+  }
+  return rises != falls;
 }
 
 }  // namespace
@@ -36,13 +59,16 @@ std::vector<std::string> same_columns_as(MotionError error, const TraceResult& t
   return names;
 }
 
-void add_conditions(const TraceResult& trace, Result& result) {
-  const auto reads_face = [](const InputSummary& in) {
-    return in.kind == Kind::face && in.role == Role::fit;
-  };
-  if (!result.final || std::ranges::none_of(result.inputs, reads_face)) return;
-  const std::vector<std::string> squareness = same_columns_as(MotionError::squareness, trace),
-                                 straightness = same_columns_as(MotionError::straightness, trace);
+void add_conditions(const Model& model, const TraceResult& trace, Result& result) {
+  if (!result.final) return;
+  std::vector<std::string> squareness, straightness;
+  if (std::ranges::any_of(fitted_observations(model), std::not_fn(reads_slide))) {
+    squareness = same_columns_as(MotionError::squareness, trace);
+    straightness = same_columns_as(MotionError::straightness, trace);
+  } else if (may_hold_drift(model)) {
+    for (const std::string& name : effect_names())
+      if (is_drift_of_instrument(specimen(name).description())) straightness.push_back(name);
+  }
   for (FittedParameter& parameter : result.final->parameters)
     if (motion_error_of(parameter.name) == MotionError::squareness && parameter.value)
       parameter.if_no = squareness;

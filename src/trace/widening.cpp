@@ -17,25 +17,42 @@ Eigen::VectorXd own_shapes(const ModelTerm& term, const Estimate& estimate) {
   return estimate.shapes.segment(term.first_shape, std::ssize(term.effect->shapes()));
 }
 
-/// Change of the numbers of a model if it were another one, which lacks one of its effects, and
-/// what is moved there by what takes its place, a column each.
-Eigen::MatrixXd differences(const FittedModel& fitted, const FittedModel& without,
-                            const Eigen::MatrixXd& moved) {
+/// What is moved of the numbers of `without`, as changes of those of `fitted`, a column each.
+Eigen::MatrixXd carried(const FittedModel& fitted, const FittedModel& without,
+                        const Eigen::MatrixXd& moved) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(fitted.fit.linear.prior_rows.cols(), moved.cols());
-  const auto change = [&](Eigen::Index to, Eigen::Index from, const Eigen::VectorXd& now,
-                          const Eigen::VectorXd& then) {
-    const Eigen::Index common = std::min(now.size(), then.size());
-    out.middleRows(to, now.size()).colwise() -= now;
-    out.middleRows(to, common).colwise() += then.head(common);
-    out.middleRows(to, common) -= moved.middleRows(from, common);
+  const auto copy = [&](Eigen::Index to, Eigen::Index from, Eigen::Index count) {
+    out.middleRows(to, count) = moved.middleRows(from, count);
   };
   for (const ModelTerm& term : fitted.model.terms) {
     const auto other = std::ranges::find(without.model.terms, term.name, &ModelTerm::name);
     if (other == without.model.terms.end()) continue;
-    change(term.first_amplitude, other->first_amplitude, amplitudes_of(term, fitted.fit.estimate),
+    copy(term.first_amplitude, other->first_amplitude,
+         std::min(term.effect->amplitudes(), other->effect->amplitudes()));
+    copy(fitted.model.amplitudes() + term.first_shape,
+         without.model.amplitudes() + other->first_shape,
+         std::min(std::ssize(term.effect->shapes()), std::ssize(other->effect->shapes())));
+  }
+  return out;
+}
+
+/// Change of the numbers of a model if it were another one, which lacks one of its effects, and
+/// what is moved there by what takes its place, a column each.
+Eigen::MatrixXd differences(const FittedModel& fitted, const FittedModel& without,
+                            const Eigen::MatrixXd& moved) {
+  Eigen::MatrixXd out = -carried(fitted, without, moved);
+  const auto change = [&](Eigen::Index to, const Eigen::VectorXd& now,
+                          const Eigen::VectorXd& then) {
+    out.middleRows(to, now.size()).colwise() -= now;
+    const Eigen::Index common = std::min(now.size(), then.size());
+    out.middleRows(to, common).colwise() += then.head(common);
+  };
+  for (const ModelTerm& term : fitted.model.terms) {
+    const auto other = std::ranges::find(without.model.terms, term.name, &ModelTerm::name);
+    if (other == without.model.terms.end()) continue;
+    change(term.first_amplitude, amplitudes_of(term, fitted.fit.estimate),
            amplitudes_of(*other, without.fit.estimate));
-    change(fitted.model.amplitudes() + term.first_shape,
-           without.model.amplitudes() + other->first_shape, own_shapes(term, fitted.fit.estimate),
+    change(fitted.model.amplitudes() + term.first_shape, own_shapes(term, fitted.fit.estimate),
            own_shapes(*other, without.fit.estimate));
   }
   return out;
@@ -95,6 +112,21 @@ void Widening::add_rivals(const FittedModel& fitted, const FittedModel& without,
   for (std::size_t j = 0; j < rivals.size(); ++j)
     signals.col(static_cast<Eigen::Index>(j)) = signal_of(without.fit.linear, rivals[j]->refined);
   add(differences(fitted, without, response(without.fit, signals)));
+  for (const TestedCandidate* rival : rivals) add_bend(fitted, without, rival->refined);
+}
+
+void Widening::add_bend(const FittedModel& fitted, const FittedModel& without,
+                        const Refined& rival) {
+  Departures by = rival.candidate->term.effect->departures();
+  if (!by.of_law) return;
+  ModelTerm term = rival.candidate->term;
+  for (std::unique_ptr<Effect>& part : by.parts) {
+    term.effect = std::move(part);
+    const Eigen::MatrixXd bend =
+        fitted.model.gates.drift_bend * rival.projection.amplitudes[0] *
+        stacked_columns(without.model, term, rival.shape, without.fit.linear.prior_rows.rows());
+    append_columns(process, carried(fitted, without, response(without.fit, bend)));
+  }
 }
 
 double Widening::variance(const Eigen::RowVectorXd& row) const {

@@ -23,6 +23,9 @@ struct Widening {
   void add_rivals(const FittedModel& fitted, const FittedModel& without,
                   const std::vector<const TestedCandidate*>& rivals);
 
+  /// By what the law of a rival may differ by.
+  void add_bend(const FittedModel& fitted, const FittedModel& without, const Refined& rival);
+
   /// Of row * (amplitudes, shapes).
   [[nodiscard]] double variance(const Eigen::RowVectorXd& row) const;
 

@@ -170,6 +170,38 @@ TEST(Hysteresis, ChangesSignWithTheDirection) {
   EXPECT_EQ(make("hysteresis")->lacking_together({&inward, &inward}).size(), 1U);
 }
 
+// Its slope over a base is that at the middle of the base, as of every parabola.
+TEST(Hysteresis, OfSlopesIsThatOfItsHeights) {
+  Case heights = face({0.0, 450.0, 550.0, 1000.0});
+  heights.setup.kind = Kind::slide;
+  heights.setup.cut_direction = CutDirection::inward;
+  const Eigen::VectorXd z = height_um("hysteresis", heights, {0.1, 0.2, 0.4});
+  Case slopes = heights;
+  slopes.positions = {500.0, 1000.0};
+  slopes.setup.quantity = Quantity::slope;
+  slopes.setup.base_mm = 100.0;
+  EXPECT_NEAR(height_um("hysteresis", slopes, {0.1, 0.2, 0.4})[0], (z[2] - z[1]) / 100.0, 1e-15);
+}
+
+TEST(Hysteresis, OfASlideGoesTheWayItsTimesSay) {
+  Case there = face({0.0, 500.0, 1000.0});
+  there.setup.kind = Kind::slide;
+  there.setup.cut_direction.reset();
+  const auto read_at = [&](std::vector<double> times_s) {
+    Case out = there;
+    out.setup.reading_times =
+        std::make_shared<const ReadingTimes>(ReadingTimes{there.positions, std::move(times_s)});
+    return out;
+  };
+  const Case back = read_at({60.0, 30.0, 0.0});
+  const std::initializer_list<double> values{0.1, 0.2, 0.4};
+  EXPECT_EQ(height_um("hysteresis", back, values),
+            -height_um("hysteresis", read_at({0.0, 30.0, 60.0}), values));
+  EXPECT_FALSE(make("hysteresis")->lacking(read_at({0.0, 60.0, 30.0}).setup).empty());
+  there.setup.cut_direction = CutDirection::inward;
+  EXPECT_EQ(height_um("hysteresis", back, values), height_um("hysteresis", there, values));
+}
+
 TEST(Hysteresis, TakesTwoFacesOfEachDirectionToBeToldAndOneReading) {
   Case inward = face({0.0, 5.0, 10.0}), outward = inward;
   inward.setup.cut_direction = CutDirection::inward;

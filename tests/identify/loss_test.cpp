@@ -46,6 +46,37 @@ struct Fitted {
   }
 };
 
+// One value of one of three readings, ten standard deviations off: noise has a largest one of 4.2
+// or more with a probability of 10⁻³ in each reading, so of 60 clean ones one is told in 6 %.
+TEST(FarValue, IsToldWithItsPlace) {
+  const auto notes_on_slopes = [](double off, std::uint64_t seed) {
+    std::vector<Profile> runs;
+    for (const char* name : {"run1", "run2", "run3"}) {
+      RandomStream random(seed, name);
+      const std::vector<double> x = cases::spaced(0.0, 1000.0, 41);
+      std::vector<double> slopes;
+      for (const double at : x) slopes.push_back(2.0 * kCurvature * at + 1e-6 * random.normal());
+      runs.push_back(cases::profile(name, Kind::slide, x, slopes));
+      runs.back().setup.quantity = Quantity::slope;
+    }
+    runs[1].values[17] += off * 1e-6;
+    const FittedModel fitted =
+        fit_declared(cases::problem(Lever::paper, 0, {cases::effect("straightness", 2)}), runs);
+    std::vector<std::string> notes;
+    for (const std::string& note : summarise(fitted.model, fitted.fit).notes)
+      if (note.find("read wrongly") != std::string::npos) notes.push_back(note);
+    return notes;
+  };
+  int told = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const std::vector<std::string> notes = notes_on_slopes(10.0, seed);
+    ASSERT_GE(notes.size(), 1U);
+    EXPECT_NE(notes[0].find("'run2': the value at 425 mm"), std::string::npos) << notes[0];
+    told += static_cast<int>(notes_on_slopes(0.0, seed).size());
+  }
+  EXPECT_LE(told, 1);
+}
+
 class LossOfAProfile : public ::testing::TestWithParam<Loss> {};
 
 TEST_P(LossOfAProfile, KeepsDirtOutOfTheEstimate) {

@@ -166,6 +166,49 @@ TEST(IdentifiedStraightness, IsGivenAtTheStationsOfTheReadings) {
   }
 }
 
+/// A way with a bow of 5 µm and a worn place 20 µm deep, mm.
+double worn_way(double x) {
+  const double s = x / 800.0;
+  return 20e-3 * s * (s - 1.0) - 20e-3 * std::exp(-0.5 * std::pow((x - 450.0) / 70.0, 2));
+}
+
+Straightness of_worn_way(const std::vector<std::string>& shown_by) {
+  std::vector<Profile> runs;
+  for (const char* name : {"run1", "run2"}) {
+    RandomStream noise(3, name);
+    const std::vector<double> x = cases::spaced(0.0, 800.0, 41);
+    std::vector<double> z;
+    for (const double at : x) z.push_back(worn_way(at) + 1e-4 * noise.normal());
+    runs.push_back(cases::profile(name, Kind::slide, x, z));
+  }
+  DeclaredEffect form = cases::effect("local_form");
+  form.options.profiles = shown_by;
+  const Model model =
+      build_model(cases::problem(Lever::paper, 0, {cases::effect("straightness", 3), form}), runs);
+  return identified_straightness(model, fit(model)).value();
+}
+
+// E_ZX is the form of the way, under how many names the model has it.
+TEST(IdentifiedStraightness, HoldsALocalFormThatEveryReadingShows) {
+  double low = 0.0;
+  for (double x = 0.0; x <= 800.0; x += 0.5)
+    low = std::min(low,
+                   worn_way(x) - worn_way(0.0) * (1.0 - x / 800.0) - worn_way(800.0) * x / 800.0);
+  const Straightness found = of_worn_way({});
+  EXPECT_EQ(found.parts, std::vector<std::string>{"local_form"});
+  // At U a seed in 22 is outside; at 2 U one in 10⁴.
+  EXPECT_NEAR(*found.end_point_um, -low / kMicrometre, 2.0 * *found.expanded_uncertainty_um);
+  EXPECT_LT(*found.expanded_uncertainty_um, 0.5);
+  for (const StraightnessStation& station : found.stations)
+    EXPECT_NEAR(
+        station.deviation_um,
+        (worn_way(station.position_mm) - worn_way(0.0) * (1.0 - station.position_mm / 800.0) -
+         worn_way(800.0) * station.position_mm / 800.0) /
+            kMicrometre,
+        2.0 * *station.expanded_uncertainty_um + 1e-9);
+  EXPECT_TRUE(of_worn_way({"run1"}).parts.empty());
+}
+
 TEST(IdentifiedStraightness, IsNotGivenWhereTheDataDoNotTellIt) {
   // One lever and one face: b_2 x² and the cup are one column.
   const std::vector<Profile> faces{

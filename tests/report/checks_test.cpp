@@ -112,6 +112,8 @@ TEST(Condition, OfAStraightnessNamesItsPartsThatHaveANameOfTheirOwn) {
   EXPECT_THAT(words, HasSubstr("straightness conforms, without local form;"));
   EXPECT_THAT(words, Not(HasSubstr("flatness cannot be decided, without")));
   EXPECT_THAT(html_report({result}), HasSubstr("without local form"));
+  result.final->straightness->parts = {"local_form[cut1]", "local_form[cut2]"};
+  EXPECT_THAT(words_of(result), Not(HasSubstr("without local form")));
 }
 
 }  // namespace

@@ -33,6 +33,8 @@ struct Session {
   double zero = kZero;
   double noise = kNoise;
   double settling_s = INFINITY;  // time constant: the drift comes to rest
+  double rest_s = 60.0;          // of the one who had to wait
+  double lean = 0.0;             // rad: by what a reading back differs where the way begins
 
   [[nodiscard]] Profile read(const std::string& name, bool outward, double start_s, double sign,
                              std::uint64_t seed) const {
@@ -50,8 +52,9 @@ struct Session {
     const std::size_t n = out.positions.size();
     for (std::size_t i = 0; i < n; ++i) {
       const double turn = static_cast<double>(outward ? i : n - 1 - i);
-      times.times_s.push_back(start_s + 18.0 * turn + (turn > 12.0 ? 60.0 : 0.0));
+      times.times_s.push_back(start_s + 18.0 * turn + (turn > 12.0 ? rest_s : 0.0));
       out.values[i] += sign * (zero + drift(times.times_s.back()));
+      out.values[i] += (outward ? -0.5 : 0.5) * lean * (1.0 - out.positions[i] / kTravel);
     }
     out.setup.first_mm = out.positions.front();
     out.setup.last_mm = out.positions.back();
@@ -168,6 +171,35 @@ TEST(ZeroDrift, MayBendLessWhereTheWayIsReadTwiceThereAndBack) {
                 .expanded_uncertainty;
   };
   EXPECT_LT(reach(4), 0.6 * reach(2));
+}
+
+// There the drift rises with x, back it falls, and so does a lean of the carriage that depends on
+// which way it goes: at one pace nothing tells them apart, and the form of the way is that of both.
+TEST(Hysteresis, OfASlideIsARivalOfADriftAtOnePace) {
+  const Session drifts{.rest_s = 0.0}, leans{.rate_rad_per_s = 0.0, .rest_s = 0.0, .lean = 20e-6};
+  for (const Session& session : {drifts, leans})
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      const Closed result = closed(bed(), there_and_back(session, seed));
+      SCOPED_TRACE(story(result));
+      ASSERT_EQ(result.rounds.size(), 1U);
+      std::vector<std::string> names = result.rounds[0].ambiguous_with;
+      names.push_back(result.rounds[0].accepted);
+      EXPECT_THAT(names, Contains("zero_drift"));
+      EXPECT_THAT(names, Contains("hysteresis"));
+      ASSERT_TRUE(result.final.straightness);
+      const StraightnessError& error = result.final.straightness->errors.front();
+      EXPECT_NEAR(*error.value, form_of_way(), *error.expanded_uncertainty);
+    }
+}
+
+// A rest within each reading is a step of the drift in it.
+TEST(Hysteresis, OfASlideIsNamedWhereThePaceTellsItFromADrift) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Closed result = closed(
+        bed(), there_and_back({.rate_rad_per_s = 0.0, .rest_s = 300.0, .lean = 20e-6}, seed));
+    SCOPED_TRACE(story(result));
+    EXPECT_THAT(named(result), ElementsAre("hysteresis"));
+  }
 }
 
 TEST(ZeroDrift, IsNotNamedInASessionWithoutOne) {

@@ -26,6 +26,9 @@ const Effect& specimen(const std::string& name);
 /// Whether an effect is a part of E_ZX (ISO 230-1) under a name of its own.
 bool is_part_of_straightness(const Description& effect);
 
+/// Whether an effect is a drift of what measures, over the time of its readings.
+bool is_drift_of_instrument(const Description& effect);
+
 /// The options an effect of the catalogue cannot do without. REQUIRES a name of effect_names().
 const EffectOptions& needed_options(const std::string& name);
 

@@ -18,8 +18,8 @@ ConformityVerdict conformity_verdict(const QuantityValue& value, double limit, d
 /// 12781-1 on one trace), of the largest; its U is that of the difference of two low-band values.
 /// Not known where `free` has the tilt of a trace on one side of the axis only: then a cone is
 /// levelled away. Straightness: E_ZX about the minimum zone lines, to which the
-/// model's parts of E_ZX under other names (local_form, slide_periodic) may add their peak to
-/// valley. Squareness: its amount.
+/// model's parts of E_ZX under other names (local_form, slide_periodic) that are not in it may add
+/// their peak to valley. Squareness: its amount.
 std::vector<Conformity> conformity_of(const Problem& problem, const FittedModel& fitted,
                                       const ModelResult& summary);
 

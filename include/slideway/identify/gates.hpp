@@ -89,7 +89,7 @@ struct Gates {
 
   // What is said beside the verdict.
   double most_hidden = 3.0;
-  double drift_bend = 0.2;
+  double drift_bend = 0.3;
   double nearly_alike = 0.95;
   double ranking_p = 0.05;
   double ranking_lead = 0.8;

@@ -149,6 +149,7 @@ struct Straightness {
   std::vector<StraightnessStation> stations;                              // of slides, 50 at most
   StraightnessCurve curve;
   std::optional<CurveForm> form;         // of form = "curve"
+  std::vector<std::string> parts;        // effects besides the straightness whose forms are in it
   std::vector<std::string> if_no;        // as of a parameter
   std::string reason;                    // why there is none; then all else is empty
   std::vector<std::string> profiles;     // of several forms: whose this one is

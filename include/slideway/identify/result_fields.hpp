@@ -277,6 +277,7 @@ inline constexpr auto kRecord<Straightness> = record(
     field("stations", &Straightness::stations, "of slides"),
     field("errors", &Straightness::errors, "one for each reference line"),
     field("curve", &Straightness::curve), field("form", &Straightness::form, "of a curve"),
+    field("parts", &Straightness::parts, "effects besides the straightness whose forms are in it"),
     field("if_no", &Straightness::if_no, kIfNo),
     field("reason", &Straightness::reason, "why there is none"),
     field("profiles", &Straightness::profiles, "of several forms: whose this one is, the worst"),

@@ -65,6 +65,10 @@ struct Setup {
 /// None where feed per revolution or nose radius is not known.
 std::optional<double> largest_feed_mark(const Setup& setup, int harmonic);
 
+/// Which way the slide travelled: as declared; of a reading along the slide its times say it as
+/// well. None where neither does.
+std::optional<CutDirection> travel_direction(const Setup& setup);
+
 /// The independent variable of an effect: what its form is a function of, one per kind of cause.
 enum class IndependentVariable {
   radius,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "slideway/effects/effect.hpp"
+#include "slideway/identify/model.hpp"
 #include "slideway/identify/result.hpp"
 #include "slideway/trace/trace.hpp"
 
@@ -16,9 +17,10 @@ const DetectionLimit* worst_unseen(const TraceResult& trace);
 /// Effects whose columns an error of the carriages makes, but for the one that is so by Eq. (16).
 std::vector<std::string> same_columns_as(MotionError error, const TraceResult& trace);
 
-/// Says with the squareness, the straightness of faces and their conformity which effects have the
-/// same columns.
-void add_conditions(const TraceResult& trace, Result& result);
+/// Says with the squareness, the straightness and their conformity which effects have the same
+/// columns: of faces same_columns_as(); of slopes along a slide that were all read one way, as far
+/// as the problem says, the drift of the instrument's zero.
+void add_conditions(const Model& model, const TraceResult& trace, Result& result);
 
 /// Whether such effects may move Δβxz by more than its U.
 bool may_be_moved_unseen(const ModelResult& model, const TraceResult& trace);

@@ -26,27 +26,26 @@ Description describe_hysteresis() {
       .variable = IndependentVariable::slide,
       .confounded_with =
           "with cuts in one direction only, straightness; a size of each cut's "
-          "own of thermal_drift",
-      .confounded_effects = {"straightness", "thermal_drift"},
+          "own of thermal_drift; zero_drift where a slide is read there and back at one pace",
+      .confounded_effects = {"straightness", "thermal_drift", "zero_drift"},
       .separated_by =
           "two cuts in each direction: what goes with the direction repeats, what one cut alone "
-          "has does not",
+          "has does not; along the slide a reading at another pace",
       .axisymmetric = true};
 }
 
 std::ptrdiff_t of_rarer_direction(const std::vector<const Setup*>& setups) {
   const auto count = [&](CutDirection direction) {
     return std::ranges::count(setups, direction,
-                              [](const Setup* setup) { return setup->cut_direction; });
+                              [](const Setup* setup) { return travel_direction(*setup); });
   };
   return std::min(count(CutDirection::inward), count(CutDirection::outward));
 }
 
-double relative_place(const Stations& stations, Eigen::Index i) {
-  const Setup& setup = stations.setup();
-  if (setup.kind == Kind::face) return stations.radius(i) / *setup.cut_radius_mm;
-  const double reach = std::max(std::abs(setup.first_mm), std::abs(setup.last_mm));
-  return reach > 0.0 ? stations.slide(i) / reach : 0.0;
+/// R of a face, the largest size of x along a slide; mm.
+double reach_of(const Setup& setup) {
+  if (setup.kind == Kind::face) return *setup.cut_radius_mm;
+  return std::max(std::abs(setup.first_mm), std::abs(setup.last_mm));
 }
 
 class Hysteresis : public LinearEffect {
@@ -58,11 +57,13 @@ class Hysteresis : public LinearEffect {
                       {"bow_um", "h_2", "µm", 0.1}},
                      diagonal_map(kHysteresisAmplitudes, kMicrometre)) {}
 
-  [[nodiscard]] bool applies_to(const Setup& setup) const override { return is_height(setup); }
+  [[nodiscard]] bool applies_to(const Setup& setup) const override {
+    return is_height(setup) || setup.kind == Kind::slide;
+  }
 
   [[nodiscard]] std::vector<std::string> lacking(const Setup& setup) const override {
     std::vector<std::string> keys = LinearEffect::lacking(setup);
-    if (!setup.cut_direction) keys.emplace_back("cut_direction");
+    if (!travel_direction(setup)) keys.emplace_back("cut_direction");
     if (setup.kind == Kind::face && !setup.cut_radius_mm) keys.emplace_back("cut_radius_mm");
     return keys;
   }
@@ -83,11 +84,16 @@ class Hysteresis : public LinearEffect {
 
   void columns(const Stations& stations, std::span<const double> /*shape*/,
                Eigen::Ref<Eigen::MatrixXd> out) const override {
-    if (!applies_to(stations.setup())) return void(out.setZero());
-    const double sign = stations.setup().cut_direction == CutDirection::outward ? 1.0 : -1.0;
+    const Setup& setup = stations.setup();
+    const double reach = reach_of(setup);
+    if (!applies_to(setup) || !(reach > 0.0)) return void(out.setZero());
+    const double sign = travel_direction(setup) == CutDirection::outward ? 1.0 : -1.0;
     for (Eigen::Index i = 0; i < stations.size(); ++i) {
-      const double u = relative_place(stations, i);
-      out.row(i) << sign, sign * u, sign * u * u;
+      const double u = stations.radius(i) / reach;
+      if (is_height(setup))
+        out.row(i) << sign, sign * u, sign * u * u;
+      else
+        out.row(i) << 0.0, sign / reach, sign * 2.0 * u / reach;
     }
   }
 

@@ -316,6 +316,8 @@ class Straightness:
     curve: StraightnessCurve
     form: CurveForm | None
     """of a curve"""
+    parts: list[str]
+    """effects besides the straightness whose forms are in it"""
     if_no: list[str]
     """effects that have the same columns in these data: it holds if none of them acts"""
     reason: str
