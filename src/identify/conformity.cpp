@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "form_columns.hpp"
 #include "slideway/effects/catalogue.hpp"
@@ -35,9 +36,8 @@ double micrometres(const Observation& observation) {
 }
 
 /// Peak to valley in µm, after the least-squares line of a diameter, or the mean of a radius.
-double peak_to_valley_um(const Observation& observation) {
+double peak_to_valley_um(const Observation& observation, const std::vector<Eigen::Index>& rows) {
   const Profile& profile = *observation.profile;
-  const std::vector<Eigen::Index> rows = fitted_rows(observation);
   Eigen::MatrixXd reference = Eigen::MatrixXd::Ones(std::ssize(profile.positions), 1);
   if (is_diameter(profile)) {
     reference.conservativeResize(Eigen::NoChange, 2);
@@ -51,15 +51,20 @@ double peak_to_valley_um(const Observation& observation) {
   return (rest.maxCoeff() - rest.minCoeff()) * micrometres(observation);
 }
 
-QuantityValue flatness(const FittedModel& fitted) {
+/// @param left_out  set to what the values that the fit leaves out, at the axis, add to it; µm
+QuantityValue flatness(const FittedModel& fitted, double& left_out) {
   QuantityValue out;
+  double with_all = 0.0;
   const auto& observations = fitted.fit.linear.observations;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Observation& observation = *observations[i];
     const Profile& profile = *observation.profile;
     if (profile.setup.kind != Kind::face || profile.setup.quantity != Quantity::height) continue;
     if (profile.free_tilt && !is_diameter(profile)) return {};
-    const double value = peak_to_valley_um(observation);
+    std::vector<Eigen::Index> all(static_cast<std::size_t>(observation.values.size()));
+    std::iota(all.begin(), all.end(), 0);
+    with_all = std::max(with_all, peak_to_valley_um(observation, all));
+    const double value = peak_to_valley_um(observation, fitted_rows(observation));
     if (value <= out.value.value_or(0.0)) continue;
     const double of_value = fitted.fit.noise[i].standard_deviation() * micrometres(observation);
     out.value = value;
@@ -67,6 +72,7 @@ QuantityValue flatness(const FittedModel& fitted) {
     out.expanded_uncertainty = kCoverage * *out.standard_uncertainty;
     out.coverage_factor = kCoverage;
   }
+  left_out = std::max(0.0, with_all - out.value.value_or(with_all));
   return out;
 }
 
@@ -136,7 +142,12 @@ std::vector<Conformity> conformity_of(const Problem& problem, const FittedModel&
     (is_angle ? each.limit_um_per_m : each.limit_um) = limit;
     each.verdict = conformity_verdict(value, limit, beside);
   };
-  if (flatness_um) decide(kFlatness, flatness(fitted), *flatness_um, false);
+  if (flatness_um) {
+    double left_out = 0.0;
+    const QuantityValue value = flatness(fitted, left_out);
+    decide(kFlatness, value, *flatness_um, false, left_out);
+    if (left_out > 0.0) out.back().with_left_out_um = *value.value + left_out;
+  }
   if (straightness_um)
     decide("straightness", straightness(summary), *straightness_um, false,
            parts_beside_um(fitted, summary));

@@ -34,57 +34,76 @@ Eigen::MatrixXd columns_at_values(const std::vector<std::unique_ptr<Effect>>& ef
   return out;
 }
 
-/// Columns of the parts of one term's departures at its fitted size, in all low bands, white.
-Eigen::MatrixXd columns_of(const Model& model, const Linearisation& linear,
-                           const std::vector<Noise>& noise, const Estimate& estimate,
-                           const Departing& departing, Eigen::Index rows) {
+std::vector<Departing> departing_terms(const Model& model, bool of_law) {
+  std::vector<Departing> out;
+  for (const ModelTerm& term : model.terms)
+    if (Departures by = term.effect->departures(); by.of_law == of_law && !by.parts.empty())
+      out.push_back({&term, std::move(by)});
+  return out;
+}
+
+/// Columns of the parts of one term's departures at its fitted size, in each low band.
+std::vector<Eigen::MatrixXd> columns_of(const Model& model, const Linearisation& linear,
+                                        const Estimate& estimate, const Departing& departing) {
   const ModelTerm& term = *departing.term;
   const double size = (departing.by.of_law ? model.gates.drift_bend : 1.0) *
                       estimate.amplitudes[term.first_amplitude];
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, std::ssize(departing.by.parts));
-  Eigen::Index row = 0;
-  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
-    const Observation& observation = *linear.observations[i];
-    const Eigen::Index count = observation.values.size();
-    if (term.acts_on(*observation.profile)) {
-      out.middleRows(row, count) =
-          size * columns_at_values(departing.by.parts, observation, model.machine,
-                                   shapes_of(term, estimate.shapes));
-      noise[i].whiten(out.middleRows(row, count));
-    }
-    row += count;
+  std::vector<Eigen::MatrixXd> out;
+  for (const Observation* observation : linear.observations) {
+    Eigen::MatrixXd& columns = out.emplace_back(
+        Eigen::MatrixXd::Zero(observation->values.size(), std::ssize(departing.by.parts)));
+    if (term.acts_on(*observation->profile))
+      columns = size * columns_at_values(departing.by.parts, *observation, model.machine,
+                                         shapes_of(term, estimate.shapes));
   }
   return out;
 }
 
 }  // namespace
 
+std::vector<Eigen::MatrixXd> errors_of_causes(const Model& model, const Linearisation& linear,
+                                              const Estimate& estimate) {
+  std::vector<Eigen::MatrixXd> out;
+  for (const Departing& each : departing_terms(model, false)) {
+    std::vector<Eigen::MatrixXd> own = columns_of(model, linear, estimate, each);
+    for (std::size_t i = 0; i < out.size(); ++i) append_columns(out[i], own[i]);
+    if (out.empty()) out = std::move(own);
+  }
+  return out;
+}
+
 DepartureResponse response_to_departures(const Model& model, const Linearisation& linear,
                                          const std::vector<Noise>& noise, const Estimate& estimate,
                                          const Eigen::MatrixXd& basis) {
-  std::vector<Departing> all;
-  for (const ModelTerm& term : model.terms)
-    if (Departures by = term.effect->departures(); !by.parts.empty())
-      all.push_back({&term, std::move(by)});
-  if (all.empty() || basis.cols() == 0) return {};
-  Eigen::Index values = 0;
-  for (const Observation* observation : linear.observations) values += observation->values.size();
-  Eigen::MatrixXd design(values + linear.prior_rows.rows(), basis.cols());
-  Eigen::Index row = 0;
-  for (std::size_t i = 0; i < linear.observations.size(); ++i) {
-    const Eigen::Index count = linear.observations[i]->values.size();
-    design.middleRows(row, count) = linear.columns[i] * basis;
-    noise[i].whiten(design.middleRows(row, count));
-    row += count;
-  }
-  design.bottomRows(linear.prior_rows.rows()) = linear.prior_rows * basis;
+  const std::vector<Departing> laws = departing_terms(model, true);
+  if ((laws.empty() && linear.errors_of_causes.empty()) || basis.cols() == 0) return {};
+  const auto white = [&](auto&& of_observation, Eigen::Index more) {
+    Eigen::MatrixXd out(0, 0);
+    for (std::size_t i = 0; i < linear.observations.size(); ++i) {
+      Eigen::MatrixXd rows = of_observation(i);
+      noise[i].whiten(rows);
+      const Eigen::Index above = out.rows();
+      out.conservativeResize(above + rows.rows(), rows.cols());
+      out.bottomRows(rows.rows()) = rows;
+    }
+    const Eigen::Index above = out.rows();
+    out.conservativeResize(above + more, Eigen::NoChange);
+    out.bottomRows(more).setZero();
+    return out;
+  };
+  const Eigen::Index priors = linear.prior_rows.rows();
+  Eigen::MatrixXd design =
+      white([&](std::size_t i) { return Eigen::MatrixXd(linear.columns[i] * basis); }, priors);
+  design.bottomRows(priors) = linear.prior_rows * basis;
   const ProfileBases levelling = own_bases(linear.observations, noise);
   levelling.take_out(design);
+  const auto response = [&](const std::vector<Eigen::MatrixXd>& columns) -> Eigen::MatrixXd {
+    return basis * (design.transpose() * white([&](std::size_t i) { return columns[i]; }, priors));
+  };
   DepartureResponse out{Eigen::MatrixXd(basis.rows(), 0), Eigen::MatrixXd(basis.rows(), 0)};
-  for (const Departing& each : all)
-    append_columns(each.by.of_law ? out.to_laws : out.to_causes,
-                   basis * (design.transpose() *
-                            columns_of(model, linear, noise, estimate, each, design.rows())));
+  if (!linear.errors_of_causes.empty()) out.to_causes = response(linear.errors_of_causes);
+  for (const Departing& each : laws)
+    append_columns(out.to_laws, response(columns_of(model, linear, estimate, each)));
   return out;
 }
 

@@ -4,6 +4,11 @@
 
 namespace slideway {
 
+/// What the errors of measured causes (the logs of channels) make in each low band at the fitted
+/// sizes: Linearisation::errors_of_causes.
+std::vector<Eigen::MatrixXd> errors_of_causes(const Model& model, const Linearisation& linear,
+                                              const Estimate& estimate);
+
 /// What the effects of the model may differ by from what they are taken as changes in a fit.
 /// @param basis  in whose coordinates the information is the unit matrix (Uncertainty)
 DepartureResponse response_to_departures(const Model& model, const Linearisation& linear,

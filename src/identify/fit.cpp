@@ -106,9 +106,8 @@ void find_uncertainty(const Model& model, const Compressed& compressed, Solution
   fit.uncertainty = assess(fit.linear, compressed, fit.noise, fit.rank.basis, inflation);
   fit.uncertainty.departures =
       response_to_departures(model, fit.linear, fit.noise, fit.estimate, fit.rank.basis);
-  const DepartureResponse& departures = fit.uncertainty.departures;
-  for (const Eigen::MatrixXd* changes : {&departures.to_causes, &departures.to_laws})
-    if (changes->cols() > 0) fit.uncertainty.add(*changes * changes->transpose(), compressed);
+  if (const Eigen::MatrixXd& changes = fit.uncertainty.departures.to_laws; changes.cols() > 0)
+    fit.uncertainty.add(changes * changes.transpose(), compressed);
   if (!fit.estimate.curve) return;
   fit.uncertainty.has_curve = true;
   fit.uncertainty.add(covariance_of_curve_prior(model, fit.linear, fit.noise, fit.estimate),
@@ -159,6 +158,7 @@ FitNoise noise_of(const Model& model, const Linearisation& linear) {
 /// @return whether both are what they were
 bool settle(const Model& model, Solution& fit, Estimate& estimate,
             std::optional<CurveEstimate>& curve) {
+  fit.linear.errors_of_causes = errors_of_causes(model, fit.linear, estimate);
   FitNoise noise =
       noise_of(model, curve ? beside_curve(model, fit.linear, *curve, estimate) : fit.linear);
   const bool settled = has_settled(fit.noise, noise.profiles);
@@ -176,6 +176,7 @@ void require_enough_data(const Model& model) {
   Eigen::Index values = 0, unknowns = model.amplitudes() + model.shapes();
   if (const ModelTerm* const curve = curve_term(model))
     unknowns -= curve->effect->knots()->positions_mm.size();  // they have a prior
+  for (const ModelTerm& term : model.terms) unknowns -= std::ssize(term.priors);
   for (const Observation* observation : fitted_observations(model)) {
     values += observation->values.size() - observation->left_out();
     unknowns += std::ssize(observation->nuisance_names);
@@ -227,6 +228,10 @@ Solution with_profiles(const Model& model, const Solution& fit,
     out.estimate.nuisances.emplace_back(Eigen::VectorXd::Zero(observation.nuisances.cols()));
     out.noise.push_back(profile.noise);
   }
+  out.linear.errors_of_causes = errors_of_causes(model, out.linear, out.estimate);
+  for (std::size_t i = fit.noise.size();
+       i < out.noise.size() && !out.linear.errors_of_causes.empty(); ++i)
+    out.noise[i].add_known(out.linear.errors_of_causes[i]);
   const Compressed compressed = compress(out.linear, out.noise);
   out.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
   find_null_directions(model, compressed, out);

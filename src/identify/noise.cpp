@@ -1,5 +1,6 @@
 #include "slideway/identify/noise.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -156,6 +157,7 @@ Noise Noise::scaled(double factor) const {
       out.is_white() ? nullptr : std::make_shared<const MixtureFactor>(factored(out.covariance_));
   for (Alternative& each : out.alternatives)
     each.covariance = slideway::scaled(each.covariance, factor);
+  if (known_) out.add_known(known_->columns);
   return out;
 }
 
@@ -171,6 +173,7 @@ Noise Noise::repeated(const Weight& weight) const {
     out.factor_ = std::make_shared<const MixtureFactor>(factored(out.covariance_));
   out.weight_.memory *= weight.memory;
   out.weight_.white *= weight.white;
+  if (known_) out.add_known(known_->columns);
   return out;
 }
 
@@ -212,14 +215,39 @@ double Noise::log_long_run_variance() const {
   return square - mean * mean + log_size_variance();
 }
 
+void Noise::add_known(const Eigen::MatrixXd& columns) {
+  constexpr double kVisible = 0.01;  // of the variance of the noise
+  known_.reset();
+  Eigen::MatrixXd white = columns;
+  whiten(white);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(white.transpose() * white);
+  const Eigen::VectorXd& variances = parts.eigenvalues();  // rising
+  const Eigen::Index kept = (variances.array() > kVisible).count();
+  if (kept == 0) return;
+  const Eigen::VectorXd own = variances.tail(kept);
+  known_ = std::make_shared<const KnownErrors>(KnownErrors{
+      columns,
+      white * parts.eigenvectors().rightCols(kept) * own.cwiseSqrt().cwiseInverse().asDiagonal(),
+      (1.0 + own.array()).sqrt()});
+}
+
 void Noise::whiten(Eigen::Ref<Eigen::MatrixXd> rows) const {
   if (factor_ && factor_->rows() == rows.rows())
     factor_->whiten(rows);
   else
     MixtureFactor(covariance_, rows.rows()).whiten(rows);
+  if (!known_ || known_->directions.rows() != rows.rows()) return;
+  const Eigen::VectorXd shorter = 1.0 - known_->deviations.array().inverse();
+  rows -=
+      known_->directions * (shorter.asDiagonal() * (known_->directions.transpose() * rows)).eval();
 }
 
 void Noise::colour(Eigen::Ref<Eigen::MatrixXd> rows) const {
+  if (known_ && known_->directions.rows() == rows.rows()) {
+    const Eigen::VectorXd longer = known_->deviations.array() - 1.0;
+    rows +=
+        known_->directions * (longer.asDiagonal() * (known_->directions.transpose() * rows)).eval();
+  }
   if (factor_ && factor_->rows() == rows.rows())
     factor_->colour(rows);
   else

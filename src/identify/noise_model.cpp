@@ -243,6 +243,11 @@ std::optional<LinearProfile> beside_all(const Linearisation& alone,
                        observation.profile->standard_uncertainty};
 }
 
+void add_errors_of_causes(const Linearisation& linear, std::vector<Noise>& noise) {
+  for (std::size_t i = 0; i < linear.errors_of_causes.size(); ++i)
+    noise[i].add_known(linear.errors_of_causes[i]);
+}
+
 }  // namespace
 
 Eigen::Index slow_cosine_count(Eigen::Index n, const Gates& gates) {
@@ -308,6 +313,7 @@ std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
     if (!fine[instrument.which[k]] || found[k].long_run_deviation() > noise.long_run_deviation())
       noise = std::move(found[k]);
   }
+  add_errors_of_causes(linear, out);
   return out;
 }
 
@@ -346,6 +352,7 @@ std::vector<Noise> noise_if_complete(const Linearisation& linear, std::vector<No
   for (const Noise& noise : beside) weights.push_back(noise.weight());
   from_whole_residuals(linear, all, gates, beside);
   for (std::size_t i = 0; i < weights.size(); ++i) beside[i] = beside[i].repeated(weights[i]);
+  add_errors_of_causes(linear, beside);
   return beside;
 }
 

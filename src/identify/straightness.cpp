@@ -158,18 +158,18 @@ bool is_of_slides(const Model& model, const ModelTerm& term) {
   });
 }
 
-/// The straightness with what is part of it under another name and is the slide's: every reading of
-/// the slide shows it. On faces alone it may be the workpiece's.
+/// The straightness with what is part of it under another name and is the slide's: all profiles
+/// show it, a reading of the slide among them. On faces alone it may be the workpiece's, in a
+/// reading alone the instrument's.
 Parts parts_of_form(const Model& model, const ModelTerm& straightness, const Solution& fit) {
   const auto shows = [&](const ModelTerm& part) {
-    std::size_t readings = 0;
+    bool in_reading = false;
     for (const Observation* each : fitted_observations(model)) {
-      if (each->profile->setup.kind != Kind::slide || !straightness.acts_on(*each->profile))
-        continue;
+      if (!straightness.acts_on(*each->profile)) continue;
       if (!part.acts_on(*each->profile)) return false;
-      ++readings;
+      in_reading = in_reading || each->profile->setup.kind == Kind::slide;
     }
-    return readings > 0;
+    return in_reading;
   };
   Parts out{&straightness};
   for (const ModelTerm& term : model.terms)

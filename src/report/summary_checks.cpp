@@ -57,7 +57,11 @@ std::string noise_of(const Crosscheck& checks) {
 
 std::string condition(const Result& result, const Conformity& conformity) {
   const bool is_form = conformity.limit_um && conformity.what != kFlatness && result.final;
-  return (is_form ? parts_beside(result) : "") + condition(conformity.if_no);
+  const std::string with_all =
+      conformity.with_left_out_um && conformity.verdict == ConformityVerdict::undecided
+          ? ", " + number(*conformity.with_left_out_um, 3) + " µm with the values at the axis"
+          : "";
+  return with_all + (is_form ? parts_beside(result) : "") + condition(conformity.if_no);
 }
 
 bool is_contradicted(const Crosscheck& checks) {

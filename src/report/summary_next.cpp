@@ -70,6 +70,15 @@ std::string over(const std::string& variable) {
   return variable.empty() ? "" : " over " + variable;
 }
 
+/// Whether E_ZX holds an effect of the catalogue that is so, as far as the data tell.
+template <typename Is>
+bool holds(const Result& result, Is&& is) {
+  const auto& form = result.final->straightness;
+  return form && std::ranges::any_of(form->if_no, [&](const std::string& name) {
+           return std::ranges::count(effect_names(), name) > 0 && is(specimen(name).description());
+         });
+}
+
 /// What the closed loop leaves to do; "": nothing.
 std::string next_of_loop(const Analysis& analysis) {
   const TraceResult& trace = *analysis.trace;
@@ -146,11 +155,10 @@ std::string next_step(const Analysis& analysis) {
   if (std::string next = next_of_loop(analysis); !next.empty()) return next;
   if (is_lone_curve(result))
     return "read it once more, back: in one trace a drift looks like the slide's form";
-  if (const auto& form = result.final->straightness;
-      form && std::ranges::any_of(form->if_no, [](const std::string& name) {
-        return std::ranges::count(effect_names(), name) > 0 &&
-               is_drift_of_instrument(specimen(name).description());
-      }))
+  if (holds(result,
+            [](const Description& effect) { return effect.motion == MotionError::squareness; }))
+    return "declare the squareness, too: every machine has one, and E_ZX holds it";
+  if (holds(result, is_drift_of_instrument))
     return "read it once more, back, with time_column: read one way, a drift of the zero looks "
            "like the slide's form";
   if (!may_be_moved_unseen(*result.final, *analysis.trace)) return kNothingToDo;

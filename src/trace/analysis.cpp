@@ -6,6 +6,7 @@
 #include "next_cut.hpp"
 #include "outcome.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/identify/agreement.hpp"
 #include "slideway/trace/unseen.hpp"
 
 namespace slideway {
@@ -66,8 +67,12 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
     for (TraceRound& round : out.trace->rounds)
       round.parameters =
           parameters_of(*out.result.final, term_name(round.accepted, round.profiles));
+    if (const auto conflict = conflict_of_priors(declared.model, declared.fit);
+        conflict && last != &declared)
+      out.result.final->notes.push_back("of the declared model " + *conflict +
+                                        ". An effect that was added may stand for a wrong prior");
     doubt_what_is_uncertain(last->model, *out.result.final, *out.trace);
-    add_conditions(last->model, *out.trace, out.result);
+    add_conditions(*last, *out.trace, out.result);
     add_next_cut(problem, profiles, *last, std::move(loop.searched), limit, out);
   }
   if (options.with_details)

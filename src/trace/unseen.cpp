@@ -1,11 +1,16 @@
 #include "slideway/trace/unseen.hpp"
 
 #include <algorithm>
-#include <functional>
+#include <cmath>
+#include <iterator>
 
+#include "dictionary.hpp"
+#include "response.hpp"
+#include "search.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/identify.hpp"
 #include "slideway/identify/solve.hpp"
+#include "whitened.hpp"
 
 namespace slideway {
 namespace {
@@ -22,21 +27,98 @@ bool reads_slide(const Observation* observation) {
   return observation->profile->setup.kind == Kind::slide;
 }
 
-/// Whether a zero that drifts at an even pace makes slopes as the form of the slide does: read
-/// there and back, or reversed, only one of the two changes its sign.
-bool may_hold_drift(const Model& model) {
-  if (std::ranges::any_of(model.terms, [](const ModelTerm& term) {
-        return is_drift_of_instrument(term.effect->description());
-      }))
-    return false;
-  bool rises = false, falls = false;
+bool reads_face(const Observation* observation) { return !reads_slide(observation); }
+
+bool has(const Model& model, const std::string& effect) {
+  return std::ranges::any_of(model.terms, [&](const ModelTerm& term) {
+    return term.effect->description().name == effect;
+  });
+}
+
+/// Errors of the readings of a slide that look like its form. At an even pace a drift of the zero
+/// makes slopes so: read there and back, or reversed, only one of the two changes its sign. Of
+/// heights it is the form of what they are measured against, which is asked only where faces do not
+/// show the same: there the difference is laid to the workpiece.
+std::vector<std::string> errors_of_readings(const Model& model, bool beside_faces) {
+  bool slopes = false, heights = false, rises = false, falls = false, turned = false, as_is = false;
   for (const Observation* each : fitted_observations(model)) {
+    if (!reads_slide(each)) continue;
     const Setup& setup = each->profile->setup;
-    if (setup.quantity != Quantity::slope) return false;
+    (setup.quantity == Quantity::slope ? slopes : heights) = true;
+    (setup.reversed ? turned : as_is) = true;
     const bool back = travel_direction(setup) == CutDirection::inward;
     (back == setup.reversed ? rises : falls) = true;
   }
-  return rises != falls;
+  std::vector<std::string> out;
+  for (const std::string& name : effect_names()) {
+    const Description& effect = specimen(name).description();
+    const bool is_drift = slopes && !heights && rises != falls && is_drift_of_instrument(effect),
+               is_datum = beside_faces && heights && !slopes && turned != as_is &&
+                          effect.of_instrument && effect.variable == IndependentVariable::slide;
+    if ((is_drift || is_datum) && !has(model, name)) out.push_back(name);
+  }
+  return out;
+}
+
+/// Of the form of a slide at places between the ends of the travel, from the line through them: a
+/// column each amplitude.
+Eigen::MatrixXd deviations_from_ends(const Model& model, const ModelTerm& form,
+                                     const Solution& fit) {
+  constexpr Eigen::Index kPlaces = 21;
+  const SlideRange travel = measured_travel(model, &form);
+  const Eigen::VectorXd share = Eigen::VectorXd::LinSpaced(kPlaces, 0.0, 1.0),
+                        x = travel.least + (travel.greatest - travel.least) * share.array();
+  Eigen::MatrixXd out = along_slide(*form.effect, model.machine, x, Quantity::height,
+                                    shapes_of(form, fit.estimate.shapes));
+  const Eigen::RowVectorXd first = out.row(0), last = out.row(kPlaces - 1);
+  out -= (1.0 - share.array()).matrix() * first + share * last;
+  return out.middleRows(1, kPlaces - 2);
+}
+
+/// Whether one standard uncertainty of an effect that is not in the model would move the form of
+/// the slide by more than that is uncertain.
+bool is_hidden(const FittedModel& fitted, const std::string& effect) {
+  const auto& [model, fit] = fitted;
+  const ModelTerm* const form = model.find_term(MotionError::straightness);
+  if (!form || has(model, effect)) return false;
+  const ModelTerm term{effect, make_effect(effect, {}, model.machine, model.range), {}};
+  for (const Observation* each : fitted_observations(model))
+    if (const Setup& setup = each->profile->setup;
+        term.effect->applies_to(setup) && !term.effect->lacking(setup).empty())
+      return false;
+  const Eigen::MatrixXd column = stacked_columns(model, term, {}, fit.linear.prior_rows.rows());
+  const Whitened data(fit.linear, fit.noise);
+  if (project(data, column).rank == 0) return false;  // same_columns_as()
+  const double shown = data.outside(column).norm();
+  const Eigen::VectorXd moved = response(fit, column);
+  const Eigen::MatrixXd deviations = deviations_from_ends(model, *form, fit);
+  for (Eigen::Index i = 0; i < deviations.rows(); ++i) {
+    Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(moved.size());
+    row.segment(form->first_amplitude, deviations.cols()) = deviations.row(i);
+    if (std::abs(row.dot(moved)) > shown * fit.uncertainty.of(row).standard_uncertainty)
+      return true;
+  }
+  return false;
+}
+
+/// A form of the workpiece alone, without shapes: readings of the slide tell it from the slide's.
+bool is_of_workpiece(const Effect& effect) {
+  Setup face, slide;
+  slide.kind = Kind::slide;
+  return !effect.is_carriage() && !effect.description().of_instrument && effect.shapes().empty() &&
+         effect.amplitudes() == 1 && effect.applies_to(face) && !effect.applies_to(slide);
+}
+
+/// What the form of the slide hides: a squareness that nobody declared, which every machine has,
+/// and forms of the workpiece that readings of the slide tell from it, if they are precise enough.
+std::vector<std::string> hidden_effects(const FittedModel& fitted, bool beside_slide) {
+  std::vector<std::string> out;
+  for (const std::string& name : effect_names())
+    if ((motion_error_of(name) == MotionError::squareness ||
+         (beside_slide && is_of_workpiece(specimen(name)))) &&
+        is_hidden(fitted, name))
+      out.push_back(name);
+  return out;
 }
 
 }  // namespace
@@ -59,16 +141,19 @@ std::vector<std::string> same_columns_as(MotionError error, const TraceResult& t
   return names;
 }
 
-void add_conditions(const Model& model, const TraceResult& trace, Result& result) {
+void add_conditions(const FittedModel& fitted, const TraceResult& trace, Result& result) {
   if (!result.final) return;
+  const auto observations = fitted_observations(fitted.model);
+  const bool faces = std::ranges::any_of(observations, reads_face),
+             slides = std::ranges::any_of(observations, reads_slide);
   std::vector<std::string> squareness, straightness;
-  if (std::ranges::any_of(fitted_observations(model), std::not_fn(reads_slide))) {
+  if (faces) {
     squareness = same_columns_as(MotionError::squareness, trace);
     straightness = same_columns_as(MotionError::straightness, trace);
-  } else if (may_hold_drift(model)) {
-    for (const std::string& name : effect_names())
-      if (is_drift_of_instrument(specimen(name).description())) straightness.push_back(name);
+    std::ranges::move(hidden_effects(fitted, slides), std::back_inserter(straightness));
   }
+  if (slides)
+    std::ranges::move(errors_of_readings(fitted.model, faces), std::back_inserter(straightness));
   for (FittedParameter& parameter : result.final->parameters)
     if (motion_error_of(parameter.name) == MotionError::squareness && parameter.value)
       parameter.if_no = squareness;

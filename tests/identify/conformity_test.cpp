@@ -33,12 +33,15 @@ TEST(Conformity, NeedsTheUncertaintyInsideTheLimitOrBeyondIt) {
 
 class Toleranced : public ProblemFile {
  protected:
-  /// A cone of 20 µm/m over a diameter of 200 mm, and an alternating error of 5 nm.
-  [[nodiscard]] Result of_cone(const std::string& free) {
+  /// A cone of 20 µm/m over a diameter of 200 mm, and an alternating error of 5 nm; a nub at the
+  /// axis.
+  [[nodiscard]] Result of_cone(const std::string& free, double nub_um = 0.0) {
     std::string text = "x_mm,z_um\n";
     for (int i = 0; i <= 200; ++i)
       text += std::to_string(i - 100) + "," +
-              std::to_string(-0.02 * std::abs(i - 100) + (i % 2 == 0 ? 0.005 : -0.005)) + "\n";
+              std::to_string(-0.02 * std::abs(i - 100) + (i % 2 == 0 ? 0.005 : -0.005) +
+                             (i == 100 ? nub_um : 0.0)) +
+              "\n";
     write_file(folder_.path() / "cone.csv", text);
     const Problem problem = read(
         "[tolerance]\nflatness_um = 2.5\nsquareness_um_per_m = 10\nstraightness_um = 1\n"
@@ -61,6 +64,14 @@ TEST_F(Toleranced, AFaceIsHeldAgainstItsLimits) {
   EXPECT_FALSE(result.conformity[1].value_um);
   EXPECT_NEAR(*result.conformity[2].value_um_per_m, 20.0, 0.1);
   EXPECT_EQ(result.conformity[2].verdict, ConformityVerdict::does_not_conform);
+}
+
+// The fit leaves the axis out, the workpiece has it: 2 µm of the cone and 1.5 µm above its tip.
+TEST_F(Toleranced, ANubThatTheFitLeavesOutIsPartOfTheFlatness) {
+  const Conformity flatness = of_cone(R"(["offset", "tilt"])", 1.5).conformity[0];
+  EXPECT_LT(*flatness.value_um + *flatness.U_um, 2.5);
+  EXPECT_NEAR(flatness.with_left_out_um.value_or(0.0), 3.5, 0.04);
+  EXPECT_EQ(flatness.verdict, ConformityVerdict::undecided);
 }
 
 }  // namespace

@@ -84,7 +84,11 @@ TEST_F(Document, ReadBackMakesTheSameBytes) {
   result.final->implausible = "2 mm over 10 mm";
   result.crosscheck.profiles = {{{"run2", "run3"}, "straightness", 0.4, Consistency::consistent}};
   result.crosscheck.held_out = {{"run5", 1.4, 0.02, 0.8, {}, 620.0, HeldOutVerdict::does_not_fit}};
-  result.conformity = {{"flatness", 2.1, 0.1, 3.0, {}, {}, {}, ConformityVerdict::conforms}};
+  result.conformity = {{.what = "flatness",
+                        .value_um = 2.1,
+                        .U_um = 0.1,
+                        .limit_um = 3.0,
+                        .verdict = ConformityVerdict::conforms}};
   for (const std::string& text :
        {json_report({result}), json_report({result, sample_trace()}), json_report({})})
     EXPECT_EQ(json_report(read_report(file(text))), text);

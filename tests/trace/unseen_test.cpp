@@ -7,7 +7,8 @@
 #include <memory>
 #include <optional>
 
-#include "slideway/effects/catalogue.hpp"
+#include "slideway/base/random.hpp"
+#include "slideway/identify/identify.hpp"
 
 namespace slideway::unseen_test {
 namespace {
@@ -49,7 +50,7 @@ slideway::Setup reading(Kind kind, Quantity quantity = Quantity::slope,
 slideway::Setup timed(std::vector<double> times_s) {
   slideway::Setup out = reading(Kind::slide);
   out.reading_times =
-      std::make_shared<const ReadingTimes>(ReadingTimes{{0.0, 50.0, 100.0}, std::move(times_s)});
+      std::make_shared<const ReadingTimes>(ReadingTimes{{-50.0, 0.0, 50.0}, std::move(times_s)});
   return out;
 }
 
@@ -60,21 +61,27 @@ slideway::Setup reversed(slideway::Setup setup) {
 
 /// The result of a model that is fitted to such readings.
 Result with_conditions(const std::vector<slideway::Setup>& readings, Result result = sample(),
-                       const std::vector<DeclaredEffect>& more = {}) {
+                       const std::vector<DeclaredEffect>& more = {}, int degree = 2,
+                       double noise_of_slide = 1e-6, const TraceResult& trace = single_cut()) {
   Problem problem;
   problem.bodies = Machine::paper_lathe();
   problem.low_band.level = 0;
-  problem.effects = {{"straightness", {.degree = 2}, {}}};
+  problem.effects = {{"straightness", {.degree = degree}, {}}};
   problem.effects.insert(problem.effects.end(), more.begin(), more.end());
   std::vector<Profile> profiles;
   for (const slideway::Setup& setup : readings) {
     Profile& profile = profiles.emplace_back();
     profile.name = "r" + std::to_string(profiles.size());
     profile.setup = setup;
-    profile.positions = {0.0, 50.0, 100.0};
-    profile.values = {0.0, 0.0, 0.0};
+    if (setup.kind == Kind::face) profile.setup.cut_radius_mm = 50.0;
+    RandomStream noise(1, profile.name);
+    for (int i = 0; i <= 100; ++i) {
+      profile.positions.push_back(i - 50);
+      profile.values.push_back((setup.kind == Kind::slide ? noise_of_slide : 1e-6) *
+                               noise.normal());
+    }
   }
-  add_conditions(build_model(problem, profiles), single_cut(), result);
+  add_conditions(fit_declared(problem, profiles), trace, result);
   return result;
 }
 
@@ -83,7 +90,8 @@ std::vector<std::string> of_straightness(const std::vector<slideway::Setup>& rea
 }
 
 TEST(Conditions, AreTheEffectsThatHaveTheColumnsOfAValue) {
-  const Result result = with_conditions({reading(Kind::face, Quantity::height)});
+  const Result result =
+      with_conditions({reading(Kind::face, Quantity::height)}, sample(), {{"squareness", {}, {}}});
   EXPECT_THAT(result.final->parameters[0].if_no, ElementsAre("cup", "linear_drift"));
   EXPECT_THAT(result.final->parameters[1].if_no, IsEmpty());
   EXPECT_THAT(result.final->straightness->if_no, ElementsAre("cup"));
@@ -103,6 +111,30 @@ TEST(Conditions, AreNoneWhereNothingWasDeterminedOrNoFaceWasRead) {
   EXPECT_THAT(result.final->straightness->if_no, IsEmpty());
   EXPECT_THAT(result.final->parameters[0].if_no, IsEmpty());
   EXPECT_THAT(result.conformity[2].if_no, IsEmpty());
+}
+
+// (1 - k) b_k r^k up to k = 5 make most of a cone, -Δβxz r: a declared squareness says so by U.
+TEST(Conditions, OfAFormWithoutSquarenessAreTheSquarenessThatItHides) {
+  const std::vector<slideway::Setup> face{reading(Kind::face, Quantity::height)};
+  EXPECT_THAT(with_conditions(face, sample(), {}, 5).final->straightness->if_no,
+              ElementsAre("cup", "squareness"));
+  EXPECT_THAT(
+      with_conditions(face, sample(), {{"squareness", {}, {}}}, 5).final->straightness->if_no,
+      ElementsAre("cup"));
+}
+
+// On the lever r the cup is b_2 of a face. A reading of the slide tells them apart: one with the
+// noise of the faces, one with ten thousand times as much does not. Both rest on the straightedge.
+TEST(Conditions, OfFacesBesideASlideAreTheWorkpieceIfTheReadingIsPoorAndTheStraightedge) {
+  const slideway::Setup face = reading(Kind::face, Quantity::height),
+                        slide = reading(Kind::slide, Quantity::height);
+  TraceResult trace;
+  const auto of_slide_with = [&](double noise_mm) {
+    return with_conditions({face, slide}, sample(), {{"squareness", {}, {}}}, 2, noise_mm, trace)
+        .final->straightness->if_no;
+  };
+  EXPECT_THAT(of_slide_with(1e-6), ElementsAre("artefact_form"));
+  EXPECT_THAT(of_slide_with(1e-2), ElementsAre("cup", "artefact_form"));
 }
 
 // b_2 makes slopes that are a line over x, a zero that drifts at an even pace a line over the time.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -55,5 +56,10 @@ double probability_beside_repeats(const Linearisation& linear, std::size_t profi
 /// the fine bands of all groups, and that of the deviations from it. Its slow band is tested
 /// against that as lack_of_fit() does. F is the square found over the square expected.
 std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gates& gates);
+
+/// Whether the priors contradict the profiles or one another, in words: χ² of how far each lies
+/// from what all else says (residual r, variance 1 - h with the leverage h, in its own unit). None
+/// where they do not, with 99 %, or nothing else tells of them.
+std::optional<std::string> conflict_of_priors(const Model& model, const Solution& fit);
 
 }  // namespace slideway

@@ -16,6 +16,7 @@ ConformityVerdict conformity_verdict(const QuantityValue& value, double limit, d
 ///
 /// Flatness: peak to valley of the low band of a fitted face about its least-squares line (ISO
 /// 12781-1 on one trace), of the largest; its U is that of the difference of two low-band values.
+/// Values that the fit leaves out (a nub at the axis) may add what they do to it.
 /// Not known where `free` has the tilt of a trace on one side of the axis only: then a cone is
 /// levelled away. Straightness: E_ZX about the minimum zone lines, to which the
 /// model's parts of E_ZX under other names (local_form, slide_periodic) that are not in it may add

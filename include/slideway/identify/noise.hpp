@@ -76,11 +76,22 @@ class Noise {
   /// Another covariance at the stations of this trace.
   [[nodiscard]] MixtureFactor factored(const ExponentialMixture& covariance) const;
 
+  /// Adds errors of a known size: C Cᵀ to the covariance, C one standard deviation a column,
+  /// #values by k. Sizes and lengths of the noise are told without them.
+  void add_known(const Eigen::MatrixXd& columns);
+
   /// Rows made independent with unit variance (whitening), and the inverse. In place.
   void whiten(Eigen::Ref<Eigen::MatrixXd> rows) const;
   void colour(Eigen::Ref<Eigen::MatrixXd> rows) const;
 
  private:
+  /// Known errors in white coordinates: orthonormal directions, and the deviation of each beside
+  /// that of the noise.
+  struct KnownErrors {
+    Eigen::MatrixXd columns, directions;
+    Eigen::VectorXd deviations;
+  };
+
   [[nodiscard]] double extent() const;  // in stations
   [[nodiscard]] double spectrum(const ExponentialMixture& covariance) const;
 
@@ -89,6 +100,7 @@ class Noise {
   Weight weight_;
   std::vector<double> stations_;
   std::shared_ptr<const MixtureFactor> factor_;
+  std::shared_ptr<const KnownErrors> known_;  // null: none
 };
 
 /// One profile, linearised: values ≈ nuisances * ν + columns * w + noise, with the columns reduced

@@ -201,6 +201,8 @@ struct Conformity {
   std::string what;  // kFlatness, or an error of the carriages
   std::optional<double> value_um, U_um, limit_um;
   std::optional<double> value_um_per_m, U_um_per_m, limit_um_per_m;
+  /// Of flatness, where values that the fit leaves out, as at a nub, make it larger: with them.
+  std::optional<double> with_left_out_um;
   ConformityVerdict verdict = ConformityVerdict::undecided;
   std::vector<std::string> if_no;  // as of the value: FittedParameter
 };

@@ -376,6 +376,8 @@ inline constexpr auto kRecord<Conformity> =
            field("value_um_per_m", &Conformity::value_um_per_m),
            field("U_um_per_m", &Conformity::U_um_per_m),
            field("limit_um_per_m", &Conformity::limit_um_per_m),
+           field("with_left_out_um", &Conformity::with_left_out_um,
+                 "of flatness, with the values that the fit leaves out, if it is larger"),
            field("verdict", &Conformity::verdict), field("if_no", &Conformity::if_no, kIfNo));
 
 }  // namespace slideway

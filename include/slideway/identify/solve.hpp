@@ -27,6 +27,7 @@ struct Linearisation {
   Eigen::MatrixXd prior_rows;              // #priors by (A + S), divided by their uncertainty
   Eigen::VectorXd prior_residuals;         // (prior - value) / uncertainty
   Eigen::Index curve_rows = 0;             // the last of them: the prior of a curve
+  std::vector<Eigen::MatrixXd> errors_of_causes;  // per observation: #values by k; or empty: none
 };
 
 /// The observations with Role::fit, in order.

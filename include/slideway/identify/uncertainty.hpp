@@ -16,8 +16,8 @@ struct Spread {
 };
 
 /// Change of (amplitudes, shapes) by a standard deviation of each part of what effects may differ
-/// by from what they are taken as (Effect::departures()), a column each: R Rᵀ is what they add to
-/// the covariance of a fit.
+/// by from what they are taken as (Effect::departures()), a column each. R Rᵀ of laws is added to
+/// the covariance of a fit; that of causes is in it, as their errors are part of the noise.
 struct DepartureResponse {
   Eigen::MatrixXd to_causes, to_laws;
 };

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "slideway/effects/effect.hpp"
-#include "slideway/identify/model.hpp"
+#include "slideway/identify/fit.hpp"
 #include "slideway/identify/result.hpp"
 #include "slideway/trace/trace.hpp"
 
@@ -20,7 +20,7 @@ std::vector<std::string> same_columns_as(MotionError error, const TraceResult& t
 /// Says with the squareness, the straightness and their conformity which effects have the same
 /// columns: of faces same_columns_as(); of slopes along a slide that were all read one way, as far
 /// as the problem says, the drift of the instrument's zero.
-void add_conditions(const Model& model, const TraceResult& trace, Result& result);
+void add_conditions(const FittedModel& fitted, const TraceResult& trace, Result& result);
 
 /// Whether such effects may move Δβxz by more than its U.
 bool may_be_moved_unseen(const ModelResult& model, const TraceResult& trace);

@@ -9,7 +9,7 @@
 namespace slideway {
 namespace {
 
-constexpr std::size_t kDraws = 32;         // a variance is known to (2 / 32)^½, U to an eighth
+constexpr std::size_t kDraws = 64;         // a variance is known to (2 / 64)^½, U to a tenth
 constexpr std::size_t kLeastReadings = 8;  // to tell noise from what moves
 constexpr std::size_t kFinePlaces = 2000;  // of the quantity
 constexpr double kMostBetween = 64.0;      // places between two readings

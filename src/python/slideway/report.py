@@ -548,6 +548,8 @@ class Conformity:
     value_um_per_m: float | None
     U_um_per_m: float | None
     limit_um_per_m: float | None
+    with_left_out_um: float | None
+    """of flatness, with the values that the fit leaves out, if it is larger"""
     verdict: Literal["conforms", "does not conform", "can not be decided"]
     if_no: list[str]
     """effects that have the same columns in these data: it holds if none of them acts"""
