@@ -61,7 +61,10 @@ TEST(Widening, OfARivalIsTheChangeThatItsFitBrings) {
   const FittedModel with = fitted(profiles, {"squareness", "cup"});
   const FittedModel without = fitted(profiles, {"squareness"});
   const Observation& observation = with.model.observations[0];
+  Candidate cup;
+  cup.term = with.model.terms[1];
   TestedCandidate rival;
+  rival.refined.candidate = &cup;
   rival.refined.columns = power(observation, 1.5);
   rival.refined.projection =
       project(Whitened(without.fit.linear, without.fit.noise), rival.refined.columns);
