@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <memory>
 
 #include "dictionary.hpp"
 #include "response.hpp"
 #include "search.hpp"
+#include "slideway/base/error.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/identify.hpp"
 #include "slideway/identify/solve.hpp"
@@ -75,13 +77,24 @@ Eigen::MatrixXd deviations_from_ends(const Model& model, const ModelTerm& form,
   return out.middleRows(1, kPlaces - 2);
 }
 
+/// Null where the machine has several carriages it may belong to.
+std::shared_ptr<const Effect> made_without_options(const std::string& effect, const Model& model) {
+  try {
+    return make_effect(effect, {}, model.machine, model.range);
+  } catch (const UsageError&) {
+    return nullptr;
+  }
+}
+
 /// Whether one standard uncertainty of an effect that is not in the model would move the form of
 /// the slide by more than that is uncertain.
 bool is_hidden(const FittedModel& fitted, const std::string& effect) {
   const auto& [model, fit] = fitted;
   const ModelTerm* const form = model.find_term(MotionError::straightness);
   if (!form || has(model, effect)) return false;
-  const ModelTerm term{effect, make_effect(effect, {}, model.machine, model.range), {}};
+  const std::shared_ptr<const Effect> made = made_without_options(effect, model);
+  if (!made) return false;
+  const ModelTerm term{effect, made, {}};
   for (const Observation* each : fitted_observations(model))
     if (const Setup& setup = each->profile->setup;
         term.effect->applies_to(setup) && !term.effect->lacking(setup).empty())

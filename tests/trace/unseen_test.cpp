@@ -62,11 +62,12 @@ slideway::Setup reversed(slideway::Setup setup) {
 /// The result of a model that is fitted to such readings.
 Result with_conditions(const std::vector<slideway::Setup>& readings, Result result = sample(),
                        const std::vector<DeclaredEffect>& more = {}, int degree = 2,
-                       double noise_of_slide = 1e-6, const TraceResult& trace = single_cut()) {
+                       double noise_of_slide = 1e-6, const TraceResult& trace = single_cut(),
+                       const std::vector<Body>& bodies = Machine::paper_lathe()) {
   Problem problem;
-  problem.bodies = Machine::paper_lathe();
+  problem.bodies = bodies;
   problem.low_band.level = 0;
-  problem.effects = {{"straightness", {.degree = degree}, {}}};
+  problem.effects = {{"straightness", {.body = "x_carriage", .degree = degree}, {}}};
   problem.effects.insert(problem.effects.end(), more.begin(), more.end());
   std::vector<Profile> profiles;
   for (const slideway::Setup& setup : readings) {
@@ -121,6 +122,15 @@ TEST(Conditions, OfAFormWithoutSquarenessAreTheSquarenessThatItHides) {
   EXPECT_THAT(
       with_conditions(face, sample(), {{"squareness", {}, {}}}, 5).final->straightness->if_no,
       ElementsAre("cup"));
+}
+
+// Two carriages move along X, and nobody said whose squareness it would be.
+TEST(Conditions, AskForNoCarriageThatIsOpen) {
+  const std::vector<Body> bodies{
+      {"z_carriage", 0, Axis::z}, {"x_carriage", 1, Axis::x}, {"top_slide", 2, Axis::x}};
+  const Result result = with_conditions({reading(Kind::face, Quantity::height)}, sample(), {}, 5,
+                                        1e-6, single_cut(), bodies);
+  EXPECT_THAT(result.final->straightness->if_no, ElementsAre("cup"));
 }
 
 // On the lever r the cup is b_2 of a face. A reading of the slide tells them apart: one with the
