@@ -8,6 +8,7 @@
 #include "compared_curves.hpp"
 #include "reported.hpp"
 #include "slideway/base/distribution.hpp"
+#include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
@@ -300,6 +301,35 @@ Eigen::MatrixXd scatter_of_profiles(const Solution& fit, const Gates& gates) {
   out.colwise() -= out.rowwise().mean().eval();
   const auto n = static_cast<double>(count);
   return std::sqrt((n - 1.0) / n) * out;
+}
+
+std::optional<std::string> conflict_of_priors(const Model& model, const Solution& fit) {
+  constexpr double kUnlikely = 0.01;
+  constexpr double kTold = 1e-6;  // of a prior's variance, by the profiles and the other priors
+  const Eigen::Index count = fit.linear.prior_residuals.size() - fit.linear.curve_rows;
+  if (count == 0) return std::nullopt;
+  const Eigen::MatrixXd rows = fit.linear.prior_rows.topRows(count) * fit.uncertainty.basis;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(
+      Eigen::MatrixXd::Identity(count, count) -
+      rows * fit.uncertainty.covariance * rows.transpose());
+  const Eigen::VectorXd along =
+      parts.eigenvectors().transpose() * fit.linear.prior_residuals.head(count);
+  double chi_square = 0.0, freedom = 0.0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (!(parts.eigenvalues()[i] > kTold)) continue;
+    chi_square += along[i] * along[i] / parts.eigenvalues()[i];
+    freedom += 1.0;
+  }
+  if (freedom == 0.0 || chi_squared_tail(freedom, chi_square) >= kUnlikely) return std::nullopt;
+  std::vector<std::string> names;
+  for (const ModelTerm& term : model.terms)
+    for (const Prior& prior : term.priors)
+      if (const std::string name = term.name + "." + prior.parameter;
+          std::ranges::count(names, name) == 0)
+        names.push_back(name);
+  return "the priors (" + joined(names) + ") contradict the data or one another: chi-square " +
+         significant(chi_square, 2) + " for " + significant(freedom, 3) +
+         "; U holds only if all of them are right";
 }
 
 }  // namespace slideway

@@ -51,8 +51,12 @@ double peak_to_valley_um(const Observation& observation, const std::vector<Eigen
   return (rest.maxCoeff() - rest.minCoeff()) * micrometres(observation);
 }
 
-/// @param left_out  set to what the values that the fit leaves out, at the axis, add to it; µm
-QuantityValue flatness(const FittedModel& fitted, double& left_out) {
+struct Flatness {
+  QuantityValue value;
+  double left_out_um = 0.0;  // what the values that the fit leaves out add to it
+};
+
+Flatness flatness(const FittedModel& fitted) {
   QuantityValue out;
   double with_all = 0.0;
   const auto& observations = fitted.fit.linear.observations;
@@ -72,8 +76,7 @@ QuantityValue flatness(const FittedModel& fitted, double& left_out) {
     out.expanded_uncertainty = kCoverage * *out.standard_uncertainty;
     out.coverage_factor = kCoverage;
   }
-  left_out = std::max(0.0, with_all - out.value.value_or(with_all));
-  return out;
+  return {out, std::max(0.0, with_all - out.value.value_or(with_all))};
 }
 
 QuantityValue straightness(const ModelResult& summary) {
@@ -143,10 +146,9 @@ std::vector<Conformity> conformity_of(const Problem& problem, const FittedModel&
     each.verdict = conformity_verdict(value, limit, beside);
   };
   if (flatness_um) {
-    double left_out = 0.0;
-    const QuantityValue value = flatness(fitted, left_out);
-    decide(kFlatness, value, *flatness_um, false, left_out);
-    if (left_out > 0.0) out.back().with_left_out_um = *value.value + left_out;
+    const auto [value, left_out_um] = flatness(fitted);
+    decide(kFlatness, value, *flatness_um, false, left_out_um);
+    if (left_out_um > 0.0) out.back().with_left_out_um = *value.value + left_out_um;
   }
   if (straightness_um)
     decide("straightness", straightness(summary), *straightness_um, false,

@@ -77,28 +77,28 @@ DepartureResponse response_to_departures(const Model& model, const Linearisation
                                          const Eigen::MatrixXd& basis) {
   const std::vector<Departing> laws = departing_terms(model, true);
   if ((laws.empty() && linear.errors_of_causes.empty()) || basis.cols() == 0) return {};
-  const auto white = [&](auto&& of_observation, Eigen::Index more) {
-    Eigen::MatrixXd out(0, 0);
+  const Eigen::Index priors = linear.prior_rows.rows();
+  Eigen::Index rows = priors;
+  for (const Observation* observation : linear.observations) rows += observation->values.size();
+  const auto white = [&](Eigen::Index columns, auto&& of_observation) {
+    Eigen::MatrixXd out = Eigen::MatrixXd::Zero(rows, columns);
+    Eigen::Index row = 0;
     for (std::size_t i = 0; i < linear.observations.size(); ++i) {
-      Eigen::MatrixXd rows = of_observation(i);
-      noise[i].whiten(rows);
-      const Eigen::Index above = out.rows();
-      out.conservativeResize(above + rows.rows(), rows.cols());
-      out.bottomRows(rows.rows()) = rows;
+      auto own = out.middleRows(row, linear.observations[i]->values.size());
+      own = of_observation(i);
+      noise[i].whiten(own);
+      row += own.rows();
     }
-    const Eigen::Index above = out.rows();
-    out.conservativeResize(above + more, Eigen::NoChange);
-    out.bottomRows(more).setZero();
     return out;
   };
-  const Eigen::Index priors = linear.prior_rows.rows();
   Eigen::MatrixXd design =
-      white([&](std::size_t i) { return Eigen::MatrixXd(linear.columns[i] * basis); }, priors);
+      white(basis.cols(), [&](std::size_t i) { return linear.columns[i] * basis; });
   design.bottomRows(priors) = linear.prior_rows * basis;
   const ProfileBases levelling = own_bases(linear.observations, noise);
   levelling.take_out(design);
   const auto response = [&](const std::vector<Eigen::MatrixXd>& columns) -> Eigen::MatrixXd {
-    return basis * (design.transpose() * white([&](std::size_t i) { return columns[i]; }, priors));
+    return basis * (design.transpose() *
+                    white(columns.front().cols(), [&](std::size_t i) { return columns[i]; }));
   };
   DepartureResponse out{Eigen::MatrixXd(basis.rows(), 0), Eigen::MatrixXd(basis.rows(), 0)};
   if (!linear.errors_of_causes.empty()) out.to_causes = response(linear.errors_of_causes);

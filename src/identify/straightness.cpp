@@ -275,6 +275,33 @@ double reach_of_pairs(const Eigen::VectorXd& deviation, const SpreadBetween& spr
   return out;
 }
 
+/// @param columns      slide.form(x)
+/// @param form         the form itself, from its least-squares line
+/// @param of_stations  the lines of a curve's stations; empty: of no curve
+void add_errors(const Locus& slide, const Eigen::VectorXd& x, const Eigen::MatrixXd& columns,
+                const Eigen::VectorXd& form, const std::vector<ReferenceLine>& of_stations,
+                Straightness& out) {
+  const Eigen::MatrixXd left = slide.left_of_curve(x);
+  const double least_U = least_uncertainty(out.curve);
+  for (const ReferenceLine& line : reference_lines(x, form)) {
+    const Eigen::VectorXd deviation = line.deviations(x, form);
+    const Eigen::MatrixXd rows = line.deviations(x, columns), rest = line.deviations(x, left);
+    const auto spread_between = [&](Eigen::Index high, Eigen::Index low) {
+      return slide.spread(rows.row(high) - rows.row(low), rest.row(high) - rest.row(low));
+    };
+    Spread spread = spread_between(static_cast<Eigen::Index>(line.highest_at),
+                                   static_cast<Eigen::Index>(line.lowest_at));
+    double U = std::max(least_U, reach_of_pairs(deviation, spread_between) - line.error);
+    // What a curve does between stations rests on its prior alone: beside a joint it overshoots.
+    const double k = coverage_factor(spread.degrees_of_freedom);
+    for (const ReferenceLine& other : of_stations)
+      if (other.kind == line.kind)
+        U = std::max(U, std::abs(line.error - other.error) + k * spread.standard_uncertainty);
+    spread.standard_uncertainty = std::max(spread.standard_uncertainty, U / k);
+    add_error(line, x, spread, out);
+  }
+}
+
 std::optional<Straightness> straightness_of(const Model& model, const ModelTerm& term,
                                             const Solution& fit, const MoreVariance& more) {
   const SlideRange travel = measured_travel(model, &term);
@@ -310,29 +337,10 @@ std::optional<Straightness> straightness_of(const Model& model, const ModelTerm&
   for (std::size_t i = 0; i < heights.size(); ++i)
     out.stations.push_back(
         {told[static_cast<Eigen::Index>(i)], *heights[i].value, heights[i].expanded_uncertainty});
-  const Eigen::VectorXd form = forms.rightCols<1>();
-  const Eigen::MatrixXd left = slide.left_of_curve(x);
-  const double least_U = least_uncertainty(out.curve);
-  std::vector<ReferenceLine> lines_of_stations;
+  std::vector<ReferenceLine> of_stations;
   if (is_curve && is_of_slides(model, term))
-    lines_of_stations = reference_lines(stations, slide.form(stations).rightCols<1>());
-  for (const ReferenceLine& line : reference_lines(x, form)) {
-    const Eigen::VectorXd deviation = line.deviations(x, form);
-    const Eigen::MatrixXd rows = line.deviations(x, columns), rest = line.deviations(x, left);
-    const auto spread_between = [&](Eigen::Index high, Eigen::Index low) {
-      return slide.spread(rows.row(high) - rows.row(low), rest.row(high) - rest.row(low));
-    };
-    Spread spread = spread_between(static_cast<Eigen::Index>(line.highest_at),
-                                   static_cast<Eigen::Index>(line.lowest_at));
-    double U = std::max(least_U, reach_of_pairs(deviation, spread_between) - line.error);
-    // What a curve does between stations rests on its prior alone: beside a joint it overshoots.
-    const double k = coverage_factor(spread.degrees_of_freedom);
-    for (const ReferenceLine& of_stations : lines_of_stations)
-      if (of_stations.kind == line.kind)
-        U = std::max(U, std::abs(line.error - of_stations.error) + k * spread.standard_uncertainty);
-    spread.standard_uncertainty = std::max(spread.standard_uncertainty, U / k);
-    add_error(line, x, spread, out);
-  }
+    of_stations = reference_lines(stations, slide.form(stations).rightCols<1>());
+  add_errors(slide, x, columns, forms.rightCols<1>(), of_stations, out);
   return out;
 }
 

@@ -67,8 +67,9 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
     for (TraceRound& round : out.trace->rounds)
       round.parameters =
           parameters_of(*out.result.final, term_name(round.accepted, round.profiles));
-    if (const auto conflict = conflict_of_priors(declared.model, declared.fit);
-        conflict && last != &declared)
+    const auto conflict =
+        last == &declared ? std::nullopt : conflict_of_priors(declared.model, declared.fit);
+    if (conflict)
       out.result.final->notes.push_back("of the declared model " + *conflict +
                                         ". An effect that was added may stand for a wrong prior");
     doubt_what_is_uncertain(last->model, *out.result.final, *out.trace);

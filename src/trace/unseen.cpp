@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <set>
 
 #include "dictionary.hpp"
 #include "response.hpp"
@@ -42,21 +43,23 @@ bool has(const Model& model, const std::string& effect) {
 /// heights it is the form of what they are measured against, which is asked only where faces do not
 /// show the same: there the difference is laid to the workpiece.
 std::vector<std::string> errors_of_readings(const Model& model, bool beside_faces) {
-  bool slopes = false, heights = false, rises = false, falls = false, turned = false, as_is = false;
+  std::set<Quantity> quantities;
+  std::set<bool> reversed, falls;  // of a drift, over the slide
   for (const Observation* each : fitted_observations(model)) {
     if (!reads_slide(each)) continue;
     const Setup& setup = each->profile->setup;
-    (setup.quantity == Quantity::slope ? slopes : heights) = true;
-    (setup.reversed ? turned : as_is) = true;
-    const bool back = travel_direction(setup) == CutDirection::inward;
-    (back == setup.reversed ? rises : falls) = true;
+    quantities.insert(setup.quantity);
+    reversed.insert(setup.reversed);
+    falls.insert((travel_direction(setup) == CutDirection::inward) != setup.reversed);
   }
   std::vector<std::string> out;
   for (const std::string& name : effect_names()) {
     const Description& effect = specimen(name).description();
-    const bool is_drift = slopes && !heights && rises != falls && is_drift_of_instrument(effect),
-               is_datum = beside_faces && heights && !slopes && turned != as_is &&
-                          effect.of_instrument && effect.variable == IndependentVariable::slide;
+    const bool is_drift = quantities == std::set{Quantity::slope} && falls.size() == 1 &&
+                          is_drift_of_instrument(effect),
+               is_datum = beside_faces && quantities == std::set{Quantity::height} &&
+                          reversed.size() == 1 && effect.of_instrument &&
+                          effect.variable == IndependentVariable::slide;
     if ((is_drift || is_datum) && !has(model, name)) out.push_back(name);
   }
   return out;
@@ -88,7 +91,7 @@ std::shared_ptr<const Effect> made_without_options(const std::string& effect, co
 
 /// Whether one standard uncertainty of an effect that is not in the model would move the form of
 /// the slide by more than that is uncertain.
-bool is_hidden(const FittedModel& fitted, const std::string& effect) {
+bool is_hidden(const FittedModel& fitted, const Whitened& data, const std::string& effect) {
   const auto& [model, fit] = fitted;
   const ModelTerm* const form = model.find_term(MotionError::straightness);
   if (!form || has(model, effect)) return false;
@@ -100,7 +103,6 @@ bool is_hidden(const FittedModel& fitted, const std::string& effect) {
         term.effect->applies_to(setup) && !term.effect->lacking(setup).empty())
       return false;
   const Eigen::MatrixXd column = stacked_columns(model, term, {}, fit.linear.prior_rows.rows());
-  const Whitened data(fit.linear, fit.noise);
   if (project(data, column).rank == 0) return false;  // same_columns_as()
   const double shown = data.outside(column).norm();
   const Eigen::VectorXd moved = response(fit, column);
@@ -125,11 +127,12 @@ bool is_of_workpiece(const Effect& effect) {
 /// What the form of the slide hides: a squareness that nobody declared, which every machine has,
 /// and forms of the workpiece that readings of the slide tell from it, if they are precise enough.
 std::vector<std::string> hidden_effects(const FittedModel& fitted, bool beside_slide) {
+  const Whitened data(fitted.fit.linear, fitted.fit.noise);
   std::vector<std::string> out;
   for (const std::string& name : effect_names())
     if ((motion_error_of(name) == MotionError::squareness ||
          (beside_slide && is_of_workpiece(specimen(name)))) &&
-        is_hidden(fitted, name))
+        is_hidden(fitted, data, name))
       out.push_back(name);
   return out;
 }

@@ -18,8 +18,10 @@ const DetectionLimit* worst_unseen(const TraceResult& trace);
 std::vector<std::string> same_columns_as(MotionError error, const TraceResult& trace);
 
 /// Says with the squareness, the straightness and their conformity which effects have the same
-/// columns: of faces same_columns_as(); of slopes along a slide that were all read one way, as far
-/// as the problem says, the drift of the instrument's zero.
+/// columns, or nearly: of faces same_columns_as(), and effects that are not in the model and of
+/// which one standard uncertainty moves the form by more than its own (a squareness that nobody
+/// declared; beside readings of the slide, a form of the workpiece); of readings of the slide the
+/// error that looks like its form.
 void add_conditions(const FittedModel& fitted, const TraceResult& trace, Result& result);
 
 /// Whether such effects may move Δβxz by more than its U.
