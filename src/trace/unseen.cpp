@@ -69,15 +69,15 @@ std::vector<std::string> errors_of_readings(const Model& model, bool beside_face
 /// column each amplitude.
 Eigen::MatrixXd deviations_from_ends(const Model& model, const ModelTerm& form,
                                      const Solution& fit) {
-  constexpr Eigen::Index kPlaces = 21;
+  constexpr Eigen::Index kAlong = 21;
   const SlideRange travel = measured_travel(model, &form);
-  const Eigen::VectorXd share = Eigen::VectorXd::LinSpaced(kPlaces, 0.0, 1.0),
+  const Eigen::VectorXd share = Eigen::VectorXd::LinSpaced(kAlong, 0.0, 1.0),
                         x = travel.least + (travel.greatest - travel.least) * share.array();
   Eigen::MatrixXd out = along_slide(*form.effect, model.machine, x, Quantity::height,
                                     shapes_of(form, fit.estimate.shapes));
-  const Eigen::RowVectorXd first = out.row(0), last = out.row(kPlaces - 1);
+  const Eigen::RowVectorXd first = out.row(0), last = out.row(kAlong - 1);
   out -= (1.0 - share.array()).matrix() * first + share * last;
-  return out.middleRows(1, kPlaces - 2);
+  return out.middleRows(1, kAlong - 2);
 }
 
 /// Null where the machine has several carriages it may belong to.
