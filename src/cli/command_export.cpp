@@ -49,8 +49,7 @@ class ExportCommand : public Command {
       }
       const Compensation table = compensation(analysis, step_mm_);
       write_output(out_, compensation_table(table, format_, source));
-      if (!is_quiet())
-        for (const std::string& line : compensation_notes(table, format_, source)) say(line);
+      if (!is_quiet()) say(compensation_notes(table, format_, source));
     } catch (const UsageError& error) {
       fail(std::string("--") + error.what());
     } catch (const DataError& error) {

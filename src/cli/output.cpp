@@ -114,11 +114,16 @@ pid_t show_page(std::string page) {
   return error == 0 ? child : -1;
 }
 
-void say(std::string_view message) {
-  std::string line(message);
-  for (char& c : line)
-    if (c == '\n' || c == '\r') c = ' ';
-  std::cerr << "slideway: " << printable(line, line.size()) << std::endl;
+void say(const std::vector<std::string>& messages) {
+  std::string text;
+  for (std::string line : messages) {
+    for (char& c : line)
+      if (c == '\n' || c == '\r') c = ' ';
+    text += "slideway: " + printable(line, line.size()) + "\n";
+  }
+  std::cerr << text << std::flush;
 }
+
+void say(std::string_view message) { say(std::vector{std::string(message)}); }
 
 }  // namespace slideway

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace slideway {
 
@@ -41,5 +42,7 @@ pid_t show_page(std::string page);
 
 /// A message of one line on stderr: "slideway: ...".
 void say(std::string_view message);
+/// All of these, or none.
+void say(const std::vector<std::string>& messages);
 
 }  // namespace slideway

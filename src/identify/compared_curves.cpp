@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "form_columns.hpp"
 #include "slideway/identify/low_band_lines.hpp"
+#include "slideway/identify/straightness.hpp"
 
 namespace slideway {
 namespace {
@@ -24,21 +24,6 @@ SlideRange common_travel(const Model& model, const Profile& a, const Profile& b)
     out.greatest = std::min(out.greatest, own.greatest + foot);
   }
   return out;
-}
-
-/// Deviation from the line through the ends of `travel`; nothing where there is none in common.
-Eigen::MatrixXd straightness_curve(const Model& model, const ModelTerm& term, const Solution& fit,
-                                   const SlideRange& travel) {
-  if (!(travel.greatest > travel.least)) return {};
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(kCurvePoints, travel.least, travel.greatest);
-  Eigen::MatrixXd out =
-      form_columns(model, term, shapes_of(term, fit.estimate.shapes), on_slide(), x);
-  const Eigen::RowVectorXd first = out.row(0), last = out.row(x.size() - 1);
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    const double share = static_cast<double>(i) / static_cast<double>(x.size() - 1);
-    out.row(i) -= (1.0 - share) * first + share * last;
-  }
-  return out.middleRows(1, x.size() - 2);
 }
 
 /// Low band of an effect in one profile, as far as levelling leaves it, at most kCurvePoints rows.
@@ -83,9 +68,10 @@ std::vector<ComparedCurve> compared_curves(const Model& model, const Solution& f
     if (is_of_each_cut(model, fit, term, std::array{observations[a], observations[b]})) continue;
     const bool of_slide = term.effect->description().motion == MotionError::straightness;
     const Eigen::MatrixXd own =
-        of_slide ? straightness_curve(
+        of_slide ? deviations_from_ends(
                        model, term, fit,
-                       common_travel(model, *observations[a]->profile, *observations[b]->profile))
+                       common_travel(model, *observations[a]->profile, *observations[b]->profile),
+                       kCurvePoints - 2)
                  : levelled_curve(fit.linear, a, term);
     if (own.size() == 0 || own.cwiseAbs().maxCoeff() == 0.0) continue;
     ComparedCurve curve{term.name, Eigen::MatrixXd::Zero(own.rows(), fit.linear.prior_rows.cols()),

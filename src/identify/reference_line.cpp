@@ -91,10 +91,14 @@ ReferenceLine least_squares_line(const Eigen::VectorXd& x, const Eigen::VectorXd
   return line;
 }
 
+ReferenceLine end_point_line(const Eigen::VectorXd& positions, const Eigen::VectorXd& heights) {
+  return through(ReferenceLineKind::end_point, positions, heights, 0, positions.size() - 1);
+}
+
 std::vector<ReferenceLine> reference_lines(const Eigen::VectorXd& positions,
                                            const Eigen::VectorXd& heights) {
-  return {through(ReferenceLineKind::end_point, positions, heights, 0, positions.size() - 1),
-          least_squares_line(positions, heights), minimum_zone(positions, heights)};
+  return {end_point_line(positions, heights), least_squares_line(positions, heights),
+          minimum_zone(positions, heights)};
 }
 
 }  // namespace slideway

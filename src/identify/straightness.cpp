@@ -141,16 +141,6 @@ Eigen::VectorXd at_most(Eigen::Index count, const Eigen::VectorXd& x) {
   return out;
 }
 
-/// All but offset and slope, which the reference line takes.
-bool is_determined(const ModelTerm& term, const Solution& fit) {
-  const std::vector<Parameter>& parameters = term.effect->parameters();
-  for (std::size_t p = 0; p < parameters.size(); ++p)
-    if (!fit.null.identifiable[term.first_parameter + static_cast<Eigen::Index>(p)] &&
-        !parameters[p].by_convention)
-      return false;
-  return true;
-}
-
 /// Whether a term acts in readings of the slide alone.
 bool is_of_slides(const Model& model, const ModelTerm& term) {
   return std::ranges::none_of(fitted_observations(model), [&](const Observation* each) {
@@ -352,6 +342,24 @@ double reach(const Straightness& form) {
 }
 
 }  // namespace
+
+bool is_determined(const ModelTerm& term, const Solution& fit) {
+  const std::vector<Parameter>& parameters = term.effect->parameters();
+  for (std::size_t p = 0; p < parameters.size(); ++p)
+    if (!fit.null.identifiable[term.first_parameter + static_cast<Eigen::Index>(p)] &&
+        !parameters[p].by_convention)
+      return false;
+  return true;
+}
+
+Eigen::MatrixXd deviations_from_ends(const Model& model, const ModelTerm& form, const Solution& fit,
+                                     const SlideRange& travel, Eigen::Index places) {
+  if (!(travel.greatest > travel.least)) return {};
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(places + 2, travel.least, travel.greatest);
+  const Eigen::MatrixXd columns =
+      form_columns(model, form, shapes_of(form, fit.estimate.shapes), on_slide(), x);
+  return end_point_line(x, x).deviations(x, columns).middleRows(1, places);
+}
 
 std::optional<Straightness> identified_straightness(const Model& model, const Solution& fit,
                                                     const MoreVariance& more) {

@@ -57,7 +57,8 @@ void note_cut(Profile& profile) {
   const double speed = 2e-3 * kPi * radius * setup.spindle_rpm.value_or(0.0);
   if (speed > kFastestSurface)
     profile.doubts.push_back("the rim runs at " + significant(speed, 3) +
-                             " m/min, faster than anything is turned: is spindle_rpm right?");
+                             " m/min, faster than anything is turned: are spindle_rpm and the unit "
+                             "of the positions right?");
 }
 
 void note_centre(Profile& profile) {

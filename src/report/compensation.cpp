@@ -197,6 +197,8 @@ void add_doubts(const Analysis& analysis, Compensation& out) {
     doubt("the closed loop's verdict is ambiguous, and its rivals would leave other numbers");
   if (out.squareness_rad && may_be_moved_unseen(model, *analysis.trace))
     doubt("what these data do not show may move B0X " + moved_unseen(analysis));
+  if (!out.straightness_mm.empty() && may_be_bent_unseen(model, *analysis.trace))
+    doubt("what these data do not show may move EZX " + bent_unseen(analysis));
 }
 
 }  // namespace

@@ -92,13 +92,14 @@ Html html_limits(const TraceResult& trace) {
                    {"unit", HtmlColumn::text},
                    {"at", HtmlColumn::text},
                    {"at other shapes", HtmlColumn::text},
-                   {"moves Δβxz unseen, µm/m", HtmlColumn::number}});
+                   {"moves Δβxz unseen, µm/m", HtmlColumn::number},
+                   {"moves E_ZX unseen, µm", HtmlColumn::number}});
   for (const DetectionLimit& limit : trace.detection_limits)
-    table.add(
-        {effect_title(limit.effect), limit.parameter,
-         limit.value ? html_number(limit.value, 2) : "at no size", html_unit(limit.unit), limit.at,
-         html_extremes(limit),
-         limit.squareness_rad ? html_number(*limit.squareness_rad / kMicroradian, 2) : Html()});
+    table.add({effect_title(limit.effect), limit.parameter,
+               limit.value ? html_number(limit.value, 2) : "at no size", html_unit(limit.unit),
+               limit.at, html_extremes(limit),
+               limit.squareness_rad ? html_number(*limit.squareness_rad / kMicroradian, 2) : Html(),
+               html_number(limit.straightness_um, 2)});
   return table.html();
 }
 

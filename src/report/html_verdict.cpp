@@ -37,9 +37,9 @@ Html squareness_card(const FittedParameter& p) {
                "; positive: the face falls from centre to rim");
 }
 
-Html unseen_paragraph(const Summary& summary) {
-  if (summary.unseen.empty()) return {};
-  return element("br") + small("what these data do not show may move it " + Html(summary.unseen));
+Html unseen_paragraph(const std::string& moved) {
+  if (moved.empty()) return {};
+  return element("br") + small("what these data do not show may move it " + Html(moved));
 }
 
 Html same_paragraph(const Summary& summary) {
@@ -88,11 +88,11 @@ Html all_cards(const Analysis& analysis, const Summary& summary) {
     for (const FittedParameter& p : result.final->parameters)
       if (is_squareness(p))
         facts.emplace_back("Squareness " + html_symbol(p.symbol),
-                           squareness_card(p) + unseen_paragraph(summary));
+                           squareness_card(p) + unseen_paragraph(summary.unseen));
     if (result.final->straightness)
       facts.emplace_back("Straightness error " + html_symbol("E_ZX"),
                          straightness_card(*result.final->straightness) + beside_paragraph(result) +
-                             same_paragraph(summary));
+                             same_paragraph(summary) + unseen_paragraph(summary.bent_unseen));
   }
   if (!summary.conformity.empty()) facts.emplace_back("Tolerance", in_sentence(summary.conformity));
   if (const Html name = dominant_card(result.dominant); !name.empty())

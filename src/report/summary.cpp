@@ -215,7 +215,7 @@ std::string lead_of(const Result& result, bool with_size) {
   const std::string straightness = straightness_of(result), squareness = squareness_of(result);
   if (!angle && has_form)
     return "the slide is straight to " + straightness.substr(std::string("E_ZX ").size()) +
-           parts_beside(result);
+           parts_beside(result) + condition_in_brief(way->if_no);
   const Dominant& dominant = result.dominant;
   const auto& leader = dominant.by_fit ? dominant.by_fit : dominant.by_correlation;
   if (!dominant.doubt.empty() || !leader)
@@ -337,6 +337,7 @@ Summary summary_of(const Analysis& analysis) {
   if (result.final && !result.final->converged)
     out.result = "not determined: the fit did not converge";
   out.unseen = moved_unseen(analysis);
+  out.bent_unseen = bent_unseen(analysis);
   if (const auto& model = result.final; model && model->straightness)
     out.same = effect_titles(model->straightness->if_no, ", ");
   say_crosscheck(result, out);

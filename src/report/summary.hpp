@@ -23,6 +23,7 @@ struct Summary {
   std::string squareness;    // "2.797 ± 0.029 µm/m", or why there is none
   std::string result;        // both, with the definition of E_ZX
   std::string unseen;        // what may have moved it unseen: "by up to 4.1 µm/m: tool wear"
+  std::string bent_unseen;   // the same of E_ZX
   std::string same;          // what has the columns of the straightness: "cupped workpiece"
   std::string conformity;    // "flatness conforms", "" without a tolerance
   std::string crosscheck;
@@ -46,6 +47,8 @@ std::string cut_to_make(const NextCut& cut);
 
 /// The most that an effect which is just not seen moves the squareness; "": none is known.
 std::string moved_unseen(const Analysis& analysis);
+/// The same of E_ZX.
+std::string bent_unseen(const Analysis& analysis);
 
 /// ", if no steady drift": of what a value holds unseen (FittedParameter::if_no); "": of nothing.
 std::string condition(const std::vector<std::string>& if_no);

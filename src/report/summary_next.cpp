@@ -30,7 +30,10 @@ std::string one_with(MotionError error, const TraceResult& trace) {
 /// By how much that is: "2.6 µm/m". REQUIRES one.
 std::string most_unseen(const TraceResult& trace) {
   return one_with(MotionError::squareness, trace).empty()
-             ? number(*worst_unseen(trace)->squareness_rad / kMicroradian, 2) + " µm/m"
+             ? number(*worst_unseen(trace, &DetectionLimit::squareness_rad)->squareness_rad /
+                          kMicroradian,
+                      2) +
+                   " µm/m"
              : "any amount";
 }
 
@@ -124,11 +127,23 @@ std::string cut_to_make(const NextCut& cut) {
 
 std::string moved_unseen(const Analysis& analysis) {
   if (!analysis.trace) return "";
-  const DetectionLimit* const worst = worst_unseen(*analysis.trace);
+  const DetectionLimit* const worst =
+      worst_unseen(*analysis.trace, &DetectionLimit::squareness_rad);
   if (!worst) return "";
   const std::string same = one_with(MotionError::squareness, *analysis.trace);
   return (same.empty() ? "" : "by any amount: " + same + "; ") + "by up to " +
          number(*worst->squareness_rad / kMicroradian, 2) + " µm/m: " + effect_title(worst->effect);
+}
+
+std::string bent_unseen(const Analysis& analysis) {
+  const auto& model = analysis.result.final;
+  if (!analysis.trace || !model || !model->straightness || !model->straightness->end_point_um)
+    return "";
+  const DetectionLimit* const worst =
+      worst_unseen(*analysis.trace, &DetectionLimit::straightness_um);
+  return worst ? "by up to " + number(*worst->straightness_um, 2) +
+                     " µm: " + effect_title(worst->effect)
+               : "";
 }
 
 std::string condition(const std::vector<std::string>& if_no) {
@@ -161,6 +176,11 @@ std::string next_step(const Analysis& analysis) {
   if (holds(result, is_drift_of_instrument))
     return "read it once more, back, with time_column: read one way, a drift of the zero looks "
            "like the slide's form";
+  if (holds(result, [](const Description& effect) {
+        return effect.of_instrument && effect.variable == IndependentVariable::slide;
+      }))
+    return "read it once more, the straightedge turned over (reversed = true): its form looks like "
+           "the slide's";
   if (!may_be_moved_unseen(*result.final, *analysis.trace)) return kNothingToDo;
   return planned(analysis) + "; unseen effects may move the squareness by " +
          most_unseen(*analysis.trace);

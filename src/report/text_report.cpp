@@ -117,10 +117,10 @@ std::string box(const Summary& summary, const TextOptions& options) {
             options.page.empty() ? "none was written; --html FILE writes it" : options.page)};
   std::size_t count = 0;
   for (const auto& lines : entries) count += lines.size();
-  const auto leave = [&](std::size_t entry, bool says_nothing) {
+  const auto leave = [&](std::size_t which, bool says_nothing) {
     if (count <= kBoxLines || !says_nothing) return;
-    count -= entries[entry].size();
-    entries[entry].clear();
+    count -= entries[which].size();
+    entries[which].clear();
   };
   leave(3, !summary.has_missing || summary.verdict_names_missing);
   leave(5, options.page.empty());
@@ -283,8 +283,11 @@ std::string unseen_lines(const Summary& summary) {
   std::string out;
   if (!summary.same.empty())
     out += note("The straightness holds whatever has its columns: " + summary.same + ".");
-  if (!summary.unseen.empty())
-    out += note("What these data do not show may move the squareness " + summary.unseen + ".");
+  std::vector<std::string> moved;
+  if (!summary.unseen.empty()) moved.push_back("the squareness " + summary.unseen);
+  if (!summary.bent_unseen.empty()) moved.push_back("E_ZX " + summary.bent_unseen);
+  if (!moved.empty())
+    out += note("What these data do not show may move " + joined(moved, ", and ") + ".");
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include "slideway/report/layout.hpp"
 #include "slideway/report/number.hpp"
 #include "slideway/trace/analysis_fields.hpp"
+#include "slideway/trace/unseen.hpp"
 #include "summary.hpp"
 #include "text_parts.hpp"
 
@@ -113,19 +114,29 @@ std::string extremes(const DetectionLimit& limit) {
 
 std::string limits(const TraceResult& trace) {
   if (trace.detection_limits.empty()) return "";
-  const bool has_squareness = std::ranges::any_of(
-      trace.detection_limits, [](const auto& limit) { return limit.squareness_rad.has_value(); });
-  TextTable table({"effect", "found from", "other shapes", has_squareness ? "µm/m" : "", "at"},
-                  {TextColumn::text, TextColumn::number, TextColumn::number, TextColumn::number,
-                   TextColumn::text});
+  const auto any = [&](MovedUnseen moved) {
+    return std::ranges::any_of(trace.detection_limits,
+                               [&](const auto& limit) { return (limit.*moved).has_value(); });
+  };
+  const bool angle = any(&DetectionLimit::squareness_rad),
+             form = any(&DetectionLimit::straightness_um);
+  TextTable table(
+      {"effect", "found from", "other shapes", angle ? "µm/m" : "", form ? "µm" : "", "at"},
+      {TextColumn::text, TextColumn::number, TextColumn::number, TextColumn::number,
+       TextColumn::number, TextColumn::text});
   for (const DetectionLimit& limit : trace.detection_limits)
     table.add({effect_title(limit.effect),
                limit.value ? number(*limit.value, 2) + " " + unit_text(limit.unit) : "at no size",
                extremes(limit),
                limit.squareness_rad ? number(*limit.squareness_rad / kMicroradian, 2) : "",
-               limit.at});
-  return item(std::string("Sizes found with 80 % probability") +
-              (has_squareness ? ", and the most that what is just not seen moves Δβxz:" : ":")) +
+               limit.straightness_um ? number(*limit.straightness_um, 2) : "", limit.at});
+  std::vector<std::string> moved;
+  if (angle) moved.emplace_back("Δβxz");
+  if (form) moved.emplace_back("E_ZX");
+  return item("Sizes found with 80 % probability" +
+              (moved.empty() ? ":"
+                             : ", and the most that what is just not seen moves " +
+                                   joined(moved, " and ") + ":")) +
          table.text();
 }
 

@@ -11,6 +11,7 @@
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/linear_algebra.hpp"
+#include "slideway/identify/straightness.hpp"
 
 namespace slideway {
 namespace {
@@ -82,15 +83,23 @@ struct Case {
   }
 };
 
+/// What an effect that is just not seen may move, as sums of (amplitudes, shapes): the squareness
+/// and the deviations of the straightness, as far as the data determine them.
+struct Targets {
+  Eigen::MatrixXd rows;  // the squareness first
+  bool squareness = false;
+  Eigen::VectorXd form;  // the deviations, mm
+};
+
 /// What an effect has to show itself in, and the least gain that counts.
 struct Design {
   const FittedModel& fitted;
   const Whitened& data;
   const Whitened fit_data;  // under the noise that the report's uncertainties rest on
   double least_gain;
-  double deviate;                                     // normal deviate of the detection power
-  std::optional<Eigen::Index> squareness;             // its parameter, if the data determine it
-  std::optional<ParameterResponse> squareness_moved;  // no further values left out
+  double deviate;  // normal deviate of the detection power
+  Targets targets;
+  RowResponse moved;  // of them, no further values left out
 
   [[nodiscard]] const Gates& gates() const { return fitted.model.gates; }
 };
@@ -163,18 +172,43 @@ std::optional<double> found_from(const Design& design, const Case& one) {
   return std::max(limit->size, (design.gates().size + design.deviate) * uncertainty);
 }
 
-/// What an effect that is just not seen does to the squareness.
-double squareness_moved(const Design& design, const Case& one) {
+/// Sizes of what an effect that is just not seen does.
+struct Moved {
+  std::optional<double> squareness_rad, straightness_um;
+};
+
+/// From the highest to the lowest of deviations from the line through the ends.
+double error_of(const Eigen::VectorXd& deviations) {
+  return std::max(deviations.maxCoeff(), 0.0) - std::min(deviations.minCoeff(), 0.0);
+}
+
+Moved moved_unseen(const Design& design, const Case& one) {
+  const Targets& targets = design.targets;
   const std::optional<Limit> limit = limit_of(design, one, seen_in);
-  if (!limit) return 0.0;  // the model makes its columns: not separable
-  Eigen::VectorXd signal = one.columns * one.amplitudes(limit->size);
-  const double moved =
-      count_of(limit->undescribed) == 0
-          ? design.squareness_moved->to(std::move(signal))
-          : ParameterResponse(design.fitted.fit, *design.squareness, limit->undescribed)
-                .to(std::move(signal));
-  constexpr double kNoAngle = 1e-15;  // rad: 1 nm in 1000 km
-  return std::abs(moved) < kNoAngle ? 0.0 : std::abs(moved);
+  Eigen::VectorXd by = Eigen::VectorXd::Zero(targets.rows.rows());
+  if (limit) {  // else the model makes its columns: not separable
+    Eigen::VectorXd signal = one.columns * one.amplitudes(limit->size);
+    by = count_of(limit->undescribed) == 0
+             ? design.moved.to(std::move(signal))
+             : RowResponse(design.fitted.fit, targets.rows, limit->undescribed)
+                   .to(std::move(signal));
+  }
+  constexpr double kNothing = 1e-15;  // rad, 1 nm in 1000 km; mm
+  const auto size = [](double value) { return std::abs(value) < kNothing ? 0.0 : std::abs(value); };
+  Moved out;
+  if (targets.squareness) out.squareness_rad = size(by[0]);
+  if (targets.form.size() == 0) return out;
+  const Eigen::VectorXd& form = targets.form;
+  const Eigen::VectorXd of_form = by.tail(form.size());
+  const double now = error_of(form);
+  out.straightness_um = size(std::max(std::abs(error_of(form + of_form) - now),
+                                      std::abs(error_of(form - of_form) - now))) /
+                        kMicrometre;
+  return out;
+}
+
+void raise(std::optional<double>& most, const std::optional<double>& value) {
+  if (value) most = std::max(most.value_or(0.0), *value);
 }
 
 /// Whether no profile would hold more of this signal than so many times its own range.
@@ -189,19 +223,33 @@ bool is_flatness(const Linearisation& linear, const Eigen::VectorXd& signal, dou
   return true;
 }
 
-/// Row of the squareness among the parameters of the model, if the data determine it.
-std::optional<Eigen::Index> squareness_of(const FittedModel& fitted) {
-  const ModelTerm* term = fitted.model.find_term(MotionError::squareness);
-  if (!term || !fitted.fit.null.identifiable[static_cast<std::size_t>(term->first_parameter)])
-    return std::nullopt;
-  return term->first_parameter;
+Targets targets_of(const FittedModel& fitted) {
+  const auto& [model, fit] = fitted;
+  Targets out;
+  const ModelTerm* const squareness = model.find_term(MotionError::squareness);
+  out.squareness =
+      squareness && fit.null.identifiable[static_cast<std::size_t>(squareness->first_parameter)];
+  const ModelTerm* const form = model.find_term(MotionError::straightness);
+  Eigen::MatrixXd deviations;
+  if (form && is_determined(*form, fit))
+    deviations = deviations_from_ends(model, *form, fit, measured_travel(model, form));
+  const Eigen::Index first = out.squareness ? 1 : 0;
+  out.rows = Eigen::MatrixXd::Zero(first + deviations.rows(), fit.parameters.jacobian.cols());
+  if (out.squareness) out.rows.row(0) = fit.parameters.jacobian.row(squareness->first_parameter);
+  if (deviations.rows() == 0) return out;
+  out.rows.block(first, form->first_amplitude, deviations.rows(), deviations.cols()) = deviations;
+  out.form = deviations * fit.estimate.amplitudes.segment(form->first_amplitude, deviations.cols());
+  return out;
 }
 
 /// Over all shapes, stated for the one nearest to the middle that has a limit.
 std::optional<DetectionLimit> detection_limit(const Design& design, const Candidate& candidate) {
   if (!candidate.term.effect->has_one_size()) return std::nullopt;
   const Parameter& first = candidate.term.effect->parameters()[0];
-  DetectionLimit out{candidate.name(), first.name, first.unit, std::nullopt, "", {}, std::nullopt};
+  DetectionLimit out;
+  out.effect = candidate.name();
+  out.parameter = first.name;
+  out.unit = first.unit;
   const std::vector<std::vector<double>> shapes = spread_shapes(candidate);
   const auto middle = std::ssize(shapes) / 2;
   std::ptrdiff_t nearest = std::ssize(shapes);  // places from the middle
@@ -211,9 +259,11 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
     const Case one{
         model, candidate, shape,
         stacked_columns(model, candidate.term, shape, design.data.rows() - design.data.values())};
-    if (design.squareness)
-      out.squareness_rad =
-          std::max(out.squareness_rad.value_or(0.0), squareness_moved(design, one));
+    if (design.targets.rows.rows() > 0) {
+      const Moved moved = moved_unseen(design, one);
+      raise(out.squareness_rad, moved.squareness_rad);
+      raise(out.straightness_um, moved.straightness_um);
+    }
     const Parameter& size = candidate.term.effect->parameters().front();
     const std::optional<double> limit = found_from(design, one);
     if (!limit || !(*limit > 0.0) || !(*limit <= size.upper) || !std::isfinite(*limit) ||
@@ -247,14 +297,15 @@ std::vector<DetectionLimit> detection_limits(const FittedModel& fitted, const Wh
                                              const Candidates& candidates,
                                              const Calibration& calibration) {
   const Gates& gates = fitted.model.gates;
-  Design design{fitted,
-                data,
-                Whitened(fitted.fit.linear, fit_noise),
-                std::max(gates.delta_bic, calibration.threshold(gates.significance)),
-                student_limit(kNormal, 1.0 - gates.detection_power),
-                squareness_of(fitted),
-                {}};
-  if (design.squareness) design.squareness_moved.emplace(fitted.fit, *design.squareness);
+  Targets targets = targets_of(fitted);
+  RowResponse moved(fitted.fit, targets.rows);
+  const Design design{fitted,
+                      data,
+                      Whitened(fitted.fit.linear, fit_noise),
+                      std::max(gates.delta_bic, calibration.threshold(gates.significance)),
+                      student_limit(kNormal, 1.0 - gates.detection_power),
+                      std::move(targets),
+                      std::move(moved)};
   std::vector<std::optional<DetectionLimit>> limits(candidates.size());
   parallel_for(candidates.size(),
                [&](std::size_t c) { limits[c] = detection_limit(design, *candidates[c]); });

@@ -33,21 +33,18 @@ Eigen::MatrixXd response(const Solution& fit, Eigen::MatrixXd signals) {
   return least_squares(design_of(fit, levelling), signals).values;
 }
 
-ParameterResponse::ParameterResponse(const Solution& fit, Eigen::Index parameter,
-                                     const FreeValues& free)
+RowResponse::RowResponse(const Solution& fit, const Eigen::MatrixXd& rows, const FreeValues& free)
     : fit_(fit) {
   const Eigen::MatrixXd design =
       design_of(fit, own_bases(fit.linear.observations, fit.noise, free));
   // The columns are beside the levelling, so their weights take it out of a signal as well.
-  const Eigen::VectorXd row = fit.parameters.jacobian.row(parameter).transpose();
   const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition(design);
-  const Eigen::VectorXd weights = decomposition.transpose().solve(row);
-  weights_ = weights.transpose();
+  weights_ = decomposition.transpose().solve(rows.transpose());
 }
 
-double ParameterResponse::to(Eigen::VectorXd signal) const {
+Eigen::VectorXd RowResponse::to(Eigen::VectorXd signal) const {
   whiten(fit_, signal);
-  return weights_.dot(signal);
+  return weights_.transpose() * signal;
 }
 
 }  // namespace slideway

@@ -12,19 +12,19 @@ namespace slideway {
 /// @param signals  a column each, the low bands under one another
 Eigen::MatrixXd response(const Solution& fit, Eigen::MatrixXd signals);
 
-/// Change of one parameter of a fit: the weights of the low-band values in it, made once for many
-/// signals.
-class ParameterResponse {
+/// Change of weighted sums of a fit's (amplitudes, shapes): the weights of the low-band values in
+/// them, made once for many signals.
+class RowResponse {
  public:
-  /// @param parameter  its row of fit.parameters.jacobian
-  /// @param free       values that the fit would leave out
-  ParameterResponse(const Solution& fit, Eigen::Index parameter, const FreeValues& free = {});
+  /// @param rows  of (amplitudes, shapes), one a sum
+  /// @param free  values that the fit would leave out
+  RowResponse(const Solution& fit, const Eigen::MatrixXd& rows, const FreeValues& free = {});
 
-  [[nodiscard]] double to(Eigen::VectorXd signal) const;
+  [[nodiscard]] Eigen::VectorXd to(Eigen::VectorXd signal) const;
 
  private:
   const Solution& fit_;
-  Eigen::RowVectorXd weights_;  // of white values
+  Eigen::MatrixXd weights_;  // of white values, a column each sum
 };
 
 }  // namespace slideway

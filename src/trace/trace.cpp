@@ -15,6 +15,7 @@
 #include "loop.hpp"
 #include "outcome.hpp"
 #include "own_noise.hpp"
+#include "rests_on.hpp"
 #include "selection.hpp"
 #include "sensitivity.hpp"
 #include "set_gates.hpp"
@@ -75,6 +76,7 @@ class Loop {
       out.not_looked_at.emplace_back("another direction or start of one cut");
     if (!blunders.empty()) selection = nothing_selected(extender_, gates);
     if (profiles_differ()) doubt_what_some_have(among_, selection.effects);
+    doubt_what_rests_on_others(extender_, selection);
     tell_rounds(selection.effects);
     out.blunders = std::move(blunders);
     return selection;
@@ -143,8 +145,7 @@ class Loop {
       closed.extended = extender_.take_in_declared_band(selection.effects);
   }
 
-  /// The declared model, and what it leaves: nothing that was found has been held against all its
-  /// rivals.
+  /// The declared model, and what it leaves: no name has been held against all its rivals.
   void report_unfinished(ClosedLoop& closed) {
     const Gates& gates = problem_.trace.gates;
     const FittedModel& base = extender_.base();
@@ -197,8 +198,7 @@ class Loop {
            find_blunders(fitted).empty();
   }
 
-  /// The residuals of the rounds as if the effects had been added one after the other: some have
-  /// been exchanged, and some have left.
+  /// The residuals of the rounds as if the effects had been added one after the other.
   void tell_rounds(std::vector<AcceptedEffect>& effects) {
     std::vector<AcceptedEffect> so_far;
     for (AcceptedEffect& effect : effects) {

@@ -4,15 +4,16 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
-#include <set>
 
 #include "dictionary.hpp"
+#include "readings.hpp"
 #include "response.hpp"
 #include "search.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "slideway/identify/identify.hpp"
 #include "slideway/identify/solve.hpp"
+#include "slideway/identify/straightness.hpp"
 #include "whitened.hpp"
 
 namespace slideway {
@@ -24,60 +25,6 @@ bool has_parameter_of(MotionError error, const std::string& names) {
     if (at = names.find_first_not_of(' ', at); motion_error_of(names.substr(at)) == error)
       return true;
   return false;
-}
-
-bool reads_slide(const Observation* observation) {
-  return observation->profile->setup.kind == Kind::slide;
-}
-
-bool reads_face(const Observation* observation) { return !reads_slide(observation); }
-
-bool has(const Model& model, const std::string& effect) {
-  return std::ranges::any_of(model.terms, [&](const ModelTerm& term) {
-    return term.effect->description().name == effect;
-  });
-}
-
-/// Errors of the readings of a slide that look like its form. At an even pace a drift of the zero
-/// makes slopes so: read there and back, or reversed, only one of the two changes its sign. Of
-/// heights it is the form of what they are measured against, which is asked only where faces do not
-/// show the same: there the difference is laid to the workpiece.
-std::vector<std::string> errors_of_readings(const Model& model, bool beside_faces) {
-  std::set<Quantity> quantities;
-  std::set<bool> reversed, falls;  // of a drift, over the slide
-  for (const Observation* each : fitted_observations(model)) {
-    if (!reads_slide(each)) continue;
-    const Setup& setup = each->profile->setup;
-    quantities.insert(setup.quantity);
-    reversed.insert(setup.reversed);
-    falls.insert((travel_direction(setup) == CutDirection::inward) != setup.reversed);
-  }
-  std::vector<std::string> out;
-  for (const std::string& name : effect_names()) {
-    const Description& effect = specimen(name).description();
-    const bool is_drift = quantities == std::set{Quantity::slope} && falls.size() == 1 &&
-                          is_drift_of_instrument(effect),
-               is_datum = beside_faces && quantities == std::set{Quantity::height} &&
-                          reversed.size() == 1 && effect.of_instrument &&
-                          effect.variable == IndependentVariable::slide;
-    if ((is_drift || is_datum) && !has(model, name)) out.push_back(name);
-  }
-  return out;
-}
-
-/// Of the form of a slide at places between the ends of the travel, from the line through them: a
-/// column each amplitude.
-Eigen::MatrixXd deviations_from_ends(const Model& model, const ModelTerm& form,
-                                     const Solution& fit) {
-  constexpr Eigen::Index kAlong = 21;
-  const SlideRange travel = measured_travel(model, &form);
-  const Eigen::VectorXd share = Eigen::VectorXd::LinSpaced(kAlong, 0.0, 1.0),
-                        x = travel.least + (travel.greatest - travel.least) * share.array();
-  Eigen::MatrixXd out = along_slide(*form.effect, model.machine, x, Quantity::height,
-                                    shapes_of(form, fit.estimate.shapes));
-  const Eigen::RowVectorXd first = out.row(0), last = out.row(kAlong - 1);
-  out -= (1.0 - share.array()).matrix() * first + share * last;
-  return out.middleRows(1, kAlong - 2);
 }
 
 /// Null where the machine has several carriages it may belong to.
@@ -94,7 +41,7 @@ std::shared_ptr<const Effect> made_without_options(const std::string& effect, co
 bool is_hidden(const FittedModel& fitted, const Whitened& data, const std::string& effect) {
   const auto& [model, fit] = fitted;
   const ModelTerm* const form = model.find_term(MotionError::straightness);
-  if (!form || has(model, effect)) return false;
+  if (!form || has_effect(model, effect)) return false;
   const std::shared_ptr<const Effect> made = made_without_options(effect, model);
   if (!made) return false;
   const ModelTerm term{effect, made, {}};
@@ -106,7 +53,8 @@ bool is_hidden(const FittedModel& fitted, const Whitened& data, const std::strin
   if (project(data, column).rank == 0) return false;  // same_columns_as()
   const double shown = data.outside(column).norm();
   const Eigen::VectorXd moved = response(fit, column);
-  const Eigen::MatrixXd deviations = deviations_from_ends(model, *form, fit);
+  const Eigen::MatrixXd deviations =
+      deviations_from_ends(model, *form, fit, measured_travel(model, form));
   for (Eigen::Index i = 0; i < deviations.rows(); ++i) {
     Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(moved.size());
     row.segment(form->first_amplitude, deviations.cols()) = deviations.row(i);
@@ -139,11 +87,10 @@ std::vector<std::string> hidden_effects(const FittedModel& fitted, bool beside_s
 
 }  // namespace
 
-const DetectionLimit* worst_unseen(const TraceResult& trace) {
+const DetectionLimit* worst_unseen(const TraceResult& trace, MovedUnseen number) {
   const DetectionLimit* worst = nullptr;
   for (const DetectionLimit& each : trace.detection_limits)
-    if (each.squareness_rad && (!worst || *each.squareness_rad > *worst->squareness_rad))
-      worst = &each;
+    if (each.*number && (!worst || *(each.*number) > *(worst->*number))) worst = &each;
   return worst;
 }
 
@@ -160,7 +107,7 @@ std::vector<std::string> same_columns_as(MotionError error, const TraceResult& t
 void add_conditions(const FittedModel& fitted, const TraceResult& trace, Result& result) {
   if (!result.final) return;
   const auto observations = fitted_observations(fitted.model);
-  const bool faces = std::ranges::any_of(observations, reads_face),
+  const bool faces = !std::ranges::all_of(observations, reads_slide),
              slides = std::ranges::any_of(observations, reads_slide);
   std::vector<std::string> squareness, straightness;
   if (faces) {
@@ -168,8 +115,13 @@ void add_conditions(const FittedModel& fitted, const TraceResult& trace, Result&
     straightness = same_columns_as(MotionError::straightness, trace);
     std::ranges::move(hidden_effects(fitted, slides), std::back_inserter(straightness));
   }
-  if (slides)
-    std::ranges::move(errors_of_readings(fitted.model, faces), std::back_inserter(straightness));
+  for (const std::string& error : errors_of_readings(fitted.model)) {
+    straightness.push_back(error);
+    const auto has_it = [&](const TraceRound& round) {
+      return std::ranges::count(round.ambiguous_with, error) > 0;
+    };
+    if (std::ranges::any_of(trace.rounds, has_it)) squareness.push_back(error);
+  }
   for (FittedParameter& parameter : result.final->parameters)
     if (motion_error_of(parameter.name) == MotionError::squareness && parameter.value)
       parameter.if_no = squareness;
@@ -182,9 +134,16 @@ void add_conditions(const FittedModel& fitted, const TraceResult& trace, Result&
 bool may_be_moved_unseen(const ModelResult& model, const TraceResult& trace) {
   const FittedParameter* const squareness = model.squareness();
   if (!squareness || !squareness->value || !squareness->expanded_uncertainty) return false;
-  const DetectionLimit* const worst = worst_unseen(trace);
+  const DetectionLimit* const worst = worst_unseen(trace, &DetectionLimit::squareness_rad);
   return worst != nullptr && (*worst->squareness_rad > *squareness->expanded_uncertainty ||
                               !same_columns_as(MotionError::squareness, trace).empty());
+}
+
+bool may_be_bent_unseen(const ModelResult& model, const TraceResult& trace) {
+  const auto& form = model.straightness;
+  if (!form || !form->expanded_uncertainty_um) return false;
+  const DetectionLimit* const worst = worst_unseen(trace, &DetectionLimit::straightness_um);
+  return worst != nullptr && *worst->straightness_um > *form->expanded_uncertainty_um;
 }
 
 bool wants_another_cut(const ModelResult& model, const TraceResult& trace) {

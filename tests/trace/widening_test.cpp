@@ -94,7 +94,7 @@ TEST(Widening, OfAnAbsenceIsTheChangeThatItBrings) {
 }
 
 // Least squares is linear in the data: the slope of the signal beside the other columns.
-TEST(ParameterResponse, OfASignalIsItsOwnFit) {
+TEST(RowResponse, OfASignalIsItsOwnFit) {
   const std::vector<Profile> profiles{bent_face()};
   const FittedModel fit = fitted(profiles, {"squareness", "cup"});
   const Observation& observation = fit.model.observations[0];
@@ -105,8 +105,8 @@ TEST(ParameterResponse, OfASignalIsItsOwnFit) {
     design.row(i) << 1.0, r, r * r;
   }
   const double slope = design.colPivHouseholderQr().solve(signal)[1];
-  EXPECT_NEAR(std::abs(ParameterResponse(fit.fit, 0).to(signal)), std::abs(slope),
-              1e-9 * std::abs(slope));
+  EXPECT_NEAR(std::abs(RowResponse(fit.fit, fit.fit.parameters.jacobian.row(0)).to(signal)[0]),
+              std::abs(slope), 1e-9 * std::abs(slope));
   EXPECT_NEAR(std::abs((fit.fit.parameters.jacobian * response(fit.fit, signal))(0, 0)),
               std::abs(slope), 1e-9 * std::abs(slope));
 }

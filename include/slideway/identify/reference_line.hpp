@@ -25,6 +25,9 @@ struct ReferenceLine {
 std::vector<ReferenceLine> reference_lines(const Eigen::VectorXd& positions,
                                            const Eigen::VectorXd& heights);
 
+/// The one through the ends alone.
+ReferenceLine end_point_line(const Eigen::VectorXd& positions, const Eigen::VectorXd& heights);
+
 /// The one of least squares alone.
 ReferenceLine least_squares_line(const Eigen::VectorXd& positions, const Eigen::VectorXd& heights);
 

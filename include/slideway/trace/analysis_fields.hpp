@@ -118,7 +118,9 @@ inline constexpr auto kRecord<DetectionLimit> =
            field("value", &DetectionLimit::value, "none: found at no size a workpiece has"),
            field("at", &DetectionLimit::at), field("by_shape", &DetectionLimit::by_shape),
            field("squareness_rad", &DetectionLimit::squareness_rad,
-                 "the most that it moves Δβxz at any shape while its gain is just not seen"));
+                 "the most that it moves Δβxz at any shape while its gain is just not seen"),
+           field("straightness_um", &DetectionLimit::straightness_um,
+                 "the most that it moves E_ZX of the end-point line so"));
 
 template <>
 inline constexpr auto kRecord<Fragile> =

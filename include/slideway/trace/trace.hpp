@@ -168,8 +168,9 @@ struct DetectionLimit {
   std::string effect, parameter, unit;
   std::optional<double> value;  // none: it would not be found at any size a workpiece has
   std::string at;               // shape it holds for: "time_constant_s = 120"; "": it has none
-  std::vector<LimitAtShape> by_shape;    // from end to end of the search
-  std::optional<double> squareness_rad;  // most that it moves Δβxz while it is just not seen
+  std::vector<LimitAtShape> by_shape;  // from end to end of the search
+  // Most that it moves Δβxz, and E_ZX, while it is just not seen.
+  std::optional<double> squareness_rad, straightness_um;
 };
 
 enum class TraceVerdict {

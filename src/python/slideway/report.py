@@ -761,6 +761,8 @@ class DetectionLimit:
     by_shape: list[LimitAtShape]
     squareness_rad: float | None
     """the most that it moves Δβxz at any shape while its gain is just not seen"""
+    straightness_um: float | None
+    """the most that it moves E_ZX of the end-point line so"""
 
 
 @dataclass(frozen=True)
