@@ -1,4 +1,4 @@
-#include "departures.hpp"
+#include "slideway/identify/departures.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,21 +42,27 @@ std::vector<Departing> departing_terms(const Model& model, bool of_law) {
   return out;
 }
 
-/// Columns of the parts of one term's departures at its fitted size, in each low band.
+/// Columns of the parts of one term's departures at a size, in each low band.
+std::vector<Eigen::MatrixXd> columns_at(const Model& model, const Linearisation& linear,
+                                        const Departing& departing, std::span<const double> shape,
+                                        double size) {
+  std::vector<Eigen::MatrixXd> out;
+  for (const Observation* observation : linear.observations) {
+    Eigen::MatrixXd& columns = out.emplace_back(
+        Eigen::MatrixXd::Zero(observation->values.size(), std::ssize(departing.by.parts)));
+    if (departing.term->acts_on(*observation->profile))
+      columns = size * columns_at_values(departing.by.parts, *observation, model.machine, shape);
+  }
+  return out;
+}
+
+/// The same at its fitted size.
 std::vector<Eigen::MatrixXd> columns_of(const Model& model, const Linearisation& linear,
                                         const Estimate& estimate, const Departing& departing) {
   const ModelTerm& term = *departing.term;
   const double size = (departing.by.of_law ? model.gates.drift_bend : 1.0) *
                       estimate.amplitudes[term.first_amplitude];
-  std::vector<Eigen::MatrixXd> out;
-  for (const Observation* observation : linear.observations) {
-    Eigen::MatrixXd& columns = out.emplace_back(
-        Eigen::MatrixXd::Zero(observation->values.size(), std::ssize(departing.by.parts)));
-    if (term.acts_on(*observation->profile))
-      columns = size * columns_at_values(departing.by.parts, *observation, model.machine,
-                                         shapes_of(term, estimate.shapes));
-  }
-  return out;
+  return columns_at(model, linear, departing, shapes_of(term, estimate.shapes), size);
 }
 
 }  // namespace
@@ -70,6 +76,14 @@ std::vector<Eigen::MatrixXd> errors_of_causes(const Model& model, const Linearis
     if (out.empty()) out = std::move(own);
   }
   return out;
+}
+
+std::vector<Eigen::MatrixXd> errors_of_cause(const Model& model, const Linearisation& linear,
+                                             const ModelTerm& term, std::span<const double> shape,
+                                             double amplitude) {
+  Departures by = term.effect->departures();
+  if (by.of_law || by.parts.empty()) return {};
+  return columns_at(model, linear, {&term, std::move(by)}, shape, amplitude);
 }
 
 DepartureResponse response_to_departures(const Model& model, const Linearisation& linear,

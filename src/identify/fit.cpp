@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "departures.hpp"
+#include "slideway/identify/departures.hpp"
 #include "face_slope.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/identify/left_out.hpp"

@@ -76,15 +76,18 @@ void note_centre(Profile& profile) {
 
 }  // namespace
 
-void note_implausible(Profile& profile) {
-  const Setup& setup = profile.setup;
+void note_implausible_values(Profile& profile) {
   const Statistics values = statistics_of(profile.values);
   const double range = values.largest - values.least;
-  if (setup.quantity == Quantity::height && range > kLargestRange)
+  if (profile.setup.quantity == Quantity::height && range > kLargestRange)
     profile.doubts.push_back("heights range over " + significant(range, 3) +
                              " mm, more than 1 mm: is value_unit right?");
   if (!(range > 0.0) && profile.values.size() > 1)
     profile.doubts.emplace_back("all values are the same: is value_column right?");
+}
+
+void note_implausible_setup(Profile& profile) {
+  const Setup& setup = profile.setup;
   note(profile, kFeed, setup.feed_mm_per_min);
   note(profile, kSpeed, setup.spindle_rpm);
   note(profile, kNose, setup.nose_radius_mm);

@@ -28,10 +28,10 @@ void require_two_samples(const ProfileSource& source, std::size_t count) {
 // What changes along the trace of the radius, or of the position, must be more than rounding.
 constexpr double kMostLengths = 1e6;
 
-void require_usable_positions(const ProfileSource& source, const Setup& setup) {
-  const double reach = std::max(std::abs(setup.first_mm), std::abs(setup.last_mm));
-  const double length = setup.last_mm - setup.first_mm;
-  if (setup.kind == Kind::slide && reach > kMostLengths * length)
+void require_usable_positions(const ProfileSource& source, const Profile& profile) {
+  const double first = profile.positions.front(), last = profile.positions.back();
+  const double reach = std::max(std::abs(first), std::abs(last)), length = last - first;
+  if (profile.setup.kind == Kind::slide && reach > kMostLengths * length)
     throw DataError(source.path.string() + ": positions lie " + significant(reach, 3) +
                     " mm away from 0 over a length of " + significant(length, 3) +
                     " mm; accepted: up to a million times their length");
@@ -138,15 +138,19 @@ void complete(const ProfileSource& source, TraceFile file, Intake& intake, Profi
   require_two_samples(source, profile.positions.size());
   if (profile.line) std::tie(profile.line->first_mm, profile.line->last_mm) = intake.reach();
   list_outliers(source, intake, profile);
-  Setup& setup = profile.setup;
-  setup.first_mm = profile.positions.front();
-  setup.last_mm = profile.positions.back();
-  require_usable_positions(source, setup);
-  complete_cut_radius(setup);
-  note_implausible(profile);
+  require_usable_positions(source, profile);
+  note_implausible_values(profile);
+  complete_setup(profile);
 }
 
 }  // namespace
+
+void complete_setup(Profile& profile) {
+  profile.setup.first_mm = profile.positions.front();
+  profile.setup.last_mm = profile.positions.back();
+  complete_cut_radius(profile.setup);
+  note_implausible_setup(profile);
+}
 
 std::vector<std::vector<std::string>> by_instrument(const std::vector<const Profile*>& profiles) {
   std::vector<std::vector<std::string>> out;

@@ -18,15 +18,15 @@ constexpr double kOtherOverhang = 50.0;         // mm
 constexpr double kLongestCut = 60.0;            // min, where no cut there is took as long
 
 void complete(Profile& profile) {
-  Setup& setup = profile.setup;
   profile.role = Role::fit;
   profile.outliers.clear();
+  profile.doubts.clear();
   profile.values.assign(profile.positions.size(), 0.0);
-  setup.first_mm = profile.positions.front();
-  setup.last_mm = profile.positions.back();
-  if (setup.kind == Kind::face && !setup.cut_radius_mm)
-    setup.cut_radius_mm = std::max(std::abs(setup.first_mm - setup.center_mm),
-                                   std::abs(setup.last_mm - setup.center_mm));
+  try {
+    complete_setup(profile);
+  } catch (const KeyError& error) {
+    throw UsageError("planned cut '" + profile.name + "': " + error.key + ": " + error.what());
+  }
 }
 
 /// Of a face from its largest radius to its smallest.

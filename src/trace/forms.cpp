@@ -149,7 +149,7 @@ class FormSearch {
       out.unknowns = out.refined.candidate->unknowns(out.refined.projection.rank);
       if (instead_of) out.unknowns -= unknowns_of(*instead_of);
       if (profiles_.empty())
-        out.held_out = leave_one_out(view.linear(), view.data(), out.refined, gates_);
+        out.held_out = leave_one_out(view.model(), view.linear(), view.data(), out.refined);
     });
   }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "slideway/identify/departures.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
@@ -83,10 +84,8 @@ Eigen::VectorXd left_over(const Observation& observation, Eigen::VectorXd rest) 
   return rest;
 }
 
-}  // namespace
-
-std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened& data,
-                                     const Refined& candidate, const Gates& gates) {
+std::optional<HeldOut> left_out_in_turn(const Linearisation& linear, const Whitened& data,
+                                        const Refined& candidate, const Gates& gates) {
   const double certain = gates.size * gates.size;  // gain of an effect of that size
   const std::size_t count = linear.observations.size();
   const Eigen::Index k = linear.prior_rows.cols(), a = candidate.columns.cols();
@@ -141,6 +140,23 @@ std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened
     out.after_um = std::sqrt(heights.after / samples) / kMicrometre;
   }
   return out;
+}
+
+}  // namespace
+
+std::optional<HeldOut> leave_one_out(const Model& model, const Linearisation& linear,
+                                     const Whitened& data, const Refined& candidate) {
+  const Projection& found = candidate.projection;
+  if (found.rank == 0) return std::nullopt;
+  const std::vector<Eigen::MatrixXd> errors = errors_of_cause(
+      model, linear, candidate.candidate->term, candidate.shape, found.amplitudes[0]);
+  if (errors.empty()) return left_out_in_turn(linear, data, candidate, model.gates);
+  std::vector<Noise> noise = data.noise();
+  for (std::size_t i = 0; i < noise.size(); ++i) noise[i].add_known(errors[i]);
+  const Whitened wider(linear, std::move(noise), data.undescribed());
+  Refined again = candidate;
+  again.projection = project(wider, candidate.columns);
+  return left_out_in_turn(linear, wider, again, model.gates);
 }
 
 }  // namespace slideway

@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "refine.hpp"
-#include "slideway/identify/gates.hpp"
 
 namespace slideway {
 
@@ -21,8 +20,9 @@ struct HeldOut {
 /// all profiles; and if in each profile that shows it beyond its own model for certain
 /// (Gates::size), where the others tell the effect, that residual falls by it. Only folds are
 /// counted whose rest knows a share of what all profiles know (Gates::holdout_share); no answer
-/// where these profiles together do not show it for certain.
-std::optional<HeldOut> leave_one_out(const Linearisation& linear, const Whitened& data,
-                                     const Refined& candidate, const Gates& gates);
+/// where these profiles together do not show it for certain. What the error of a measured cause
+/// makes at this size is noise.
+std::optional<HeldOut> leave_one_out(const Model& model, const Linearisation& linear,
+                                     const Whitened& data, const Refined& candidate);
 
 }  // namespace slideway

@@ -370,6 +370,9 @@ Plan plan_cuts(const Problem& problem, const std::vector<Profile>& profiles,
   Plan out =
       Planner(problem, std::move(loop.searched), false, fitted, *reported.final, tried).run();
   std::ranges::move(left_out, std::back_inserter(out.notes));
+  for (std::size_t i = 0; i < tried.size() && !problem.planned.empty(); ++i)
+    for (const std::string& doubt : tried[i].profile.doubts)
+      out.notes.push_back("planned cut '" + tried[i].profile.name + "': " + doubt);
   for (const TraceRound& round : loop.trace.rounds)
     out.notes.push_back("the model has " + term_name(round.accepted, round.profiles) +
                         ", which the closed loop has found");

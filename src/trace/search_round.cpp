@@ -117,7 +117,7 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     TestedCandidate tested;
     tested.refined = refine(model, data, finding);
     if (tested.refined.candidate->term.profiles.empty())  // else the others lack their own share
-      tested.held_out = leave_one_out(fit.linear, data, tested.refined, model.gates);
+      tested.held_out = leave_one_out(model, fit.linear, data, tested.refined);
     tested.fitted = data.outside(tested.refined.columns * tested.refined.projection.amplitudes);
     tested.is_wave = is_wave(model, finding.candidate->term, tested.refined.shape);
     if (tested.is_wave && !finding.candidate->is_fast) {  // else the samples have shown it

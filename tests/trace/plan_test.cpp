@@ -139,6 +139,33 @@ TEST(PlannedCut, AlongTheSlideIsReadTheWayItSays) {
   EXPECT_THAT(times_if({}), ::testing::ElementsAre(0.0, 20.0, 50.0, 90.0));
 }
 
+// The face is turned to r = 10 mm. A cut of a smaller radius than its trace has no time at its rim.
+TEST(PlannedCut, IsRefusedWhereItsTraceGoesBeyondIt) {
+  const std::vector<Profile> one = quarter_faces({"clean"}, 1, kBlunt, 1);
+  Problem problem = problem_of({"linear_drift"});
+  PlannedCut& cut = problem.planned.emplace_back();
+  cut.like = one[0].name;
+  cut.entry.profile = one[0];
+  cut.entry.profile.name = "mine";
+  cut.entry.profile.setup.cut_radius_mm = 9.0;
+  EXPECT_THAT([&] { cuts_to_come(problem, one); },
+              ::testing::ThrowsMessage<UsageError>(::testing::HasSubstr(
+                  "planned cut 'mine': cut_radius_mm: 9, but the trace reaches r = ")));
+}
+
+TEST(PlannedCut, OfNoWorkshopIsDoubted) {
+  const std::vector<Profile> one = quarter_faces({"clean"}, 1, kBlunt, 1);
+  Problem problem = problem_of({"linear_drift"});
+  PlannedCut& cut = problem.planned.emplace_back();
+  cut.like = one[0].name;
+  cut.entry.profile = one[0];
+  cut.entry.profile.name = "mine";
+  cut.entry.profile.setup.feed_mm_per_min = 1e7;
+  EXPECT_THAT(plan_cuts(problem, one, cuts_to_come(problem, one)).notes,
+              ::testing::Contains(::testing::HasSubstr(
+                  "planned cut 'mine': feed_mm_per_min = 1e+07, but lathes feed at")));
+}
+
 /// A face of the process, read with white noise alone.
 Profile white_face(const std::string& name, double feed_mm_per_min, std::uint64_t seed) {
   constexpr double kRadius = 10.0, kRpm = 110.0;

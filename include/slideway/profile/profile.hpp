@@ -115,4 +115,9 @@ using ReadProgress = std::function<void(double done)>;
 ///                     number along it
 void read_profile(const ProfileSource& source, Profile& profile, const ReadProgress& progress = {});
 
+/// Of a profile with its positions, read or planned: both ends, the radius of its cut, and doubts
+/// of sizes in its setup that no workshop has.
+/// @throws KeyError  as read_profile()
+void complete_setup(Profile& profile);
+
 }  // namespace slideway
