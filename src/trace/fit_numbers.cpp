@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "slideway/identify/uncertainty.hpp"
+
 namespace slideway {
 
 std::optional<double> holdout_rms_um(const ModelResult& fit) {
@@ -23,8 +25,8 @@ std::vector<FittedParameter> parameters_of(const ModelResult& fit, const std::st
 
 double size_in_uncertainties(const ModelResult& fit, const ModelTerm& term) {
   const FittedParameter* own = fit.find(term.name + "." + term.effect->parameters()[0].name);
-  if (!own || !own->value || !own->standard_uncertainty) return INFINITY;
-  return std::abs(*own->value) / *own->standard_uncertainty;
+  if (!own || !own->value || !own->expanded_uncertainty) return INFINITY;
+  return coverage_factor(std::nullopt) * std::abs(*own->value) / *own->expanded_uncertainty;
 }
 
 }  // namespace slideway

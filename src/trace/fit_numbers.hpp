@@ -15,8 +15,8 @@ std::optional<double> holdout_rms_um(const ModelResult& fit);
 /// Parameters of one effect.
 std::vector<FittedParameter> parameters_of(const ModelResult& fit, const std::string& effect);
 
-/// Size of an effect's first parameter in its standard uncertainties; infinite where one of the two
-/// is not known.
+/// Size of an effect's first parameter in its standard uncertainties, of few degrees of freedom in
+/// those of a normal distribution with the same U; infinite where one of the two is not known.
 double size_in_uncertainties(const ModelResult& fit, const ModelTerm& term);
 
 }  // namespace slideway

@@ -114,6 +114,15 @@ void doubt_what_is_uncertain(const Model& model, const ModelResult& final, Trace
   }
 }
 
+void say_why_refused(const std::string& otherwise, TraceResult& out) {
+  for (TriedEffect& effect : out.refused) {
+    if (effect.refused) continue;
+    const auto left =
+        std::ranges::find(out.left, term_name(effect.effect, effect.profiles), &LeftEffect::effect);
+    effect.refused = left == out.left.end() ? otherwise : left->reason;
+  }
+}
+
 void report_untestable(const Dictionary& dictionary, const Problem& problem, TraceResult& out) {
   for (const Untestable& effect : dictionary.not_testable) {
     out.not_testable.push_back({effect.effect, effect.needs});

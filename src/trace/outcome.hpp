@@ -34,6 +34,9 @@ void doubt_what_some_have(const Disagreement& among, std::vector<AcceptedEffect>
 /// holds its rivals, those of the others and what has no name, is not said alone.
 void doubt_what_is_uncertain(const Model& model, const ModelResult& final, TraceResult& out);
 
+/// With each candidate that passes every gate of its own: why it left again, or `otherwise`.
+void say_why_refused(const std::string& otherwise, TraceResult& out);
+
 /// What the data cannot show; of the problem's own effects with a note. A wave along the slide may
 /// be the marks of a tool whose feed is not known.
 void report_untestable(const Dictionary& dictionary, const Problem& problem, TraceResult& out);

@@ -161,11 +161,10 @@ class Loop {
                    first ? first->tested : std::vector<TestedCandidate>(), nullptr, closed);
   }
 
-  /// @param otherwise  the reason of a candidate that passes every gate of its own
+  /// @param otherwise  the reason of one that passes every gate of its own and was never accepted
   void report_refused(const SearchRound& round, const std::string& otherwise, TraceResult& out) {
     out.refused = tried(round, problem_.trace.gates, nullptr, extender_.summary({}).rms_um);
-    for (TriedEffect& effect : out.refused)
-      if (!effect.refused) effect.refused = otherwise;
+    say_why_refused(otherwise, out);
   }
 
   /// Whether an effect of all profiles leaves less of the residual than the blunder that leaves
