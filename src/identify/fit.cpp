@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "slideway/identify/departures.hpp"
 #include "face_slope.hpp"
 #include "slideway/base/error.hpp"
+#include "slideway/identify/departures.hpp"
 #include "slideway/identify/left_out.hpp"
 #include "slideway/identify/noise_model.hpp"
 #include "slideway/identify/planned_fit.hpp"
