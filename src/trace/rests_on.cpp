@@ -1,10 +1,8 @@
 #include "rests_on.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <numeric>
 
-#include "outcome.hpp"
 #include "readings.hpp"
 #include "search.hpp"
 
@@ -52,21 +50,24 @@ void add_rival(const std::string& rival, TraceRound& round) {
 }  // namespace
 
 void doubt_what_rests_on_others(ModelExtender& extender, Selection& selection) {
+  if (selection.effects.empty()) return;
+  const auto& [model, fit] = extender.extended(selection.effects);
+  const std::vector<std::string> errors = errors_of_readings(model);
+  const bool has_priors = declared_priors(fit.linear) > 0;
+  if (errors.empty() && !has_priors) return;
   for (std::size_t i = 0; i < selection.effects.size(); ++i) {
     AcceptedEffect& effect = selection.effects[i];
     const FittedModel& without = extender.extended(all_but(selection.effects, i));
     const Linearisation& linear = without.fit.linear;
-    const std::vector<Noise>& noise = extender.extended(selection.effects).fit.noise;
-    const std::vector<std::string> errors = errors_of_readings(without.model);
     if (!errors.empty() && !acts_on_slides(*effect.candidate, linear) &&
-        !is_seen(without, {linear, noise, all_of_slides(linear)}, effect)) {
+        !is_seen(without, {linear, fit.noise, all_of_slides(linear)}, effect)) {
       for (const std::string& each : errors) add_rival(each, effect.round);
       selection.notes.push_back(effect.name() +
                                 " rests on the readings of the slide: an error of theirs would "
                                 "look the same");
     }
-    if (declared_priors(linear) > 0 && !is_seen(without, {without_priors(linear), noise}, effect)) {
-      add_rival(std::string(kUnnamedRival), effect.round);
+    if (has_priors && !is_seen(without, {without_priors(linear), fit.noise}, effect)) {
+      add_rival(kUnnamedRival, effect.round);
       selection.notes.push_back(effect.name() +
                                 " rests on the priors: without them the data do not show it");
     }

@@ -139,14 +139,20 @@ TEST(PlannedCut, AlongTheSlideIsReadTheWayItSays) {
   EXPECT_THAT(times_if({}), ::testing::ElementsAre(0.0, 20.0, 50.0, 90.0));
 }
 
+/// A planned cut "mine" with the setup of a profile.
+PlannedCut& add_cut_like(const Profile& profile, Problem& problem) {
+  PlannedCut& cut = problem.planned.emplace_back();
+  cut.like = profile.name;
+  cut.entry.profile = profile;
+  cut.entry.profile.name = "mine";
+  return cut;
+}
+
 // The face is turned to r = 10 mm. A cut of a smaller radius than its trace has no time at its rim.
 TEST(PlannedCut, IsRefusedWhereItsTraceGoesBeyondIt) {
   const std::vector<Profile> one = quarter_faces({"clean"}, 1, kBlunt, 1);
   Problem problem = problem_of({"linear_drift"});
-  PlannedCut& cut = problem.planned.emplace_back();
-  cut.like = one[0].name;
-  cut.entry.profile = one[0];
-  cut.entry.profile.name = "mine";
+  PlannedCut& cut = add_cut_like(one[0], problem);
   cut.entry.profile.setup.cut_radius_mm = 9.0;
   EXPECT_THAT([&] { cuts_to_come(problem, one); },
               ::testing::ThrowsMessage<UsageError>(::testing::HasSubstr(
@@ -156,10 +162,7 @@ TEST(PlannedCut, IsRefusedWhereItsTraceGoesBeyondIt) {
 TEST(PlannedCut, OfNoWorkshopIsDoubted) {
   const std::vector<Profile> one = quarter_faces({"clean"}, 1, kBlunt, 1);
   Problem problem = problem_of({"linear_drift"});
-  PlannedCut& cut = problem.planned.emplace_back();
-  cut.like = one[0].name;
-  cut.entry.profile = one[0];
-  cut.entry.profile.name = "mine";
+  PlannedCut& cut = add_cut_like(one[0], problem);
   cut.entry.profile.setup.feed_mm_per_min = 1e7;
   EXPECT_THAT(plan_cuts(problem, one, cuts_to_come(problem, one)).notes,
               ::testing::Contains(::testing::HasSubstr(
@@ -297,10 +300,7 @@ TEST(NextCut, OfAnIdentificationIsTheFirstOfThePlan) {
 TEST(NextCut, IsOneOfThoseThatTheProblemPlans) {
   Problem problem = problem_of({"linear_drift"});
   const std::vector<Profile> one = radius_of(quarter_faces({"clean"}, 1, kBlunt, 1));
-  PlannedCut& cut = problem.planned.emplace_back();
-  cut.like = one[0].name;
-  cut.entry.profile = one[0];
-  cut.entry.profile.name = "mine";
+  PlannedCut& cut = add_cut_like(one[0], problem);
   EXPECT_EQ(closed(problem, one).next_cut.value().name, "mine");
   problem.effects.push_back({"linear_drift", {}, {}});
   cut.entry.profile.setup.feed_mm_per_min.reset();
