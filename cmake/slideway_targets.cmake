@@ -30,6 +30,14 @@ if(SLIDEWAY_COVERAGE)
   target_link_libraries(slideway_options INTERFACE slideway_counted_exit)
 endif()
 
+# slideway_light(target): makes text, not numbers; in a debug build it is compiled longer than it runs.
+function(slideway_light target)
+  if(CMAKE_BUILD_TYPE STREQUAL "Debug")
+    target_compile_options(${target} PRIVATE -O0)
+    set_target_properties(${target} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)  # those are of -O1
+  endif()
+endfunction()
+
 # slideway_room(name SOURCES a.cpp ... DEPENDS slideway::x ... PRIVATE_DEPENDS lib ...
 #               HEADER_ONLY lib ...)
 # One room of the house: sources in src/<name>, public headers in include/slideway/<name>. The
@@ -47,6 +55,9 @@ function(slideway_room name)
   foreach(library IN ITEMS slideway_options ${ROOM_HEADER_ONLY})
     target_link_libraries(slideway_${name} PRIVATE $<BUILD_INTERFACE:${library}>)
   endforeach()
+  if(name MATCHES "^(format|report|batch|serve)$")
+    slideway_light(slideway_${name})
+  endif()
   if(NOT name MATCHES "^(base|format)$")  # these two use none of it
     slideway_use_headers(slideway_${name} slideway_room_headers)
   endif()
