@@ -12,9 +12,11 @@ bool is_own_place(const Candidate& candidate) { return only(candidate) && is_of_
 }  // namespace
 
 const TestedCandidate* best_that_is_possible(const SearchRound& round, const Gates& gates,
-                                             const std::vector<std::string>& excluded) {
+                                             const std::vector<std::string>& excluded,
+                                             Eigen::Index most_unknowns) {
   const auto found = std::ranges::find_if(round.tested, [&](const TestedCandidate& each) {
     return each.is_possible() && each.refined.candidate->takes.empty() &&
+           each.refined.candidate->unknowns(each.refined.projection.rank) <= most_unknowns &&
            each.refined.delta_bic <= -gates.delta_bic &&
            std::ranges::count(excluded, each.name()) == 0;
   });

@@ -11,7 +11,8 @@ namespace slideway {
 
 /// One effect more, even if noise gives as much; null: none lowers the BIC by Gates::delta_bic.
 const TestedCandidate* best_that_is_possible(const SearchRound& round, const Gates& gates,
-                                             const std::vector<std::string>& excluded);
+                                             const std::vector<std::string>& excluded,
+                                             Eigen::Index most_unknowns);
 
 /// Number of profiles that have an effect of their own of how they lie on the workpiece.
 int count_of_places(const std::vector<AcceptedEffect>& effects);

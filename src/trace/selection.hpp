@@ -9,8 +9,8 @@ namespace slideway {
 
 /// Which effects the gates let into the model.
 struct Selection {
-  std::vector<AcceptedEffect> effects;  // with their rivals
-  std::vector<AcceptedEffect> instead;  // a set that explains as much; empty: none
+  std::vector<AcceptedEffect> effects;                    // with their rivals
+  std::vector<std::vector<AcceptedEffect>> instead;       // sets that explain as much
   std::vector<std::pair<std::string, std::string>> left;  // accepted, then taken back; why
   std::vector<std::string> notes, advice;
   LackOfFit lack_of_fit;            // of what these effects leave
@@ -22,8 +22,8 @@ struct Selection {
 
 /// Adds effects one by one, each the best of a search; exchanges them for better ones; takes back
 /// those that do not pass every gate beside the others as they are in the end; holds a carriage's
-/// polynomial of a higher degree against the effects found without it, and the rest against what
-/// has no name (naming.hpp).
+/// polynomial of a higher degree against the effects found without it or beside a lower one, and
+/// the rest against what has no name (naming.hpp).
 ///
 /// A round adds an effect or rules one out, and what has left stays out: with c names the search
 /// ends after 2 c rounds at most. Every later step looks at subsets of what was found once. No set

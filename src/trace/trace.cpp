@@ -323,8 +323,8 @@ class Loop {
       if (!closed.widening) closed.widening.emplace(fitted.fit.linear.prior_rows.cols());
       return *closed.widening;
     };
-    if (!selection.instead.empty())
-      widened().add_absence(fitted, extender_.extended(selection.instead));
+    for (const std::vector<AcceptedEffect>& each : selection.instead)
+      widened().add_absence(fitted, extender_.extended(each));
     for (const auto& each : selection.otherwise) widened().add_absence(fitted, *each);
     for (std::size_t i = 0; i < selection.effects.size(); ++i) {
       const WithoutEffect place = without_effect(selection, i);

@@ -1,5 +1,6 @@
 // A carriage's polynomial of a higher degree comes near every sum of smooth effects.
 
+#include <cmath>
 #include <random>
 
 #include "identify/cases.hpp"
@@ -59,6 +60,66 @@ TEST(RaisedDegree, DoesNotStandAloneForTwoCauses) {
       ++off;
   }
   EXPECT_LE(off, 3);
+}
+
+/// Three cuts of one way, traced over both sides of the centre: terms of degrees 2 to n in r/R, in
+/// micrometres, and a cone.
+std::vector<Profile> faces_of_one_way(const std::vector<double>& terms_um, double squareness,
+                                      unsigned seed) {
+  constexpr double kReach = 90.0, kWhite = 2e-5;  // mm
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> noise(0.0, kWhite);
+  std::vector<Profile> out;
+  for (const double feed : {20.0, 50.0, 20.0}) {
+    const std::vector<double> x = cases::spaced(-kReach, kReach, 1200);
+    std::vector<double> z;
+    for (const double at : x) {
+      const double r = std::abs(at);
+      double way_um = 0.0;
+      for (unsigned k = 0; k < terms_um.size(); ++k)
+        way_um += terms_um[k] * std::pow(r / kReach, k + 2.0);
+      z.push_back(squareness * r + 1e-3 * way_um + noise(engine));
+    }
+    Profile& face =
+        out.emplace_back(cases::profile("cut" + std::to_string(out.size() + 1), Kind::face, x, z));
+    face.setup.feed_mm_per_min = feed;
+    face.setup.spindle_rpm = 400.0;
+    face.setup.cut_direction = out.size() < 3 ? CutDirection::inward : CutDirection::outward;
+    face.setup.cut_radius_mm = kReach;
+  }
+  return out;
+}
+
+// A squareness that nobody declared: of 0.9 µm over the face, 45 times the noise, it is seen beside
+// the right degree. Without it b_4 to b_7 come near a cone and b_4.
+TEST(RaisedDegree, IsNotAllWhereNoSquarenessIsDeclared) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    Problem problem = cases::problem(Lever::paper, 2, {cases::effect("straightness", 3)});
+    problem.trace.candidates = effect_names();
+    const Closed result = closed(problem, faces_of_one_way({0.5, -1.2, 0.9}, 1e-5, seed));
+    SCOPED_TRACE(story(result));
+    EXPECT_NE(result.verdict, TraceVerdict::explained);
+    EXPECT_TRUE(std::ranges::any_of(result.rounds, [](const TraceRound& round) {
+      return round.accepted == "squareness" ||
+             std::ranges::count(round.ambiguous_with, "squareness") > 0;
+    }));
+  }
+}
+
+// And without one the way alone is named: 45 of 50 would be fewer than four in five of any ten with
+// a probability of 1e-3.
+TEST(RaisedDegree, StandsAloneForAWayOfAHigherDegree) {
+  int alone = 0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Problem problem = cases::problem(Lever::paper, 2, {cases::effect("straightness", 3)});
+    problem.trace.candidates = effect_names();
+    const Closed result = closed(problem, faces_of_one_way({0.5, -1.2, 0.9}, 0.0, seed));
+    SCOPED_TRACE(story(result));
+    const TraceRound* raised = round_of(result, "straightness");
+    ASSERT_NE(raised, nullptr);
+    alone += result.verdict == TraceVerdict::explained && raised->ambiguous_with.empty() ? 1 : 0;
+  }
+  EXPECT_GE(alone, 8);
 }
 
 }  // namespace
