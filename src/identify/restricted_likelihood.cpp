@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "slideway/identify/linear_algebra.hpp"
 
@@ -40,21 +41,30 @@ ProfileInformation::ProfileInformation(const LinearProfile& profile,
                                        const ExponentialMixture& covariance) {
   const Eigen::Index n = profile.residual.size(), m = profile.nuisances.cols();
   const Eigen::Index r = profile.columns.cols();
+  // Others of the model act in other profiles alone: feed marks of other cuts.
+  std::vector<Eigen::Index> acting;
+  for (Eigen::Index k = 0; k < r; ++k)
+    if ((profile.columns.col(k).array() != 0.0).any()) acting.push_back(k);
+  const auto a = std::ssize(acting);
   const MixtureFactor factor = profile.stations.empty()
                                    ? MixtureFactor(covariance, n)
                                    : MixtureFactor(covariance, profile.stations);
-  Eigen::MatrixXd rows(n, m + r + 1);
-  rows << profile.nuisances, profile.columns, profile.residual;
+  Eigen::MatrixXd rows(n, m + a + 1);
+  rows << profile.nuisances, profile.columns(Eigen::all, acting), profile.residual;
   factor.whiten(rows);
-  gram = gram_of(rows);
+  Eigen::MatrixXd own = gram_of(rows);
+  acting.push_back(r);
   freedom = static_cast<double>(n - m);
   log_determinants = factor.log_determinant();
-  if (m == 0) return;
-  const Eigen::LLT<Eigen::MatrixXd> nuisance(gram.topLeftCorner(m, m));
-  if (nuisance.info() != Eigen::Success) log_determinants = INFINITY;
-  log_determinants += 2.0 * nuisance.matrixLLT().diagonal().array().log().sum();
-  const Eigen::MatrixXd cross = nuisance.matrixL().solve(gram.topRightCorner(m, r + 1));
-  gram = (gram.bottomRightCorner(r + 1, r + 1) - cross.transpose() * cross).eval();
+  if (m > 0) {
+    const Eigen::LLT<Eigen::MatrixXd> nuisance(own.topLeftCorner(m, m));
+    if (nuisance.info() != Eigen::Success) log_determinants = INFINITY;
+    log_determinants += 2.0 * nuisance.matrixLLT().diagonal().array().log().sum();
+    const Eigen::MatrixXd cross = nuisance.matrixL().solve(own.topRightCorner(m, a + 1));
+    own = (own.bottomRightCorner(a + 1, a + 1) - cross.transpose() * cross).eval();
+  }
+  gram = Eigen::MatrixXd::Zero(r + 1, r + 1);
+  gram(acting, acting) = own;
 }
 
 double restricted_cost(std::span<const ProfileInformation> profiles, const Eigen::MatrixXd& rest,
@@ -82,11 +92,12 @@ FittedSizes fit_sizes(std::span<const ProfileInformation> profiles, const Eigen:
     const Eigen::LLT<Eigen::MatrixXd> root(joint.topLeftCorner(r, r));
     Eigen::VectorXd change(r + 1);
     change << -root.solve(joint.topRightCorner(r, 1)), 1.0;
+    const Eigen::MatrixXd inverse = root.solve(Eigen::MatrixXd::Identity(r, r));
     const Eigen::VectorXd before = out.log_sizes;
     for (Eigen::Index i = 0; i < count; ++i) {
       const ProfileInformation& own = profiles[static_cast<std::size_t>(i)];
       const double taken =
-          root.solve(own.gram.topLeftCorner(r, r)).trace() * std::exp(-2.0 * before[i]);
+          inverse.cwiseProduct(own.gram.topLeftCorner(r, r)).sum() * std::exp(-2.0 * before[i]);
       out.freedom[i] = std::max(kLeastFreedom, own.freedom - taken);  // also of NaN
       const double square = std::max((own.gram * change).dot(change), 1e-300);
       out.log_sizes[i] = settled(before[i], out.freedom[i], square, before.mean(),

@@ -41,6 +41,11 @@ int distinct_effects(const std::vector<AcceptedEffect>& effects) {
   return static_cast<int>(names.size());
 }
 
+std::vector<AcceptedEffect> raised_degrees(std::vector<AcceptedEffect> effects) {
+  std::erase_if(effects, [](const auto& each) { return !each.candidate->raises_degree; });
+  return effects;
+}
+
 std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::size_t i) {
   effects.erase(std::next(effects.begin(), static_cast<std::ptrdiff_t>(i)));
   return effects;

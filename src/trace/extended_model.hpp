@@ -29,6 +29,9 @@ struct Searched {
 /// How many effects a set has, of one with a size per cut one.
 int distinct_effects(const std::vector<AcceptedEffect>& effects);
 
+/// Of a set, polynomials of the carriages that are raised.
+std::vector<AcceptedEffect> raised_degrees(std::vector<AcceptedEffect> effects);
+
 std::vector<AcceptedEffect> all_but(std::vector<AcceptedEffect> effects, std::size_t i);
 /// @param which  rising
 std::vector<AcceptedEffect> all_but(const std::vector<AcceptedEffect>& effects,

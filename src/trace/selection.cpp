@@ -92,10 +92,12 @@ class Comparison {
       for (const std::string& name : with_shapes()) from.exclude(name);
       from.grow_from(*lower.candidate);
       const Effects beside_lower = from.out().effects;
-      from.complete(*lower.candidate);
-      if (!leaves_to(from))
-        hold_against(beside_lower, from.excluded(), lower.lacks,
-                     "at degree " + std::to_string(*lower.candidate->options.degree));
+      if (explains_as_much(beside_lower)) {
+        from.complete(*lower.candidate);
+        if (leaves_to(from)) continue;
+      }
+      hold_against(beside_lower, from.excluded(), lower.lacks,
+                   "at degree " + std::to_string(*lower.candidate->options.degree));
     }
     Selector without = start_();
     for (const AcceptedEffect& effect : out_.effects)
@@ -105,6 +107,10 @@ class Comparison {
     if (!without.out().effects.empty() && !leaves_to(without))
       hold_against(without.out().effects, without.excluded(),
                    std::numeric_limits<Eigen::Index>::max(), "without it");
+  }
+
+  bool explains_as_much(const Effects& others) {
+    return statistics_.lead(out_.effects, others) <= gates_.tie_bic;
   }
 
   bool leaves_to(Selector& other) { return chosen_.leaves_to(other, -gates_.exchange_bic); }
@@ -150,7 +156,7 @@ class Comparison {
     for (const AcceptedEffect& each : others)
       if (!is_kinematic(*each.candidate) && std::ranges::count(own, each.name()) == 0)
         causes.push_back(each.name());
-    if (causes.empty() || statistics_.lead(out_.effects, others) > gates_.tie_bic) return;
+    if (causes.empty() || !explains_as_much(others)) return;
     for (AcceptedEffect& effect : out_.effects) {
       if (!effect.candidate->raises_degree) continue;
       for (const std::string& cause : causes)

@@ -348,7 +348,7 @@ class Loop {
     out.not_separable =
         inseparable(fitted.model, fitted.fit, data, extender_.candidates_beside(selection.effects));
     if (!extender_.calibration()) return;
-    const FittedModel& base = extender_.base();
+    const FittedModel& base = extender_.extended(raised_degrees(selection.effects));
     Candidates everywhere;
     for (const Candidate& each : extender_.dictionary().candidates)
       if (each.stands_for_effect()) everywhere.push_back(&each);

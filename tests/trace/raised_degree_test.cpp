@@ -122,5 +122,22 @@ TEST(RaisedDegree, StandsAloneForAWayOfAHigherDegree) {
   EXPECT_GE(alone, 8);
 }
 
+// What a squareness hides behind is the degree in the end, declared or raised. The searches differ,
+// so do the resamples from which each has its threshold: 99, within 15 % at p = 0.01.
+TEST(RaisedDegree, HidesASquarenessAsADeclaredOneDoes) {
+  const std::vector<Profile> faces = faces_of_one_way({0.5, -1.2, 0.9}, 0.0, 1);
+  const auto limit = [&](int degree) {
+    Problem problem = cases::problem(Lever::paper, 2, {cases::effect("straightness", degree)});
+    problem.trace.candidates = {"straightness", "squareness", "step", "thermal_drift"};
+    const Closed result = closed(problem, faces);
+    const auto found =
+        std::ranges::find(result.detection_limits, "squareness", &DetectionLimit::effect);
+    return found == result.detection_limits.end() ? 0.0 : found->value.value_or(0.0);
+  };
+  const double declared = limit(4);
+  EXPECT_GT(declared, 0.0);
+  EXPECT_NEAR(limit(3), declared, 0.15 * declared);
+}
+
 }  // namespace
 }  // namespace slideway::raised_degree_test
