@@ -100,8 +100,8 @@ class Comparison {
                    "at degree " + std::to_string(*lower.candidate->options.degree));
     }
     Selector without = start_();
-    for (const AcceptedEffect& effect : out_.effects)
-      if (effect.candidate->raises_degree) without.exclude(effect.name());
+    for (const AcceptedEffect& effect : raised_degrees(out_.effects))
+      without.exclude(effect.name());
     if (without.excluded().empty()) return;
     without.select();
     if (!without.out().effects.empty() && !leaves_to(without))
@@ -134,11 +134,10 @@ class Comparison {
   /// Those above the declared one of each polynomial that is raised further.
   [[nodiscard]] std::vector<LowerDegree> lower_degrees() const {
     std::vector<LowerDegree> out;
-    for (const AcceptedEffect& effect : out_.effects)
+    for (const AcceptedEffect& effect : raised_degrees(out_.effects))
       for (const Candidate& each : extender_.dictionary().candidates) {
         const Eigen::Index lacks = effect.candidate->amplitudes() - each.amplitudes();
-        if (effect.candidate->raises_degree && each.raises_degree && each.name() == effect.name() &&
-            lacks > 0)
+        if (each.raises_degree && each.name() == effect.name() && lacks > 0)
           out.push_back({&each, lacks});
       }
     return out;
