@@ -64,13 +64,16 @@ function(slideway_room name)
   set_property(GLOBAL APPEND PROPERTY SLIDEWAY_ROOMS slideway_${name})
 endfunction()
 
-# slideway_test(room SOURCES a_test.cpp ... DEPENDS lib ... [SLOW Suite.Case ...])
+# slideway_test(room SOURCES a_test.cpp ... DEPENDS lib ... [SLOW Suite.Case ...] [LONG Suite.Case ...])
 # One GoogleTest program per folder of tests, its cases registered as <room>/<Suite>.<Case>. It links
-# the room of its name if there is one. Cases under SLOW (patterns) get the label "slow". Under
-# AddressSanitizer those are left out, and the others run in a few processes, <room>/part<n>.
+# the room of its name if there is one. Cases under SLOW (patterns) get the label "slow", those under
+# LONG the label "long": ./dev torture runs them. Under AddressSanitizer both are left out, and the
+# others run in a few processes, <room>/part<n>.
 function(slideway_test room)
-  cmake_parse_arguments(TEST "" "" "SOURCES;DEPENDS;SLOW" ${ARGN})
+  cmake_parse_arguments(TEST "" "" "SOURCES;DEPENDS;SLOW;LONG" ${ARGN})
   add_executable(${room}_test ${TEST_SOURCES})
+  # Beyond so many files, names of one meet those of another.
+  set_target_properties(${room}_test PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
   target_include_directories(${room}_test PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${room}_test PRIVATE $<TARGET_NAME_IF_EXISTS:slideway::${room}>
                         slideway_options ${TEST_DEPENDS} GTest::gmock_main)
@@ -78,21 +81,27 @@ function(slideway_test room)
     SLIDEWAY_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   slideway_use_headers(${room}_test slideway_test_headers)
   list(JOIN TEST_SLOW ":" slow)
+  list(JOIN TEST_LONG ":" long)
   if(SLIDEWAY_SANITIZE MATCHES address)  # the start of a process takes longer than most cases
     set(parts 4)
     math(EXPR last "${parts} - 1")
     foreach(part RANGE ${last})
-      add_test(NAME ${room}/part${part} COMMAND ${room}_test "--gtest_filter=-${slow}" --gtest_brief=1)
+      add_test(NAME ${room}/part${part} COMMAND ${room}_test "--gtest_filter=-${slow}:${long}" --gtest_brief=1)
       set_tests_properties(${room}/part${part} PROPERTIES TIMEOUT 1200
         ENVIRONMENT "GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part}")
     endforeach()
     return()
   endif()
   gtest_discover_tests(${room}_test TEST_PREFIX ${room}/ NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
-                       TEST_FILTER "-${slow}" PROPERTIES TIMEOUT 600)
+                       TEST_FILTER "-${slow}:${long}" PROPERTIES TIMEOUT 600)
   if(slow)
     gtest_discover_tests(${room}_test TEST_PREFIX ${room}/ NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
-                         TEST_FILTER "${slow}" TEST_LIST ${room}_test_SLOW_TESTS
+                         TEST_FILTER "${slow}:-${long}" TEST_LIST ${room}_test_SLOW_TESTS
                          PROPERTIES TIMEOUT 600 LABELS slow)
+  endif()
+  if(long)
+    gtest_discover_tests(${room}_test TEST_PREFIX ${room}/ NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
+                         TEST_FILTER "${long}" TEST_LIST ${room}_test_LONG_TESTS
+                         PROPERTIES TIMEOUT 1800 LABELS long)
   endif()
 endfunction()

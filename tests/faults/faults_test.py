@@ -12,7 +12,7 @@ import unittest
 
 from commands import BAD_DATA, BAD_USAGE, COMMANDS, DONE, FAILED, SOME_FAILED, given_files, run
 
-MOST = int(sys.argv[3]) if len(sys.argv) > 3 else 25
+MOST = int(sys.argv[3]) if len(sys.argv) > 3 else 10
 CALLS = ["malloc", "read", "write", "writev", "open", "fopen", "fopen64", "close", "fstat", "fsync", "rename",
          "linkat", "mkdir", "mmap", "fork", "pipe2", "pthread_create", "clock_gettime"]
 

@@ -3,7 +3,7 @@ begun can be gone on with.
 
 usage: kill_test.py SLIDEWAY LIBRARY [MOMENTS [SEED]]
 
-MOMENTS is how many of each command (25).
+MOMENTS is how many of each command (10).
 """
 
 import os
@@ -20,7 +20,7 @@ sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "serve"))
 from commands import DONE, PROGRAM, content, given_files, run  # noqa: E402
 from server import Server  # noqa: E402
 
-MOMENTS = int(sys.argv[3]) if len(sys.argv) > 3 else 25
+MOMENTS = int(sys.argv[3]) if len(sys.argv) > 3 else 10
 SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 22
 OLD = b"what was there before\n"
 BATCH = ["batch", "list.csv", "--out", "out.jsonl", "--jobs", "2"]
