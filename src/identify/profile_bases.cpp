@@ -44,7 +44,8 @@ Eigen::MatrixXd ProfileBases::beside(Eigen::MatrixXd white) const {
 }
 
 ProfileBases own_bases(const std::vector<const Observation*>& observations,
-                       const std::vector<Noise>& noise, const FreeValues& free) {
+                       const std::vector<Noise>& noise, const FreeValues& free,
+                       const std::vector<Eigen::MatrixXd>& columns) {
   ProfileBases out;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Eigen::MatrixXd& nuisances = observations[i]->nuisances;
@@ -52,6 +53,7 @@ ProfileBases own_bases(const std::vector<const Observation*>& observations,
         unit_columns(free.empty() ? ValueIndices{} : free[i], nuisances.rows());
     Eigen::MatrixXd own(nuisances.rows(), nuisances.cols() + units.cols());
     own << nuisances, units;
+    if (!columns.empty()) append_columns(own, columns[i]);
     noise[i].whiten(own);
     out.add(std::move(own));
   }

@@ -64,16 +64,19 @@ class Viewer {
   /// @param is_fast  what varies inside a quarter of a low-band value counts
   void columns(const ModelTerm& term, std::span<const std::vector<double>> shapes, bool is_fast,
                Eigen::Ref<Eigen::MatrixXd> out) const {
-    out.setZero();
     Eigen::Index row = 0;
     for (std::size_t i = 0; i < observations_.size(); ++i) {
       const Observation& observation = *observations_[i];
       auto rows = out.middleRows(row, observation.values.size());
       row += rows.rows();
-      if (!term.acts_on(*observation.profile)) continue;
-      rows = thin_[i] && !is_fast ? thin_columns(term, shapes, observation, *thin_[i])
-                                  : low_band_columns_of_shapes(model_, term, observation, shapes);
+      if (!term.acts_on(*observation.profile))
+        rows.setZero();
+      else if (thin_[i] && !is_fast)
+        rows = thin_columns(term, shapes, observation, *thin_[i]);
+      else
+        rows = low_band_columns_of_shapes(model_, term, observation, shapes);
     }
+    out.bottomRows(rows_ - row).setZero();
   }
 
  private:
@@ -234,17 +237,6 @@ bool is_of_place(const Candidate& candidate) {
   return own.of_face || std::ranges::any_of(own.confounded_effects, [](const std::string& other) {
            return specimen(other).description().of_face;
          });
-}
-
-Eigen::MatrixXd Candidate::columns_of(Eigen::Index first, Eigen::Index count) const {
-  const auto asked = columns->middleCols(first * amplitudes(), count * amplitudes());
-  Eigen::MatrixXd out(count_of(rows), asked.cols());
-  Eigen::Index at = 0;
-  for (const RowRange& run : rows) {
-    out.middleRows(at, run.count) = asked.middleRows(run.first, run.count);
-    at += run.count;
-  }
-  return out;
 }
 
 Eigen::MatrixXd Candidate::columns_around(Eigen::Index atom) const {

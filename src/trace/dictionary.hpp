@@ -39,8 +39,6 @@ struct Candidate {
   [[nodiscard]] const std::string& effect_name() const { return term.effect->description().name; }
   [[nodiscard]] Eigen::Index amplitudes() const { return term.effect->amplitudes(); }
   [[nodiscard]] Eigen::Index atoms() const { return std::ssize(grid.points()); }
-  /// Columns of `count` atoms from `first` on, in the rows it acts on, under one another.
-  [[nodiscard]] Eigen::MatrixXd columns_of(Eigen::Index first, Eigen::Index count) const;
   /// Stacked columns of an atom and of its neighbours on the grid, for a shape between them.
   [[nodiscard]] Eigen::MatrixXd columns_around(Eigen::Index atom) const;
   /// Free numbers: the amplitudes that the model does not span, and the shapes.

@@ -180,7 +180,7 @@ class FormSearch {
     std::vector<Eigen::Index> first;  // column of each kind
     for (const Candidate* each : local_) {
       first.push_back(first.empty() ? 0 : first.back() + local_[first.size() - 1]->atoms());
-      columns.middleCols(first.back(), each->atoms()) = each->columns_of(0, each->atoms());
+      columns.middleCols(first.back(), each->atoms()) = *each->columns;
     }
     columns = view.data().outside(std::move(columns));
     const Eigen::MatrixXd gram = columns.transpose() * columns;

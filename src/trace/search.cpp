@@ -3,8 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <thread>
-#include <type_traits>
 
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
@@ -41,51 +42,113 @@ GramRoot root_of(const Eigen::MatrixXd& gram, const Eigen::VectorXd& squares) {
   return out;
 }
 
-/// Products of columns with the rows of residuals that they stand in.
-template <typename Columns, typename Residuals>
-Columns products_of(std::span<const RowRange> rows, const Columns& columns,
-                    const Residuals& residuals) {
-  Columns out = Columns::Zero(columns.cols(), residuals.cols());
-  Eigen::Index from = 0;
-  for (const RowRange& run : rows) {
-    out += columns.middleRows(from, run.count).transpose() *
-           residuals.middleRows(run.first, run.count);
-    from += run.count;
-  }
-  return out;
-}
+/// What columns show in one profile, or in several together: the sums.
+struct InProfiles {
+  Eigen::MatrixXd grams;     // of each atom, side by side, without what is free in a profile alone
+  Eigen::MatrixXd shared;    // products with what is free in profiles together
+  Eigen::VectorXd squares;   // of the white columns
+  Eigen::MatrixXd products;  // with every residual
 
-/// The same in single precision, of columns made one long: a power of x may exceed its range.
-Eigen::MatrixXd products_in_single(std::span<const RowRange> rows, const Eigen::MatrixXd& columns,
-                                   const Eigen::VectorXd& squares,
-                                   const Eigen::MatrixXf& residuals) {
+  InProfiles& operator+=(const InProfiles& other) {
+    grams += other.grams, shared += other.shared;
+    squares += other.squares, products += other.products;
+    return *this;
+  }
+};
+
+/// In single precision, of columns made one long: a power of x may exceed its range.
+Eigen::MatrixXd products_of(const Eigen::MatrixXd& columns, const Eigen::VectorXd& squares,
+                            const Eigen::Ref<const Eigen::MatrixXf>& residuals) {
   const Eigen::VectorXd sizes = squares.cwiseSqrt();
   const Eigen::MatrixXf unit =
       (columns * sizes.unaryExpr([](double s) { return s > 0.0 ? 1.0 / s : 0.0; }).asDiagonal())
           .cast<float>();
-  return sizes.asDiagonal() * products_of(rows, unit, residuals).cast<double>();
+  return sizes.asDiagonal() * Eigen::MatrixXf(unit.transpose() * residuals).cast<double>();
 }
 
-/// Calls use(atom, root, products of its columns with every residual) for the atoms of one block.
-/// The products have the precision of the residuals.
+Eigen::MatrixXd products_of(const Eigen::MatrixXd& columns, const Eigen::VectorXd&,
+                            const Eigen::Ref<const Eigen::MatrixXd>& residuals) {
+  return columns.transpose() * residuals;
+}
+
+/// @param a          columns an atom
+/// @param residuals  of all profiles; the products have their precision
+template <typename Residuals>
+InProfiles in_profile(const Whitened& data, std::size_t profile, Eigen::MatrixXd columns,
+                      Eigen::Index a, const Residuals& residuals) {
+  const Whitened::Seen seen = data.seen_in(profile, std::move(columns));
+  const Eigen::MatrixXd& white = seen.white;
+  InProfiles out{.grams = Eigen::MatrixXd(a, white.cols()),
+                 .shared = seen.shared,
+                 .squares = white.colwise().squaredNorm().transpose(),
+                 .products = {}};
+  for (Eigen::Index at = 0; at < white.cols(); at += a) {
+    const auto atom = white.middleCols(at, a), own = seen.own.middleCols(at, a);
+    out.grams.middleCols(at, a) = atom.transpose() * atom - own.transpose() * own;
+  }
+  out.products = products_of(white, out.squares,
+                             residuals.middleRows(data.first_row(profile), data.count(profile)));
+  return out;
+}
+
+/// The fitted observations whose rows are among some.
+std::vector<std::size_t> profiles_in(const Whitened& data, std::span<const RowRange> rows) {
+  std::vector<std::size_t> out;
+  for (const RowRange& run : rows)
+    for (std::size_t i = 0; i < data.observations(); ++i)
+      if (data.first_row(i) >= run.first && data.first_row(i) + data.count(i) <= run.end())
+        out.push_back(i);
+  return out;
+}
+
+/// Candidates of the same columns, each in some profiles: what a profile shows is made once.
+using Family = std::vector<std::size_t>;
+
+std::vector<Family> families_of(const Candidates& candidates) {
+  std::vector<Family> out;
+  std::map<const Eigen::MatrixXd*, std::size_t> place;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const auto [at, is_new] = place.try_emplace(candidates[c]->columns.get(), out.size());
+    if (is_new) out.emplace_back();
+    out[at->second].push_back(c);
+  }
+  return out;
+}
+
+/// Atoms of a family.
+struct Block {
+  const Family* family;
+  Eigen::Index first, count;
+};
+
+/// Calls use(candidate, atom, root, products of its columns with every residual) for the atoms of
+/// one block.
 template <typename Residuals, typename Use>
-void for_block(const Whitened& data, const Candidate& candidate, Eigen::Index first,
-               Eigen::Index count, const Residuals& residuals, Use&& use) {
-  const Eigen::Index a = candidate.amplitudes();
-  Eigen::MatrixXd columns = candidate.columns_of(first, count);
-  data.whiten(candidate.rows, columns);
-  const Eigen::MatrixXd inside = data.inside(candidate.rows, columns);
-  const Eigen::VectorXd squares = columns.colwise().squaredNorm().transpose();
-  Eigen::MatrixXd products;
-  if constexpr (std::is_same_v<Residuals, Eigen::MatrixXf>)
-    products = products_in_single(candidate.rows, columns, squares, residuals);
-  else
-    products = products_of(candidate.rows, columns, residuals);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const auto own = columns.middleCols(i * a, a);
-    const auto spanned = inside.middleCols(i * a, a);
-    const Eigen::MatrixXd gram = own.transpose() * own - spanned.transpose() * spanned;
-    use(first + i, root_of(gram, squares.segment(i * a, a)), products.middleRows(i * a, a));
+void for_block(const Whitened& data, const Candidates& candidates, const Block& block,
+               const Residuals& residuals, Use&& use) {
+  const Candidate& any = *candidates[block.family->front()];
+  const Eigen::Index a = any.amplitudes();
+  std::vector<std::optional<InProfiles>> shown(data.observations());
+  for (const std::size_t c : *block.family) {
+    std::optional<InProfiles> sum;
+    for (const std::size_t i : profiles_in(data, candidates[c]->rows)) {
+      if (!shown[i])
+        shown[i] = in_profile(
+            data, i,
+            any.columns->block(data.first_row(i), block.first * a, data.count(i), block.count * a),
+            a, residuals);
+      if (sum)
+        *sum += *shown[i];
+      else
+        sum = shown[i];
+    }
+    if (!sum) continue;
+    for (Eigen::Index j = 0; j < block.count; ++j) {
+      const auto shared = sum->shared.middleCols(j * a, a);
+      const Eigen::MatrixXd gram = sum->grams.middleCols(j * a, a) - shared.transpose() * shared;
+      use(c, block.first + j, root_of(gram, sum->squares.segment(j * a, a)),
+          sum->products.middleRows(j * a, a));
+    }
   }
 }
 
@@ -98,18 +161,13 @@ Projection solved(Projection normal, const Eigen::VectorXd& squares) {
   return normal;
 }
 
-struct Block {
-  std::size_t candidate;
-  Eigen::Index first, count;
-};
-
-std::vector<Block> blocks_of(const Candidates& candidates) {
+std::vector<Block> blocks_of(const Candidates& candidates, const std::vector<Family>& families) {
   std::vector<Block> out;
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const Eigen::Index most =
-        std::max<Eigen::Index>(1, kColumnsAtATime / candidates[c]->amplitudes());
-    for (Eigen::Index first = 0; first < candidates[c]->atoms(); first += most)
-      out.push_back({c, first, std::min(most, candidates[c]->atoms() - first)});
+  for (const Family& family : families) {
+    const Candidate& any = *candidates[family.front()];
+    const Eigen::Index most = std::max<Eigen::Index>(1, kColumnsAtATime / any.amplitudes());
+    for (Eigen::Index first = 0; first < any.atoms(); first += most)
+      out.push_back({&family, first, std::min(most, any.atoms() - first)});
   }
   return out;
 }
@@ -125,24 +183,25 @@ double penalty(const Whitened& data, const Candidate& candidate, Eigen::Index ra
 }
 
 std::vector<Finding> search(const Whitened& data, const Candidates& candidates) {
-  const std::vector<Block> blocks = blocks_of(candidates);
-  std::vector<Finding> best(blocks.size());
+  const std::vector<Family> families = families_of(candidates);
+  const std::vector<Block> blocks = blocks_of(candidates, families);
+  std::vector<std::map<std::size_t, Finding>> best(blocks.size());  // by candidate
   parallel_for(blocks.size(), [&](std::size_t b) {
-    const Block& block = blocks[b];
-    const Candidate& candidate = *candidates[block.candidate];
-    best[b] = {&candidate, block.first, -1.0, INFINITY, 0};
-    for_block(data, candidate, block.first, block.count, data.residual(),
-              [&](Eigen::Index atom, const GramRoot& root, const auto& products) {
+    for_block(data, candidates, blocks[b], data.residual(),
+              [&](std::size_t c, Eigen::Index atom, const GramRoot& root, const auto& products) {
                 const double gain = (root.root * products).squaredNorm();
-                const double bic = penalty(data, candidate, root.rank) - gain;
-                if (root.rank > 0 && bic < best[b].delta_bic)
-                  best[b] = {&candidate, atom, gain, bic, root.rank};
+                const double bic = penalty(data, *candidates[c], root.rank) - gain;
+                const Finding found{candidates[c], atom, gain, bic, root.rank};
+                if (root.rank == 0) return;
+                const auto [at, is_first] = best[b].try_emplace(c, found);
+                if (bic < at->second.delta_bic) at->second = found;
               });
   });
   std::vector<Finding> out;
   for (const Candidate* candidate : candidates) out.push_back({candidate, 0, 0.0, INFINITY, 0});
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    if (best[b].delta_bic < out[blocks[b].candidate].delta_bic) out[blocks[b].candidate] = best[b];
+  for (const auto& of_block : best)
+    for (const auto& [c, found] : of_block)
+      if (found.delta_bic < out[c].delta_bic) out[c] = found;
   return out;
 }
 
@@ -156,8 +215,9 @@ double noise_beside_line(const Whitened& data, const Finding& line, const Eigen:
   const auto add = [&](Eigen::Index first, Eigen::Index end) {
     first = std::max<Eigen::Index>(first, 0), end = std::min(end, candidate.atoms());
     if (first >= end) return;
-    for_block(data, candidate, first, end - first, rest,
-              [&](Eigen::Index, const GramRoot& root, const auto& products) {
+    const Family alone{0};
+    for_block(data, {&candidate}, {&alone, first, end - first}, rest,
+              [&](std::size_t, Eigen::Index, const GramRoot& root, const auto& products) {
                 sum += (root.root * products).squaredNorm();
                 amplitudes += static_cast<double>(root.rank);
                 atoms += 1.0;
@@ -171,12 +231,14 @@ double noise_beside_line(const Whitened& data, const Finding& line, const Eigen:
 }
 
 Projection project(const Whitened& data, const Eigen::MatrixXd& columns) {
-  Eigen::MatrixXd white = columns;
-  data.whiten(white);
-  const Eigen::MatrixXd inside = data.inside({{RowRange{0, data.rows()}}}, white);
-  return solved({.gram = white.transpose() * white - inside.transpose() * inside,
-                 .products = white.transpose() * data.residual()},
-                white.colwise().squaredNorm().transpose());
+  const auto in = [&](std::size_t i) {
+    return in_profile(data, i, columns.middleRows(data.first_row(i), data.count(i)), columns.cols(),
+                      data.residual());
+  };
+  InProfiles sum = in(0);
+  for (std::size_t i = 1; i < data.observations(); ++i) sum += in(i);
+  return solved({.gram = sum.grams - sum.shared.transpose() * sum.shared, .products = sum.products},
+                sum.squares);
 }
 
 Projection project_in(const Whitened& data, std::size_t profile, const Eigen::MatrixXd& columns) {
@@ -186,21 +248,35 @@ Projection project_in(const Whitened& data, std::size_t profile, const Eigen::Ma
       shown.gram.diagonal());
 }
 
+Eigen::MatrixXd left_beside(const Whitened& data, const Candidate& candidate,
+                            const Eigen::MatrixXd& outside) {
+  const std::vector<Family> alone{{0}};
+  const Eigen::RowVectorXd squares = outside.colwise().squaredNorm();
+  Eigen::MatrixXd out(outside.cols(), candidate.atoms());
+  for (const Block& block : blocks_of({&candidate}, alone))
+    for_block(data, {&candidate}, block, outside,
+              [&](std::size_t, Eigen::Index atom, const GramRoot& root, const auto& products) {
+                out.col(atom) =
+                    (squares - (root.root * products).colwise().squaredNorm()).transpose();
+              });
+  return out;
+}
+
 Eigen::VectorXd largest_gains(const Whitened& data, const Candidates& candidates,
                               const Eigen::MatrixXf& residuals,
                               const std::function<void(double)>& told) {
-  const std::vector<Block> blocks = blocks_of(candidates);
+  const std::vector<Family> families = families_of(candidates);
+  const std::vector<Block> blocks = blocks_of(candidates, families);
   const std::thread::id caller = std::this_thread::get_id();
   Eigen::MatrixXd best = Eigen::MatrixXd::Constant(residuals.cols(), blocks.size(), -INFINITY);
   parallel_for(blocks.size(), [&](std::size_t b) {
     if (told && std::this_thread::get_id() == caller)
       told(static_cast<double>(b) / static_cast<double>(blocks.size()));
-    const Candidate& candidate = *candidates[blocks[b].candidate];
     for_block(
-        data, candidate, blocks[b].first, blocks[b].count, residuals,
-        [&](Eigen::Index, const GramRoot& root, const auto& products) {
+        data, candidates, blocks[b], residuals,
+        [&](std::size_t c, Eigen::Index, const GramRoot& root, const auto& products) {
           if (root.rank == 0) return;
-          const double cost = penalty(data, candidate, root.rank);
+          const double cost = penalty(data, *candidates[c], root.rank);
           best.col(b) = best.col(b).cwiseMax(
               ((root.root * products).colwise().squaredNorm().array() - cost).matrix().transpose());
         });

@@ -46,6 +46,11 @@ Projection project(const Whitened& data, const Eigen::MatrixXd& columns);
 /// The same of columns in one profile alone, given in its rows.
 Projection project_in(const Whitened& data, std::size_t profile, const Eigen::MatrixXd& columns);
 
+/// What an effect leaves of white columns outside the model's span, at each of its atoms: squares,
+/// #columns by #atoms.
+Eigen::MatrixXd left_beside(const Whitened& data, const Candidate& candidate,
+                            const Eigen::MatrixXd& outside);
+
 /// Largest penalised gain (gain - unknowns ln n) of any atom, for every column of `residuals`
 /// (white, in the layout of the data, outside the model's span). Of noise that was drawn single
 /// precision is enough: products err by 1e-7 of both lengths. `told` hears, in the thread of the

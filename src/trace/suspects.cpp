@@ -14,11 +14,9 @@ namespace {
 
 constexpr double kManyDegrees = 1e9;  // of freedom: Student's t is normal
 constexpr std::size_t kPlaces = 4;    // of a rival's grid, apart from one another
-constexpr Eigen::Index kColumnsOfABlock = 64;
 /// A place alone must be this near to being taken for the suspect: with its neighbours it is
 /// nearer.
 constexpr double kNearness = 2.0;
-constexpr double kRidgeOfPlace = 1e-12;  // of a unit column: those that the model has taken
 
 double power_deviate(const Gates& gates) {
   return student_limit(kManyDegrees, 1.0 - gates.detection_power);
@@ -43,27 +41,16 @@ double mean_gain(const Eigen::MatrixXd& gram) {
   return gram.diagonal().head(std::min<Eigen::Index>(gram.rows(), 2)).mean();
 }
 
-/// What white columns outside the model leave of others there, one number for each column.
-Eigen::VectorXd left_of(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& others) {
-  const Eigen::VectorXd unit = columns.colwise().norm().transpose().unaryExpr(
-      [](double size) { return size > 0.0 ? 1.0 / size : 0.0; });
-  const Eigen::MatrixXd scaled = columns * unit.asDiagonal();
-  Eigen::MatrixXd gram = scaled.transpose() * scaled;
-  gram.diagonal().array() += kRidgeOfPlace;
-  const Eigen::MatrixXd products = scaled.transpose() * others;
-  return others.colwise().squaredNorm().transpose() -
-         products.cwiseProduct(gram.ldlt().solve(products)).colwise().sum().transpose();
-}
-
 }  // namespace
 
 Suspects::Suspects(Dictionary dictionary, const FittedModel& base)
     : base_(base), dictionary_(std::move(dictionary)) {
-  choose_suspects();
-  find_pairs();
+  const Whitened data(base_.fit.linear, base_.fit.noise);
+  choose_suspects(data);
+  find_pairs(data);
 }
 
-void Suspects::choose_suspects() {
+void Suspects::choose_suspects(const Whitened& data) {
   Candidates chosen;
   for (const Candidate& candidate : dictionary_.candidates) {
     const Effect& effect = *candidate.term.effect;
@@ -96,21 +83,12 @@ void Suspects::choose_suspects() {
     }
     chosen.push_back(&candidate);
   }
-  const Whitened data(base_.fit.linear, base_.fit.noise);
   hidden_ = inseparable(base_.model, base_.fit, data, chosen);
 }
 
 std::vector<std::vector<Suspects::Place>> Suspects::likely_places(
     const Candidate& rival, const Whitened& data, const Eigen::MatrixXd& white) const {
-  const Eigen::Index a = rival.amplitudes(), atoms = rival.atoms();
-  Eigen::MatrixXd left(white.cols(), atoms);
-  const Eigen::Index at_a_time = std::max<Eigen::Index>(1, kColumnsOfABlock / a);
-  for (Eigen::Index first = 0; first < atoms; first += at_a_time) {
-    const Eigen::Index count = std::min(at_a_time, atoms - first);
-    const Eigen::MatrixXd block = data.outside(rival.columns->middleCols(first * a, count * a));
-    for (Eigen::Index i = 0; i < count; ++i)
-      left.col(first + i) = left_of(block.middleCols(i * a, a), white);
-  }
+  const Eigen::MatrixXd left = left_beside(data, rival, white);
   std::vector<std::vector<Place>> out(suspects_.size());
   for (std::size_t s = 0; s < suspects_.size(); ++s) {
     const Suspect& suspect = suspects_[s];
@@ -162,14 +140,13 @@ std::vector<const PaperProfile*> pointers_to(const std::vector<PaperProfile>& pr
 
 }  // namespace
 
-void Suspects::find_pairs() {
+void Suspects::find_pairs(const Whitened& data) {
   put_on_paper();
   const Eigen::MatrixXd& priors = base_.fit.linear.prior_rows;
   {
-    const PaperData data(pointers_to(present_), priors);
-    for (Suspect& suspect : suspects_) suspect.limit = limit(suspect, data);
+    const PaperData paper(pointers_to(present_), priors);
+    for (Suspect& suspect : suspects_) suspect.limit = limit(suspect, paper);
   }
-  const Whitened data(base_.fit.linear, base_.fit.noise);
   Eigen::MatrixXd white = Eigen::MatrixXd::Zero(data.rows(), columns_);
   for (const Suspect& suspect : suspects_)
     white.middleCols(suspect.columns[0], std::ssize(suspect.columns)) =

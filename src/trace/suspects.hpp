@@ -80,8 +80,8 @@ class Suspects {
     Eigen::Index atom, first;
   };
 
-  void choose_suspects();
-  void find_pairs();
+  void choose_suspects(const Whitened& data);
+  void find_pairs(const Whitened& data);
   /// Where one candidate looks most like each suspect.
   [[nodiscard]] std::vector<std::vector<Place>> likely_places(const Candidate& rival,
                                                               const Whitened& data,

@@ -37,6 +37,29 @@ Eigen::MatrixXd stacked_model(const Linearisation& linear) {
   return out;
 }
 
+namespace {
+
+/// Columns of a linearised model by where they act.
+struct ModelColumns {
+  std::vector<std::vector<Eigen::Index>> alone;  // in one profile and in no prior, by profile
+  std::vector<Eigen::Index> shared;              // all others
+};
+
+ModelColumns columns_by_place(const Linearisation& linear) {
+  ModelColumns out;
+  out.alone.resize(linear.columns.size());
+  for (Eigen::Index k = 0; k < linear.prior_rows.cols(); ++k) {
+    std::vector<std::size_t> acts_in;
+    for (std::size_t i = 0; i < linear.columns.size(); ++i)
+      if ((linear.columns[i].col(k).array() != 0.0).any()) acts_in.push_back(i);
+    const bool alone = acts_in.size() == 1 && linear.prior_rows.col(k).isZero(0.0);
+    (alone ? out.alone[acts_in.front()] : out.shared).push_back(k);
+  }
+  return out;
+}
+
+}  // namespace
+
 Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, FreeValues undescribed)
     : noise_(std::move(noise)), undescribed_(std::move(undescribed)) {
   for (const Observation* observation : linear.observations) {
@@ -46,35 +69,17 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, FreeVa
   first_.push_back(values_);
   rows_ = values_ + linear.prior_rows.rows();
   undescribed_.resize(noise_.size());
-  own_ = own_bases(linear.observations, noise_, undescribed_);
-  Eigen::MatrixXd shared = stacked_model(linear);
+  const ModelColumns columns = columns_by_place(linear);
+  std::vector<Eigen::MatrixXd> alone;
+  for (std::size_t i = 0; i < columns.alone.size(); ++i)
+    alone.emplace_back(linear.columns[i](Eigen::all, columns.alone[i]));
+  own_ = own_bases(linear.observations, noise_, undescribed_, alone);
+  Eigen::MatrixXd shared = stacked_model(linear)(Eigen::all, columns.shared);
   whiten(shared);
   shared_ = orthonormal(own_.beside(std::move(shared)));
   residual_ = stack(linear, 1, [&](std::size_t i) { return linear.residuals[i]; });
   residual_.tail(linear.prior_rows.rows()) = linear.prior_residuals;
   residual_ = outside(residual_);
-}
-
-Eigen::Index count_of(std::span<const RowRange> rows) {
-  Eigen::Index out = 0;
-  for (const RowRange& run : rows) out += run.count;
-  return out;
-}
-
-template <typename Use>
-void Whitened::for_each_in(std::span<const RowRange> rows, Use&& use) const {
-  Eigen::Index at = 0;
-  for (const RowRange& run : rows) {
-    for (std::size_t i = 0; i < noise_.size(); ++i)
-      if (first_[i] >= run.first && first_[i + 1] <= run.end()) use(i, at + first_[i] - run.first);
-    at += run.count;
-  }
-}
-
-void Whitened::whiten(std::span<const RowRange> rows, Eigen::Ref<Eigen::MatrixXd> columns) const {
-  for_each_in(rows, [&](std::size_t i, Eigen::Index at) {
-    noise_[i].whiten(columns.middleRows(at, count(i)));
-  });
 }
 
 void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
@@ -89,21 +94,12 @@ Eigen::MatrixXd Whitened::outside(Eigen::MatrixXd stacked) const {
   return stacked;
 }
 
-Eigen::MatrixXd Whitened::inside(std::span<const RowRange> rows,
-                                 const Eigen::MatrixXd& white) const {
-  Eigen::Index next = shared_.cols(), size = next, from = 0;
-  for_each_in(rows, [&](std::size_t i, Eigen::Index) { size += own_[i].cols(); });
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(size, white.cols());
-  for (const RowRange& run : rows) {
-    out.topRows(next) +=
-        shared_.middleRows(run.first, run.count).transpose() * white.middleRows(from, run.count);
-    from += run.count;
-  }
-  for_each_in(rows, [&](std::size_t i, Eigen::Index at) {
-    out.middleRows(next, own_[i].cols()) = own_[i].transpose() * white.middleRows(at, count(i));
-    next += own_[i].cols();
-  });
-  return out;
+Whitened::Seen Whitened::seen_in(std::size_t profile, Eigen::MatrixXd columns) const {
+  noise_[profile].whiten(columns);
+  const auto shared = shared_.middleRows(first_[profile], count(profile));
+  return {.own = own_[profile].transpose() * columns,
+          .shared = shared.transpose() * columns,
+          .white = std::move(columns)};
 }
 
 Whitened::Shown Whitened::shown_in(std::size_t profile, Eigen::MatrixXd columns) const {

@@ -16,8 +16,6 @@ struct RowRange {
   [[nodiscard]] Eigen::Index end() const { return first + count; }
 };
 
-Eigen::Index count_of(std::span<const RowRange> rows);
-
 /// All fitted low bands under one another, and the priors below them, made white: what the search
 /// for a missing effect looks at.
 ///
@@ -45,8 +43,6 @@ class Whitened {
 
   /// Stacked low-band columns (rows() of them, zero in the rows of priors) made white, in place.
   void whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const;
-  /// The same of those in some rows alone.
-  void whiten(std::span<const RowRange> rows, Eigen::Ref<Eigen::MatrixXd> columns) const;
 
   /// The same, then without what the model and the nuisances span.
   [[nodiscard]] Eigen::MatrixXd outside(Eigen::MatrixXd stacked) const;
@@ -56,9 +52,13 @@ class Whitened {
   [[nodiscard]] Eigen::MatrixXd outside_in(const std::vector<Eigen::Index>& rows,
                                            Eigen::MatrixXd white) const;
 
-  /// Its transpose times white columns that are zero but in some rows.
-  [[nodiscard]] Eigen::MatrixXd inside(std::span<const RowRange> rows,
-                                       const Eigen::MatrixXd& white) const;
+  /// Columns of one profile, white, and their products with bases of what is free.
+  struct Seen {
+    Eigen::MatrixXd own;     // in that profile alone
+    Eigen::MatrixXd shared;  // of profiles together
+    Eigen::MatrixXd white;
+  };
+  [[nodiscard]] Seen seen_in(std::size_t profile, Eigen::MatrixXd columns) const;
 
   /// What columns of one profile show beside its nuisances. Over profiles, with sums of each: the
   /// Gram matrix of the columns outside the model's span is gram - sharedᵀ shared.
@@ -76,16 +76,12 @@ class Whitened {
   [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
 
  private:
-  /// Calls use(observation, its first row among some) for each that lies in them.
-  template <typename Use>
-  void for_each_in(std::span<const RowRange> rows, Use&& use) const;
-
   std::vector<Noise> noise_;
   FreeValues undescribed_;
   std::vector<Eigen::Index> first_;
   Eigen::Index values_ = 0;
   Eigen::Index rows_ = 0;
-  ProfileBases own_;        // of the nuisances and of what is undescribed
+  ProfileBases own_;        // of what is free in one profile alone
   Eigen::MatrixXd shared_;  // of what else is free, orthogonal to those
   Eigen::VectorXd residual_;
 };

@@ -39,9 +39,11 @@ class ProfileBases {
 /// Values that are left free, by profile; empty: none in any.
 using FreeValues = std::vector<ValueIndices>;
 
-/// What is free in one profile alone, under its noise: its levelling, and single values.
+/// What is free in one profile alone, under its noise: its levelling, single values, and columns.
+/// @param columns  not white, by profile; empty: none in any
 ProfileBases own_bases(const std::vector<const Observation*>& observations,
-                       const std::vector<Noise>& noise, const FreeValues& free = {});
+                       const std::vector<Noise>& noise, const FreeValues& free = {},
+                       const std::vector<Eigen::MatrixXd>& columns = {});
 
 /// A unit column for each of these values. @param rows  of the column
 Eigen::MatrixXd unit_columns(const ValueIndices& values, Eigen::Index rows);
