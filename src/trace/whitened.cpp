@@ -95,11 +95,12 @@ Eigen::MatrixXd Whitened::outside(Eigen::MatrixXd stacked) const {
 }
 
 Whitened::Seen Whitened::seen_in(std::size_t profile, Eigen::MatrixXd columns) const {
-  noise_[profile].whiten(columns);
-  const auto shared = shared_.middleRows(first_[profile], count(profile));
-  return {.own = own_[profile].transpose() * columns,
-          .shared = shared.transpose() * columns,
-          .white = std::move(columns)};
+  Seen out;
+  out.white = std::move(columns);
+  noise_[profile].whiten(out.white);
+  out.own = own_[profile].transpose() * out.white;
+  out.shared = shared_.middleRows(first_[profile], count(profile)).transpose() * out.white;
+  return out;
 }
 
 Whitened::Shown Whitened::shown_in(std::size_t profile, Eigen::MatrixXd columns) const {
