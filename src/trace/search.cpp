@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <thread>
 
@@ -91,14 +92,12 @@ InProfiles in_profile(const Whitened& data, std::size_t profile, Eigen::MatrixXd
   return out;
 }
 
-/// The fitted observations whose rows are among some.
-std::vector<std::size_t> profiles_in(const Whitened& data, std::span<const RowRange> rows) {
-  std::vector<std::size_t> out;
-  for (const RowRange& run : rows)
-    for (std::size_t i = 0; i < data.observations(); ++i)
-      if (data.first_row(i) >= run.first && data.first_row(i) + data.count(i) <= run.end())
-        out.push_back(i);
-  return out;
+/// The fitted observations a candidate acts on.
+std::vector<std::size_t> profiles_of(const Whitened& data, const Candidate& candidate) {
+  if (!candidate.part.empty()) return candidate.part;
+  std::vector<std::size_t> all(data.observations());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
 }
 
 /// Candidates of the same columns, each in some profiles: what a profile shows is made once.
@@ -131,7 +130,7 @@ void for_block(const Whitened& data, const Candidates& candidates, const Block& 
   std::vector<std::optional<InProfiles>> shown(data.observations());
   for (const std::size_t c : *block.family) {
     std::optional<InProfiles> sum;
-    for (const std::size_t i : profiles_in(data, candidates[c]->rows)) {
+    for (const std::size_t i : profiles_of(data, *candidates[c])) {
       if (!shown[i])
         shown[i] = in_profile(
             data, i,
