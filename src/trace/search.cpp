@@ -181,6 +181,19 @@ double penalty(const Whitened& data, const Candidate& candidate, Eigen::Index ra
   return penalty(data, candidate.unknowns(rank)) + candidate.choice;
 }
 
+Priority priority_of(const Candidate& candidate, double delta_bic) {
+  constexpr double kStep = 1e-3;  // of a difference in BIC
+  const std::vector<Parameter>& parameters = candidate.term.effect->parameters();
+  return {std::round(delta_bic / kStep),
+          std::ranges::min_element(parameters, {}, &Parameter::gauge)->gauge};
+}
+
+void sort_by_priority(std::vector<Finding>& findings) {
+  std::ranges::stable_sort(findings, {}, [](const Finding& each) {
+    return priority_of(*each.candidate, each.delta_bic);
+  });
+}
+
 std::vector<Finding> search(const Whitened& data, const Candidates& candidates) {
   const std::vector<Family> families = families_of(candidates);
   const std::vector<Block> blocks = blocks_of(candidates, families);

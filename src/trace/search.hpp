@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 
 #include "dictionary.hpp"
 #include "whitened.hpp"
@@ -21,6 +22,13 @@ struct Finding {
 double penalty(const Whitened& data, Eigen::Index unknowns);
 /// Of a candidate of which the model leaves `rank` amplitudes, with the choice of its profile.
 double penalty(const Whitened& data, const Candidate& candidate, Eigen::Index rank);
+
+/// What candidates are ordered by, the best first: their BIC, in steps that rounding does not
+/// cross, and what the fit keeps where it cannot tell one from the other (Parameter::gauge).
+using Priority = std::pair<double, int>;
+Priority priority_of(const Candidate& candidate, double delta_bic);
+/// By that; what ties stays in the order of the dictionary.
+void sort_by_priority(std::vector<Finding>& findings);
 
 /// Best atom of every candidate, in the order of the dictionary.
 std::vector<Finding> search(const Whitened& data, const Candidates& candidates);

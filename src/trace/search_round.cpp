@@ -31,7 +31,7 @@ bool is_of_one_trace(const Candidate& candidate) {
 /// the best such finding of each other profile that would be accepted as well: no trace lies as
 /// another does, and what one hides is no noise of the rest.
 std::vector<Finding> suspects_among(std::vector<Finding> findings, const Gates& gates) {
-  std::ranges::stable_sort(findings, {}, &Finding::delta_bic);
+  sort_by_priority(findings);
   std::vector<Finding> out{findings.front()};
   if (!is_of_one_trace(*out.front().candidate)) return out;
   for (const Finding& each : findings) {
@@ -110,7 +110,7 @@ Eigen::MatrixXd columns_of_no_wave(const Model& model, const Whitened& data,
 std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
                                        const Whitened& data, std::vector<Finding> findings,
                                        const Calibration& calibration) {
-  std::ranges::stable_sort(findings, {}, &Finding::delta_bic);
+  sort_by_priority(findings);
   const SampleResiduals samples(model, fit);
   const Eigen::MatrixXd no_wave = columns_of_no_wave(model, data, findings);
   const auto test = [&](const Finding& finding) {
@@ -158,7 +158,7 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     out.push_back(test(findings[out.size()]));
     note(out.back());
   }
-  std::ranges::stable_sort(out, {}, [](const auto& each) { return each.refined.delta_bic; });
+  std::ranges::stable_sort(out, {}, &TestedCandidate::priority);
   return out;
 }
 

@@ -21,6 +21,9 @@ struct TestedCandidate {
   double noise_beside = 1.0;   // of a wave: noise_beside_line()
 
   [[nodiscard]] const std::string& name() const { return refined.candidate->name(); }
+  [[nodiscard]] Priority priority() const {
+    return priority_of(*refined.candidate, refined.delta_bic);
+  }
   /// Difference in BIC under the noise beside its line.
   [[nodiscard]] double delta_bic_beside() const;
   /// Why it is not accepted; empty: it passes.

@@ -49,7 +49,7 @@ std::vector<AcceptedEffect> shown_effects(const Problem& problem, const FittedMo
   if (candidates.empty()) return out;
   const Whitened data(fitted.fit.linear, noise_beside(fitted.fit.linear, gates));
   std::vector<Finding> findings = search(data, candidates);
-  std::ranges::stable_sort(findings, {}, &Finding::delta_bic);
+  sort_by_priority(findings);
   for (const Finding& each : findings) {
     const auto has_name = [&](const AcceptedEffect& known) {
       return known.name() == each.candidate->name();
