@@ -107,6 +107,21 @@ TEST(RaisedDegree, IsNotAllWhereNoSquarenessIsDeclared) {
   }
 }
 
+// At one z level c_1 of the Z carriage makes the same column: rounding decides nothing, the name is
+// that of the parameter which the fit keeps (Parameter::gauge), the other one its rival.
+TEST(UndeclaredSquareness, IsNamedBeforeTheStraightnessThatMakesTheSameCone) {
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    Problem problem = cases::problem(Lever::paper, 2, {cases::effect("straightness", 3)});
+    problem.trace.candidates = effect_names();
+    const Closed result = closed(problem, faces_of_one_way({0.5}, 2e-5, seed));
+    SCOPED_TRACE(story(result));
+    ASSERT_FALSE(result.rounds.empty());
+    EXPECT_EQ(result.rounds.front().accepted, "squareness");
+    EXPECT_THAT(result.rounds.front().ambiguous_with,
+                testing::ElementsAre("vertical_straightness"));
+  }
+}
+
 // And without one the way alone is named. If 98 of 100 ways are, fewer than eight of ten are with a
 // probability of 1e-3.
 TEST(RaisedDegree, StandsAloneForAWayOfAHigherDegree) {
