@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "curve_likelihood.hpp"
+#include "form_columns.hpp"
 #include "noise_bounds.hpp"
 #include "residual.hpp"
 #include "slideway/base/distribution.hpp"
@@ -160,6 +162,16 @@ void explain_other_shapes(const Model& model, const Solution& fit, ModelResult& 
                              : "U, that of the formula's linear model, does not reach it"));
 }
 
+void explain_few_stations(const Model& model, ModelResult& out) {
+  for (const ModelTerm& term : model.terms)
+    if (term.effect->description().motion == MotionError::straightness &&
+        has_few_stations(model, term))
+      out.notes.push_back("the " + term.name + " is read at " +
+                          std::to_string(station_positions(model, term).size()) +
+                          " stations, too few to show what its polynomial does between them: U of "
+                          "E_ZX reaches to that of the stations alone");
+}
+
 void explain_parts(ModelResult& out) {
   if (out.straightness && !out.straightness->parts.empty())
     out.notes.push_back("E_ZX is that of the straightness and " +
@@ -174,6 +186,10 @@ void explain_lone_curve(const Model& model, const Solution& fit, ModelResult& ou
     out.notes.emplace_back(
         "the curve rests on one trace: a drift while it was read would look the same, and U does "
         "not hold it; a second reading, back, shows it");
+  if (curve_term(model) && curve_beside_least_noise(model, fit.linear, fit.noise, fit.estimate))
+    out.notes.emplace_back(
+        "so few readings do not tell the form of the slide from noise; standard_uncertainty, or "
+        "the slide read once more, does");
 }
 
 void explain_noise(const Solution& fit, ModelResult& out) {
@@ -303,6 +319,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   explain_scaling(fit, out);
   explain_resolution(fit, out);
   explain_other_form(model, fit, out);
+  explain_few_stations(model, out);
   explain_parts(out);
   explain_other_shapes(model, fit, out);
   explain_lone_curve(model, fit, out);

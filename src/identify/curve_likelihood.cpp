@@ -61,6 +61,14 @@ std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, d
   return out;
 }
 
+/// Square of what no change of (amplitudes, shapes) reaches.
+double square_beyond(const Compressed& compressed, const Eigen::VectorXd& prior_residuals) {
+  double whole = prior_residuals.squaredNorm();
+  for (const ProfileTriangle& profile : compressed.profiles)
+    whole += profile.free().rightCols<1>().squaredNorm();
+  return std::max(whole - compressed.target.squaredNorm(), 0.0);
+}
+
 /// Coefficients of the spline through heights at even knots, side by side.
 Eigen::MatrixXd spline_through(const Eigen::MatrixXd& heights) {
   const Eigen::Index count = heights.rows();
@@ -108,11 +116,17 @@ CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
   project_out(basis, target);
   information_ = curve.transpose() * curve;
   products_ = curve.transpose() * target;
+  freedom_ = -basis.cols();
+  for (std::size_t i = 0; i < linear.observations.size(); ++i)
+    freedom_ += linear.observations[i]->values.size() - linear.observations[i]->nuisances.cols();
   bow_.form = bow_form(knots_);
   const Eigen::VectorXd informed = information_ * bow_.form;
   const double of_data = informed.dot(bow_.form), of_prior = 1.0 / (bow_mm_ * bow_mm_);
   bow_.variance = 1.0 / (of_data + of_prior);
   bow_.mean = bow_.variance * products_.dot(bow_.form);
+  log_likelihood_ =
+      0.5 * (bow_.mean * products_.dot(bow_.form) - std::log1p(of_data * bow_mm_ * bow_mm_) -
+             target.squaredNorm() - square_beyond(compressed, data.prior_residuals));
   bow_.moved = bow_.variance * informed;
   bow_.determined = of_data > of_prior;
   products_ -= bow_.mean * informed;

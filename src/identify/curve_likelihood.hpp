@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,10 +50,16 @@ class CurveData {
   [[nodiscard]] const Eigen::MatrixXd& informed_kinks() const { return informed_kinks_; }
   /// (A + S) by #knots: how everything moves with the knots.
   [[nodiscard]] const Eigen::MatrixXd& carried() const { return carried_; }
+  /// Values, beside what is free.
+  [[nodiscard]] Eigen::Index freedom() const { return freedom_; }
+  /// Log of the likelihood of no curve but its bow, in units of the noise.
+  [[nodiscard]] double log_likelihood() const { return log_likelihood_; }
 
  private:
   Knots knots_;
   double bow_mm_ = 0.0;
+  Eigen::Index freedom_ = 0;
+  double log_likelihood_ = 0.0;
   CurveBow bow_;
   Eigen::MatrixXd information_, carried_, kinks_, informed_kinks_;
   Eigen::VectorXd products_;
@@ -107,6 +114,13 @@ class CurvePosterior {
   Eigen::MatrixXd kinks_, kinks_on_axes_;             // axesᵀ A of CurveData::kinks()
   Eigen::VectorXd kink_information_, kink_products_;  // of a kink alone
 };
+
+/// The knots under the smallest noise that noise_beside_curve() does not rule out, where it looks
+/// for one.
+std::optional<Eigen::VectorXd> curve_beside_least_noise(const Model& model,
+                                                        const Linearisation& linear,
+                                                        const std::vector<Noise>& noise,
+                                                        const Estimate& estimate);
 
 /// Second moments of the knots about `centre` under all hypotheses, each by its likelihood.
 Eigen::MatrixXd second_moments(const CurveData& data, const std::vector<Hypothesis>& hypotheses,

@@ -11,7 +11,57 @@
 namespace slideway {
 
 namespace {
+
 constexpr Eigen::Index kValuesPerDirection = 3;  // of a curve: fewer leave too little for a noise
+constexpr double kValuesPerKnot = 2.0;           // fewer do not tell a curve from noise
+constexpr int kHalvings = 6;                     // of the noise, to either side
+constexpr double kRuledOut = 9.0;                // difference in log likelihood: 1e-4
+constexpr double kAsLikely = 1.0;                // difference in log likelihood
+
+bool is_declared(const Observation* observation) {
+  return observation->profile->standard_uncertainty.has_value();
+}
+
+/// A size of the noise, with the priors of the curve that the data do not rule out beside it.
+struct NoiseSize {
+  double factor = 1.0;  // of its variances
+  std::vector<Hypothesis> likely;
+  CurveData data;
+  double log_likelihood = 0.0;  // with the likeliest of them
+};
+
+/// The noise from 2^-kHalvings to 2^kHalvings of what it is where a curve with a form of its own at
+/// each knot could be what was taken for it, and no uncertainty is declared; else the noise as it
+/// is.
+std::vector<NoiseSize> sizes_of(const Model& model, const Linearisation& linear,
+                                const std::vector<Noise>& noise, const Estimate& estimate) {
+  const ModelTerm& term = *curve_term(model);
+  std::vector<NoiseSize> out;
+  const auto add = [&](int halvings) {
+    const double factor = std::pow(4.0, -halvings);
+    std::vector<Noise> scaled;
+    for (const Noise& each : noise) scaled.push_back(each.scaled(factor));
+    CurveData data(term, linear, scaled, estimate);
+    std::vector<Hypothesis> likely = likely_priors(data);
+    const Hypothesis* const best = likeliest(likely);
+    const double of_curve = best ? std::max(best->log_likelihood, 0.0) : 0.0;
+    const double log_likelihood = data.log_likelihood() + of_curve -
+                                  0.5 * static_cast<double>(data.freedom()) * std::log(factor);
+    out.push_back({factor, std::move(likely), std::move(data), log_likelihood});
+  };
+  const CurveData now(term, linear, noise, estimate);
+  const bool is_open = static_cast<double>(now.freedom()) <
+                           kValuesPerKnot * static_cast<double>(now.knots().positions_mm.size()) &&
+                       std::ranges::none_of(linear.observations, is_declared);
+  for (int halvings = is_open ? -kHalvings : 0; halvings <= (is_open ? kHalvings : 0); ++halvings)
+    add(halvings);
+  return out;
+}
+
+double largest_likelihood(const std::vector<NoiseSize>& sizes) {
+  return std::ranges::max_element(sizes, {}, &NoiseSize::log_likelihood)->log_likelihood;
+}
+
 }  // namespace
 
 const ModelTerm* curve_term(const Model& model) {
@@ -64,11 +114,36 @@ CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,
   const std::vector<Hypothesis> likely = likely_priors(data);
   const Hypothesis* const best = likeliest(likely);
   const CurvePrior prior = best ? best->prior : *estimate.curve;
-  Eigen::Index values = 0;
+  Eigen::Index values = 0, known = 0;  // known: of a declared noise
   for (const Observation* observation : linear.observations)
-    values += observation->values.size() - observation->nuisances.cols();
+    (is_declared(observation) ? known : values) +=
+        observation->values.size() - observation->nuisances.cols();
   return {prior, CurvePosterior(data, prior.length_mm, prior.roughness)
-                     .determined(prior, values / kValuesPerDirection)};
+                     .determined(prior, known + values / kValuesPerDirection)};
+}
+
+double noise_beside_curve(const Model& model, const Linearisation& linear,
+                          const std::vector<Noise>& noise, const Estimate& estimate) {
+  const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate);
+  const double least = largest_likelihood(sizes) - kAsLikely;
+  return std::ranges::find_if(sizes,
+                              [&](const NoiseSize& each) { return each.log_likelihood >= least; })
+      ->factor;
+}
+
+std::optional<Eigen::VectorXd> curve_beside_least_noise(const Model& model,
+                                                        const Linearisation& linear,
+                                                        const std::vector<Noise>& noise,
+                                                        const Estimate& estimate) {
+  const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate);
+  if (sizes.size() == 1) return std::nullopt;
+  const double least = largest_likelihood(sizes) - kRuledOut;
+  const auto size = std::find_if(sizes.rbegin(), sizes.rend(), [&](const NoiseSize& each) {
+    return each.log_likelihood >= least;
+  });
+  const Hypothesis* const best = likeliest(size->likely);
+  if (!best) return std::nullopt;
+  return CurvePosterior(size->data, best->prior.length_mm, best->prior.roughness).mean(best->prior);
 }
 
 Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisation& linear,
@@ -77,11 +152,19 @@ Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisatio
   const CurveData data(*curve_term(model), linear, noise, estimate);
   const CurvePrior& prior = *estimate.curve;
   const CurvePosterior own(data, prior.length_mm, prior.roughness);
-  const std::vector<Hypothesis> likely = likely_priors(data);
-  const Eigen::Index count = data.knots().positions_mm.size();
-  Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(count, count);
-  if (!likely.empty())
-    moments = second_moments(data, likely, own.mean(prior)) - own.covariance(prior);
+  const Eigen::VectorXd centre = own.mean(prior);
+  Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(centre.size(), centre.size());
+  const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate);
+  const double most = largest_likelihood(sizes);
+  double sum = 0.0;
+  for (const NoiseSize& size : sizes) {
+    if (size.likely.empty()) continue;
+    const double weight = std::exp(size.log_likelihood - most);
+    sum += weight;
+    moments += weight * second_moments(size.data, size.likely, centre);
+  }
+  if (!(sum > 0.0)) return Eigen::MatrixXd::Zero(data.carried().rows(), data.carried().rows());
+  moments = moments / sum - own.covariance(prior);
   return data.carried() * moments * data.carried().transpose();
 }
 

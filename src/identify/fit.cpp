@@ -9,6 +9,7 @@
 #include "slideway/base/error.hpp"
 #include "slideway/identify/departures.hpp"
 #include "slideway/identify/left_out.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
 #include "slideway/identify/planned_fit.hpp"
 
@@ -80,13 +81,35 @@ Compressed refined(const Model& model, Solution& fit) {
   return compressed;
 }
 
+/// Per parameter: whether a convention fixes it.
+std::vector<bool> conventions(const Model& model) {
+  std::vector<bool> out;
+  for (const ModelTerm& term : model.terms)
+    for (const Parameter& each : term.effect->parameters()) out.push_back(each.by_convention);
+  return out;
+}
+
 /// Moves along the null directions to where their own parameters are 0: no prediction changes.
+/// Along those of conventions alone, to the least amplitudes: b_0 and b_1 at the zero of a slide
+/// that is far away are large differences of large numbers.
 void fix_gauge(const Model& model, const Compressed& compressed, Solution& fit) {
   if (fit.null.own.empty()) return;
+  const std::vector<bool> by_convention = conventions(model);
   Eigen::VectorXd change = Eigen::VectorXd::Zero(model.amplitudes() + model.shapes());
-  for (std::size_t d = 0; d < fit.null.own.size(); ++d)
-    change.head(model.amplitudes()) -= fit.parameters.values[fit.null.own[d]] *
-                                       fit.null.amplitudes.col(d).head(model.amplitudes());
+  auto moved = change.head(model.amplitudes());
+  Eigen::MatrixXd of_conventions(model.amplitudes(), 0);
+  for (std::size_t d = 0; d < fit.null.own.size(); ++d) {
+    const Eigen::VectorXd along = fit.null.amplitudes.col(d).head(model.amplitudes());
+    bool is_of_conventions = true;
+    for (std::size_t p = 0; p < by_convention.size(); ++p)
+      is_of_conventions &= by_convention[p] || fit.null.parameters(p, d) == 0.0;
+    if (is_of_conventions)
+      append_columns(of_conventions, along);
+    else
+      moved -= fit.parameters.values[fit.null.own[d]] * along;
+  }
+  const Eigen::MatrixXd basis = orthonormal(std::move(of_conventions));
+  moved -= basis * (basis.transpose() * (fit.estimate.amplitudes + moved));
   fit.estimate.amplitudes += change.head(model.amplitudes());
   for (std::size_t i = 0; i < compressed.profiles.size(); ++i) {
     const ProfileTriangle& profile = compressed.profiles[i];
@@ -161,6 +184,10 @@ bool settle(const Model& model, Solution& fit, Estimate& estimate,
   fit.linear.errors_of_causes = errors_of_causes(model, fit.linear, estimate);
   FitNoise noise =
       noise_of(model, curve ? beside_curve(model, fit.linear, *curve, estimate) : fit.linear);
+  if (curve) {
+    const double factor = noise_beside_curve(model, fit.linear, noise.profiles, estimate);
+    for (Noise& each : noise.profiles) each = each.scaled(factor);
+  }
   const bool settled = has_settled(fit.noise, noise.profiles);
   fit.noise = std::move(noise.profiles);
   fit.uncertainty.inflation = noise.inflation;
@@ -170,17 +197,31 @@ bool settle(const Model& model, Solution& fit, Estimate& estimate,
   return settled && curve->prior == before;
 }
 
-}  // namespace
-
-void require_enough_data(const Model& model) {
+/// Low-band values, and the unknowns they are to tell: without those that a convention fixes, as
+/// levelling takes them.
+std::pair<Eigen::Index, Eigen::Index> values_and_unknowns(const Model& model) {
   Eigen::Index values = 0, unknowns = model.amplitudes() + model.shapes();
   if (const ModelTerm* const curve = curve_term(model))
     unknowns -= curve->effect->knots()->positions_mm.size();  // they have a prior
-  for (const ModelTerm& term : model.terms) unknowns -= std::ssize(term.priors);
+  for (const ModelTerm& term : model.terms)
+    unknowns -= std::ssize(term.priors) +
+                std::ranges::count(term.effect->parameters(), true, &Parameter::by_convention);
   for (const Observation* observation : fitted_observations(model)) {
     values += observation->values.size() - observation->left_out();
     unknowns += std::ssize(observation->nuisance_names);
   }
+  return {values, unknowns};
+}
+
+}  // namespace
+
+Eigen::Index spare_values(const Model& model) {
+  const auto [values, unknowns] = values_and_unknowns(model);
+  return values - unknowns;
+}
+
+void require_enough_data(const Model& model) {
+  const auto [values, unknowns] = values_and_unknowns(model);
   if (values == 0) throw UsageError("no profile has role = \"fit\"");
   if (values < unknowns)
     throw DataError("the profiles have " + std::to_string(values) + " low-band values for " +

@@ -20,12 +20,19 @@ const DeclaredEffect* declared_polynomial(const Problem& problem, const Model& m
   return found == problem.effects.end() ? nullptr : &*found;
 }
 
-DeclaredEffect as_curve(const DeclaredEffect& polynomial, const TravelRange& range) {
-  constexpr double kPieces = 24.0;  // of a curve that tells slow structure
+/// With pieces short enough to tell slow structure, and no shorter than from station to station.
+DeclaredEffect as_curve(const DeclaredEffect& polynomial, const Model& model) {
+  constexpr double kPieces = 24.0, kFewest = 4.0;
+  const ModelTerm& term = *model.find_term(MotionError::straightness);
+  double pieces = kPieces;
+  if (is_of_slides(model, term))
+    pieces = std::clamp(static_cast<double>(station_positions(model, term).size() - 1), kFewest,
+                        kPieces);
   DeclaredEffect out{polynomial.name, polynomial.options, {}};
   out.options.degree.reset();
   out.options.form = Form::curve;
-  out.options.resolution_mm = std::max(range.slide_max - range.slide_min, 1e-9) / kPieces;
+  out.options.resolution_mm =
+      std::max(model.range.slide_max - model.range.slide_min, 1e-9) / pieces;
   return out;
 }
 
@@ -59,7 +66,7 @@ void allow_for_other_form(const Problem& problem, FittedModel& fitted) {
   const DeclaredEffect* const declared = declared_polynomial(problem, model);
   if (!declared) return;
   Model with = model;
-  append_term(with, as_curve(*declared, model.range), model.range);
+  append_term(with, as_curve(*declared, model), model.range);
   const ModelTerm& curve = with.terms.back();
   const Knots knots = *curve.effect->knots();
   Estimate estimate = fit.estimate;
@@ -70,7 +77,12 @@ void allow_for_other_form(const Problem& problem, FittedModel& fitted) {
   for (Eigen::MatrixXd& columns : linear.columns)  // the polynomial has offset and slope
     columns.middleCols(curve.first_amplitude, knots.first).setZero();
   const CurveData data(curve, linear, fit.noise, estimate);
-  const std::vector<Hypothesis> likely = likely_priors(data);
+  // Beside a polynomial that takes nearly all there is, nothing else bounds it; a long curve is
+  // part of one that is larger.
+  constexpr double kOfReadings = 10.0;
+  const double most = kOfReadings * first_curve_prior(model, knots).amplitude_mm;
+  std::vector<Hypothesis> likely = likely_priors(data);
+  std::erase_if(likely, [&](const Hypothesis& each) { return each.prior.amplitude_mm > most; });
   const Hypothesis* const best = likeliest(likely);
   if (!best || best->log_likelihood < -std::log(model.gates.lack_of_fit_p)) return;
   const ModelTerm& polynomial = *model.find_term(MotionError::straightness);

@@ -105,7 +105,14 @@ Linearisation common_trace(const Linearisation& all, const std::vector<std::size
   return out;
 }
 
-/// Noise of the mean of each group: see check_repeats().
+/// Of a slide, at so few stations that they tell no texture and may be all form.
+bool is_of_few(const Observation& observation, const Gates& gates) {
+  return observation.profile->setup.kind == Kind::slide &&
+         static_cast<double>(observation.values.size()) < gates.values_for_memory;
+}
+
+/// Noise of the mean of each group: see check_repeats(). That of few stations is what repeats
+/// differ by, alone.
 std::vector<Noise> noises_of_means(const Linearisation& all,
                                    const std::vector<std::vector<std::size_t>>& groups,
                                    const std::vector<Linearisation>& common,
@@ -118,15 +125,17 @@ std::vector<Noise> noises_of_means(const Linearisation& all,
   }
   std::vector<Noise> out = noise_beside(together, gates);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const auto allow_for = [&](Noise noise) {
-      if (noise.long_run_deviation() > out[g].long_run_deviation()) out[g] = std::move(noise);
-    };
-    allow_for(noise_beside(common[g], gates).front());
+    std::vector<Noise> allowed;
     for (const std::size_t i : groups[g])
       if (const auto deviation = deviation_from_repeats(all, i, odd, gates))
-        allow_for(estimate_noise({&*deviation, 1}, Eigen::MatrixXd(0, 0), gates)
-                      .front()
-                      .scaled(1.0 / static_cast<double>(groups[g].size())));
+        allowed.push_back(estimate_noise({&*deviation, 1}, Eigen::MatrixXd(0, 0), gates)
+                              .front()
+                              .scaled(1.0 / static_cast<double>(groups[g].size())));
+    if (allowed.empty() || !is_of_few(*common[g].observations.front(), gates)) {
+      allowed.push_back(std::move(out[g]));
+      allowed.push_back(noise_beside(common[g], gates).front());
+    }
+    out[g] = std::move(*std::ranges::max_element(allowed, {}, &Noise::long_run_deviation));
   }
   return out;
 }
@@ -220,6 +229,8 @@ std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gat
   finer.values_per_cosine = gates.values_per_repeated_cosine;
   finer.longest_memory = gates.longest_texture;  // texture of several lengths, no memory,
   finer.memory_odds = 1.0;                       // where the fine band asks for it
+  Gates whole = finer;  // few stations of a slide tell no texture, and may be all form
+  whole.values_per_cosine = 1.0;
   std::vector<std::vector<std::size_t>> groups = repeat_groups(linear, gates);
   const std::vector<OddRepeat> odd = odd_repeats(linear, gates);
   for (const OddRepeat& each : odd)
@@ -231,7 +242,8 @@ std::vector<PureErrorCheck> check_repeats(const Linearisation& linear, const Gat
     common.push_back(common_trace(linear, group, gates));
   const std::vector<Noise> noises = noises_of_means(linear, groups, common, odd, finer);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const LackOfFit found = lack_of_fit(common[g], {noises[g]}, finer);
+    const LackOfFit found = lack_of_fit(
+        common[g], {noises[g]}, is_of_few(*common[g].observations.front(), gates) ? whole : finer);
     PureErrorCheck check;
     for (const std::size_t i : groups[g])
       check.profiles.push_back(linear.observations[i]->profile->name);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "curve_likelihood.hpp"
 #include "form_columns.hpp"
 #include "reported.hpp"
 #include "residual.hpp"
@@ -114,38 +115,12 @@ class Locus {
   Setup setup_;
 };
 
-/// Slide coordinates of the readings, of a bridge those of its feet.
-Eigen::VectorXd station_positions(const Model& model, const ModelTerm& term) {
-  std::vector<double> x;
-  for (const Observation* observation : fitted_observations(model)) {
-    const Profile& profile = *observation->profile;
-    if (profile.setup.kind != Kind::slide || !term.acts_on(profile)) continue;
-    const Stations stations = profile.stations(model.machine);
-    const double foot = profile.setup.base_mm.value_or(0.0) / 2.0;
-    for (Eigen::Index i = 0; i < stations.size(); ++i)
-      for (const double at : {stations.slide(i) - foot, stations.slide(i) + foot}) x.push_back(at);
-  }
-  if (x.empty()) return {};
-  std::ranges::sort(x);
-  const double same = 1e-3 * (x.back() - x.front()) / static_cast<double>(x.size());
-  x.erase(std::unique(x.begin(), x.end(), [&](double a, double b) { return b - a <= same; }),
-          x.end());
-  return Eigen::Map<const Eigen::VectorXd>(x.data(), std::ssize(x));
-}
-
 /// As evenly as they lie, with both ends.
 Eigen::VectorXd at_most(Eigen::Index count, const Eigen::VectorXd& x) {
   if (x.size() <= count) return x;
   Eigen::VectorXd out(count);
   for (Eigen::Index i = 0; i < count; ++i) out[i] = x[i * (x.size() - 1) / (count - 1)];
   return out;
-}
-
-/// Whether a term acts in readings of the slide alone.
-bool is_of_slides(const Model& model, const ModelTerm& term) {
-  return std::ranges::none_of(fitted_observations(model), [&](const Observation* each) {
-    return each->profile->setup.kind != Kind::slide && term.acts_on(*each->profile);
-  });
 }
 
 /// The straightness with what is part of it under another name and is the slide's: all profiles
@@ -267,9 +242,10 @@ double reach_of_pairs(const Eigen::VectorXd& deviation, const SpreadBetween& spr
 
 /// @param columns      slide.form(x)
 /// @param form         the form itself, from its least-squares line
-/// @param of_stations  the lines of a curve's stations; empty: of no curve
+/// @param others       lines that the error may also be from, mm: of the stations alone where they
+///                     do not show what lies between them, of another form
 void add_errors(const Locus& slide, const Eigen::VectorXd& x, const Eigen::MatrixXd& columns,
-                const Eigen::VectorXd& form, const std::vector<ReferenceLine>& of_stations,
+                const Eigen::VectorXd& form, const std::vector<ReferenceLine>& others,
                 Straightness& out) {
   const Eigen::MatrixXd left = slide.left_of_curve(x);
   const double least_U = least_uncertainty(out.curve);
@@ -282,9 +258,9 @@ void add_errors(const Locus& slide, const Eigen::VectorXd& x, const Eigen::Matri
     Spread spread = spread_between(static_cast<Eigen::Index>(line.highest_at),
                                    static_cast<Eigen::Index>(line.lowest_at));
     double U = std::max(least_U, reach_of_pairs(deviation, spread_between) - line.error);
-    // What a curve does between stations rests on its prior alone: beside a joint it overshoots.
+    // What a form does between its stations rests on its prior or its degree alone.
     const double k = coverage_factor(spread.degrees_of_freedom);
-    for (const ReferenceLine& other : of_stations)
+    for (const ReferenceLine& other : others)
       if (other.kind == line.kind)
         U = std::max(U, std::abs(line.error - other.error) + k * spread.standard_uncertainty);
     spread.standard_uncertainty = std::max(spread.standard_uncertainty, U / k);
@@ -327,10 +303,16 @@ std::optional<Straightness> straightness_of(const Model& model, const ModelTerm&
   for (std::size_t i = 0; i < heights.size(); ++i)
     out.stations.push_back(
         {told[static_cast<Eigen::Index>(i)], *heights[i].value, heights[i].expanded_uncertainty});
-  std::vector<ReferenceLine> of_stations;
-  if (is_curve && is_of_slides(model, term))
-    of_stations = reference_lines(stations, slide.form(stations).rightCols<1>());
-  add_errors(slide, x, columns, forms.rightCols<1>(), of_stations, out);
+  std::vector<ReferenceLine> others;
+  if ((is_curve && is_of_slides(model, term)) || has_few_stations(model, term))
+    others = reference_lines(stations, slide.form(stations).rightCols<1>());
+  if (is_curve)
+    if (const auto knots = curve_beside_least_noise(model, fit.linear, fit.noise, fit.estimate)) {
+      const Eigen::Index first = term.first_amplitude + term.effect->knots()->first;
+      std::ranges::move(reference_lines(x, columns.middleCols(first, knots->size()) * *knots),
+                        std::back_inserter(others));
+    }
+  add_errors(slide, x, columns, forms.rightCols<1>(), others, out);
   return out;
 }
 
@@ -350,6 +332,16 @@ bool is_determined(const ModelTerm& term, const Solution& fit) {
         !parameters[p].by_convention)
       return false;
   return true;
+}
+
+std::optional<Eigen::Index> spare_stations(const Model& model) {
+  const ModelTerm* const form = model.find_term(MotionError::straightness);
+  if (!form || curve_term(model) || !is_of_slides(model, *form)) return std::nullopt;
+  Eigen::Index out = station_positions(model, *form).size();
+  for (const ModelTerm& term : model.terms)
+    if (term.effect->description().variable == IndependentVariable::slide)
+      out -= term.effect->amplitudes() + std::ssize(term.effect->shapes());
+  return out;
 }
 
 Eigen::MatrixXd deviations_from_ends(const Model& model, const ModelTerm& form, const Solution& fit,

@@ -10,6 +10,8 @@
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
+#include "slideway/effects/catalogue.hpp"
+#include "slideway/identify/curve_prior.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/straightness.hpp"
 
@@ -250,6 +252,9 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
   out.effect = candidate.name();
   out.parameter = first.name;
   out.unit = first.unit;
+  // A curve takes every form of the slide as its own: there is nothing that it would not show.
+  const bool is_in_curve = curve_term(design.fitted.model) &&
+                           is_part_of_straightness(candidate.term.effect->description());
   const std::vector<std::vector<double>> shapes = spread_shapes(candidate);
   const auto middle = std::ssize(shapes) / 2;
   std::ptrdiff_t nearest = std::ssize(shapes);  // places from the middle
@@ -262,7 +267,7 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
     if (design.targets.rows.rows() > 0) {
       const Moved moved = moved_unseen(design, one);
       raise(out.squareness_rad, moved.squareness_rad);
-      raise(out.straightness_um, moved.straightness_um);
+      if (!is_in_curve) raise(out.straightness_um, moved.straightness_um);
     }
     const Parameter& size = candidate.term.effect->parameters().front();
     const std::optional<double> limit = found_from(design, one);

@@ -6,6 +6,7 @@
 
 #include "kept.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/identify/straightness.hpp"
 
 namespace slideway {
 namespace {
@@ -21,6 +22,17 @@ bool says_the_same(const Candidate& in_model, const Candidate& candidate) {
     return q.empty() || (candidate.amplitudes() <= in_model.amplitudes() &&
                          !candidate.term.effect->description().of_face);
   return std::ranges::find_first_of(p, q) != p.end();
+}
+
+/// Of amplitudes and shapes, but for what a convention fixes.
+Eigen::Index unknowns_of(const Candidate& candidate) {
+  const Effect& effect = *candidate.term.effect;
+  return effect.amplitudes() + std::ssize(effect.shapes()) -
+         std::ranges::count(effect.parameters(), true, &Parameter::by_convention);
+}
+
+bool is_along_slide(const Candidate& candidate) {
+  return candidate.term.effect->description().variable == IndependentVariable::slide;
 }
 
 Model with(Model model, const std::vector<AcceptedEffect>& effects) {
@@ -66,7 +78,9 @@ ModelExtender::ModelExtender(const Problem& problem, const std::vector<Profile>&
       declared_(declared),
       limit_(limit),
       progress_(progress),
-      coarser_(search_band(problem, profiles, declared)) {
+      coarser_(search_band(problem, profiles, declared)),
+      spare_values_(spare_values(base().model)),
+      spare_stations_(spare_stations(base().model)) {
   if (progress_) progress_("making the columns of every candidate", 0.0);
   dictionary_ =
       make_dictionary(base().model, problem, base().fit.linear.prior_rows.rows(),
@@ -155,9 +169,20 @@ Searched ModelExtender::take_searched(const std::vector<AcceptedEffect>& effects
 }
 
 Candidates ModelExtender::candidates_beside(const std::vector<AcceptedEffect>& effects) const {
+  Eigen::Index values = spare_values_;
+  std::optional<Eigen::Index> stations = spare_stations_;
+  for (const AcceptedEffect& each : effects) {
+    values -= unknowns_of(*each.candidate);
+    if (stations && is_along_slide(*each.candidate)) *stations -= unknowns_of(*each.candidate);
+  }
+  const auto has_room = [&](const Candidate& candidate) {
+    const Eigen::Index unknowns = unknowns_of(candidate);
+    return unknowns < values && (!stations || !is_along_slide(candidate) || unknowns < *stations);
+  };
   Candidates out;
   for (const Candidate& candidate : dictionary_.candidates)
-    if (candidate.is_searched && std::ranges::none_of(effects, [&](const AcceptedEffect& effect) {
+    if (candidate.is_searched && has_room(candidate) &&
+        std::ranges::none_of(effects, [&](const AcceptedEffect& effect) {
           return says_the_same(*effect.candidate, candidate);
         }))
       out.push_back(&candidate);

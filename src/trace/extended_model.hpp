@@ -103,6 +103,8 @@ class ModelExtender {
   const TimeLimit& limit_;
   const Progress& progress_;
   std::unique_ptr<SearchBand> coarser_;
+  Eigen::Index spare_values_;                   // of base(): what more unknowns could rest on
+  std::optional<Eigen::Index> spare_stations_;  // and those along the slide
   Dictionary dictionary_;
   std::optional<Calibration> calibration_;
   std::map<Key, FittedModel> models_;

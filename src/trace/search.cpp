@@ -171,6 +171,11 @@ std::vector<Block> blocks_of(const Candidates& candidates, const std::vector<Fam
   return out;
 }
 
+/// Whether the readings do not carry every term of a higher degree: it would only be undetermined.
+bool lacks_terms(const Candidate& candidate, Eigen::Index rank) {
+  return candidate.raises_degree && rank < candidate.amplitudes();
+}
+
 }  // namespace
 
 double penalty(const Whitened& data, Eigen::Index unknowns) {
@@ -204,7 +209,7 @@ std::vector<Finding> search(const Whitened& data, const Candidates& candidates) 
                 const double gain = (root.root * products).squaredNorm();
                 const double bic = penalty(data, *candidates[c], root.rank) - gain;
                 const Finding found{candidates[c], atom, gain, bic, root.rank};
-                if (root.rank == 0) return;
+                if (root.rank == 0 || lacks_terms(*candidates[c], root.rank)) return;
                 const auto [at, is_first] = best[b].try_emplace(c, found);
                 if (bic < at->second.delta_bic) at->second = found;
               });

@@ -86,12 +86,12 @@ const BadInput kAmounts[] = {
         {.low_band = "[low_band]\nwavelet = \"db19\"\nlevel = 6\n"}),
     // b0 ... b9, and the offset and tilt that are free by default
     bad("FewerSamplesThanParameters", face_csv(8),
-        {"problem.toml: the profiles have 7 low-band values for 12 parameters",
+        {"problem.toml: the profiles have 7 low-band values for 10 parameters",
          "fewer parameters (a lower degree)"},
         {.low_band = "[low_band]\nlevel = 0\n",
          .effect = "[[effect]]\nname = \"straightness\"\ndegree = 9\n"}),
     bad("FewerLowBandValuesThanParameters", face_csv(64),
-        {"problem.toml: the profiles have 7 low-band values for 12 parameters"},
+        {"problem.toml: the profiles have 7 low-band values for 10 parameters"},
         {.low_band = "[low_band]\nlevel = 3\n",
          .effect = "[[effect]]\nname = \"straightness\"\ndegree = 9\n"}),
 };

@@ -2,6 +2,9 @@
 
 #include <optional>
 
+#include "identify/cases.hpp"
+#include "slideway/base/random.hpp"
+#include "slideway/effects/catalogue.hpp"
 #include "trace/faces.hpp"
 
 namespace slideway {
@@ -111,6 +114,38 @@ TEST(Search, RefusesByItsSignificance) {
   EXPECT_EQ(result.detection_limits.size(), 3U);
   for (const DetectionLimit& limit : result.detection_limits)
     EXPECT_GT(limit.value.value_or(0.0), 0.0);
+}
+
+/// A level of a foot spacing of 200 mm, on eight stretches of a way.
+std::vector<Profile> eight_readings(std::uint64_t seed) {
+  constexpr double kBase = 200.0;
+  RandomStream random(seed, "eight readings");
+  std::vector<double> middles, slopes;
+  for (int i = 0; i < 8; ++i) {
+    middles.push_back(kBase * (i + 0.5));
+    slopes.push_back(2e-5 * random.normal());
+  }
+  Profile out = cases::profile("way", Kind::slide, middles, slopes);
+  out.setup.quantity = Quantity::slope;
+  out.setup.base_mm = kBase;
+  out.free_tilt = false;
+  return {out};
+}
+
+// What may be missing is looked for with no more unknowns than there are readings to tell them, and
+// no polynomial is raised to a degree that the stations do not carry.
+TEST(FewReadings, AreSearchedForNoMoreThanTheyCanTell) {
+  for (const int degree : {2, 3, 4, 5, 6})
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      Problem problem = cases::problem(Lever::paper, 0, {cases::effect("straightness", degree)});
+      problem.trace.candidates = effect_names();
+      const Closed result = closed(problem, eight_readings(seed));
+      SCOPED_TRACE(story(result));
+      const FittedParameter& highest = result.final.parameters.back();
+      if (round_of(result, "straightness") != nullptr) {
+        EXPECT_TRUE(highest.identifiable) << highest.name;
+      }
+    }
 }
 
 }  // namespace

@@ -65,9 +65,17 @@ struct CurveEstimate {
 CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,
                              const std::vector<Noise>& noise, const Estimate& estimate);
 
+/// Of values too few to tell a form at each knot from noise, the noise is known by how likely they
+/// are under it and the likeliest curve: the factor of its variances, the largest one that is about
+/// as likely as any. 1 where they are enough, or where an uncertainty is declared.
+/// REQUIRES a curve_term().
+double noise_beside_curve(const Model& model, const Linearisation& linear,
+                          const std::vector<Noise>& noise, const Estimate& estimate);
+
 /// What the uncertainty of the prior adds to the covariance of (amplitudes, shapes): the second
-/// moment about the estimate of all priors, each by its likelihood, less the covariance under the
-/// one of the estimate. REQUIRES a curve_term().
+/// moment about the estimate of all priors, each by its likelihood, and of the sizes of the noise
+/// where noise_beside_curve() looks for one, less the covariance under those of the estimate.
+/// REQUIRES a curve_term().
 Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisation& linear,
                                           const std::vector<Noise>& noise,
                                           const Estimate& estimate);

@@ -48,6 +48,9 @@ struct Solution {
   std::vector<OtherShape> other_shapes;  // allow_for_other_shapes()
 };
 
+/// Low-band values of the fitted profiles beyond the unknowns of a model; below 0: too few.
+Eigen::Index spare_values(const Model& model);
+
 /// @throws UsageError  no profile is to be fitted
 /// @throws DataError   fewer low-band values than parameters
 void require_enough_data(const Model& model);
