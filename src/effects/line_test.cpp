@@ -1,7 +1,6 @@
 #include "line_test.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +16,7 @@ constexpr double kFarthestBeside = 12.0;  // with the width of a line
 constexpr double kIndependent = 8.0;      // of them under a Hann window: its noise is 1.5 bins wide
 constexpr double kMostReached = 0.01;  // of the square of a line beside, by the line itself folded
 constexpr Eigen::Index kTerms = 4;     // of a cubic
+constexpr double kOnePhase = 1e-9;     // of a square: half a cycle a sample has cosines alone
 
 /// @param others  orthonormal columns
 bool are_apart(const Eigen::MatrixX2d& own, const Eigen::MatrixXd& others, double share) {
@@ -96,8 +96,9 @@ Eigen::MatrixXd LineTest::columns(const std::vector<Eigen::VectorXd>& phases) co
 double LineTest::gain(const Eigen::MatrixX2d& own) const {
   const Eigen::Matrix2d gram = own.transpose() * own;
   const Eigen::Vector2d products = own.transpose() * values_;
-  const Eigen::FullPivLU<Eigen::Matrix2d> lu(gram);
-  return lu.isInvertible() ? products.dot(lu.solve(products)) : 0.0;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix2d> inverse;
+  inverse.setThreshold(kOnePhase);
+  return products.dot(inverse.compute(gram).solve(products));
 }
 
 LineTest::Beside LineTest::gain_beside(const Eigen::MatrixX2d& wave,
@@ -131,7 +132,8 @@ double LineTest::p_value(const Eigen::VectorXd& phase) const {
 
 bool LineTest::is_fast(const Eigen::VectorXd& phase) const {
   const Eigen::ArrayXd own = steps_of(phase);
-  return (own - own.round()).abs().mean() > kFarthestBeside * turn_of_form_;
+  const double cycles = (own - own.round()).abs().mean();  // a sample, as sampling folds it
+  return cycles > kFarthestBeside * turn_of_form_ && 0.5 - cycles > turn_of_form_;
 }
 
 bool LineTest::stands_apart(const Eigen::VectorXd& phase,

@@ -22,7 +22,8 @@ class LineTest {
   // Probability that noise makes a line as strong. `phase` (rad), one for each value.
   [[nodiscard]] double p_value(const Eigen::VectorXd& phase) const;
 
-  // Whether the lines beside it are faster than what the form and a slow noise leave.
+  // Whether the lines beside it are faster than what the form and a slow noise leave, and its phase
+  // is shown: sampling has not folded it to half a cycle a sample.
   [[nodiscard]] bool is_fast(const Eigen::VectorXd& phase) const;
 
   // Of lines: amplitudes of the cosine and the sine of each, fitted together, and their standard

@@ -29,7 +29,8 @@ double matern(double roughness, double u) {
 /// Every amplitude of one length and roughness: with the correlation's root L and the coefficients
 /// L⁻¹ of the knots, a prior a² I. Beside each, a kink at every knot, all of them as likely as
 /// none.
-std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, double roughness) {
+std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, double roughness,
+                                         Kinks kinks) {
   const Eigen::MatrixXd root = correlation_root(data.knots(), length, roughness);
   const Eigen::MatrixXd inner = root.transpose() * data.information() * root;
   const double most = inner.trace();
@@ -39,7 +40,7 @@ std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, d
   const double last = std::sqrt(kMostInformation / most);
   for (double a = std::sqrt(kLeastInformation / most); a < last; a *= kAmplitudeStep)
     out.push_back({{a, length, roughness, data.bow_mm()}, prior.log_evidence(a * a)});
-  if (!(data.bow_mm() > 0.0)) return out;
+  if (!(data.bow_mm() > 0.0) || kinks == Kinks::none) return out;
   const Eigen::Index smooth = std::ssize(out);
   Eigen::RowVectorXd amplitudes(smooth), without(smooth);
   for (Eigen::Index i = 0; i < smooth; ++i) {
@@ -152,7 +153,7 @@ Eigen::VectorXd bow_form(const Knots& knots) {
   return spline_through(((x - first) * (last - x) / (half * half)).matrix());
 }
 
-std::vector<Hypothesis> likely_priors(const CurveData& data) {
+std::vector<Hypothesis> likely_priors(const CurveData& data, Kinks kinks) {
   const Eigen::VectorXd& x = data.knots().positions_mm;
   const double travel = x[x.size() - 1] - x[0];
   std::vector<CurvePrior> shapes;
@@ -162,7 +163,7 @@ std::vector<Hypothesis> likely_priors(const CurveData& data) {
       shapes.push_back({0.0, std::min(length, 2.0 * travel), roughness});
   std::vector<std::vector<Hypothesis>> found(shapes.size());
   parallel_for(shapes.size(), [&](std::size_t i) {
-    found[i] = along_amplitudes(data, shapes[i].length_mm, shapes[i].roughness);
+    found[i] = along_amplitudes(data, shapes[i].length_mm, shapes[i].roughness, kinks);
   });
   std::vector<Hypothesis> out;
   double smooth = -INFINITY, best = -INFINITY;

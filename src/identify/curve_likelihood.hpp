@@ -72,8 +72,9 @@ struct Hypothesis {
 };
 
 /// Those of the grid that the data do not rule out, by roughness, length and amplitude; with kinks
-/// about as high as a bow, if it has a height.
-std::vector<Hypothesis> likely_priors(const CurveData& data);
+/// about as high as a bow, if it has a height, or smooth ones alone.
+enum class Kinks { allowed, none };
+std::vector<Hypothesis> likely_priors(const CurveData& data, Kinks kinks = Kinks::allowed);
 
 /// The likeliest, or null.
 const Hypothesis* likeliest(const std::vector<Hypothesis>& hypotheses);

@@ -34,25 +34,26 @@ struct NoiseSize {
 /// each knot could be what was taken for it, and no uncertainty is declared; else the noise as it
 /// is.
 std::vector<NoiseSize> sizes_of(const Model& model, const Linearisation& linear,
-                                const std::vector<Noise>& noise, const Estimate& estimate) {
+                                const std::vector<Noise>& noise, const Estimate& estimate,
+                                Kinks kinks) {
   const ModelTerm& term = *curve_term(model);
   std::vector<NoiseSize> out;
+  const CurveData now(term, linear, noise, estimate);
+  const bool is_open = static_cast<double>(now.freedom()) <
+                           kValuesPerKnot * static_cast<double>(now.knots().positions_mm.size()) &&
+                       std::ranges::none_of(linear.observations, is_declared);
   const auto add = [&](int halvings) {
     const double factor = std::pow(4.0, -halvings);
     std::vector<Noise> scaled;
     for (const Noise& each : noise) scaled.push_back(each.scaled(factor));
     CurveData data(term, linear, scaled, estimate);
-    std::vector<Hypothesis> likely = likely_priors(data);
+    std::vector<Hypothesis> likely = likely_priors(data, kinks);
     const Hypothesis* const best = likeliest(likely);
     const double of_curve = best ? std::max(best->log_likelihood, 0.0) : 0.0;
     const double log_likelihood = data.log_likelihood() + of_curve -
                                   0.5 * static_cast<double>(data.freedom()) * std::log(factor);
     out.push_back({factor, std::move(likely), std::move(data), log_likelihood});
   };
-  const CurveData now(term, linear, noise, estimate);
-  const bool is_open = static_cast<double>(now.freedom()) <
-                           kValuesPerKnot * static_cast<double>(now.knots().positions_mm.size()) &&
-                       std::ranges::none_of(linear.observations, is_declared);
   for (int halvings = is_open ? -kHalvings : 0; halvings <= (is_open ? kHalvings : 0); ++halvings)
     add(halvings);
   return out;
@@ -124,7 +125,7 @@ CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,
 
 double noise_beside_curve(const Model& model, const Linearisation& linear,
                           const std::vector<Noise>& noise, const Estimate& estimate) {
-  const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate);
+  const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate, Kinks::none);
   const double least = largest_likelihood(sizes) - kAsLikely;
   return std::ranges::find_if(sizes,
                               [&](const NoiseSize& each) { return each.log_likelihood >= least; })
@@ -135,7 +136,7 @@ std::optional<Eigen::VectorXd> curve_beside_least_noise(const Model& model,
                                                         const Linearisation& linear,
                                                         const std::vector<Noise>& noise,
                                                         const Estimate& estimate) {
-  const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate);
+  const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate, Kinks::none);
   if (sizes.size() == 1) return std::nullopt;
   const double least = largest_likelihood(sizes) - kRuledOut;
   const auto size = std::find_if(sizes.rbegin(), sizes.rend(), [&](const NoiseSize& each) {
@@ -154,7 +155,7 @@ Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisatio
   const CurvePosterior own(data, prior.length_mm, prior.roughness);
   const Eigen::VectorXd centre = own.mean(prior);
   Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(centre.size(), centre.size());
-  const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate);
+  const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate, Kinks::allowed);
   const double most = largest_likelihood(sizes);
   double sum = 0.0;
   for (const NoiseSize& size : sizes) {

@@ -230,7 +230,8 @@ void require_columns(const Model& model, const ModelTerm& term, const Profile& p
     throw UsageError("profile '" + profile.name + "': effect '" + term.name + "': " + fault);
 }
 
-/// Refuses declared effects and candidates that are not finite on a profile.
+/// Refuses declared effects and candidates that are not finite on a profile, and candidates that no
+/// profile can have of those they name: others may be a shop's, for other problems.
 void require_columns(const Model& model, const std::vector<DeclaredEffect>& candidates) {
   std::vector<ModelTerm> terms = model.terms;
   for (const DeclaredEffect& own : candidates) {
@@ -238,6 +239,7 @@ void require_columns(const Model& model, const std::vector<DeclaredEffect>& cand
     term.name = own.name;
     term.effect = make_effect(own.name, own.options, model.machine, model.range);
     term.profiles = own.options.profiles;
+    if (!own.options.profiles.empty()) require_profile(model, own, term);
   }
   for (const ModelTerm& term : terms)
     for (const Observation& observation : model.observations)

@@ -14,6 +14,7 @@
 #include "slideway/identify/curve_prior.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/straightness.hpp"
+#include "undescribed.hpp"
 
 namespace slideway {
 namespace {

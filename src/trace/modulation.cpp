@@ -36,16 +36,25 @@ double amplitude_on(const Model& model, const Refined& refined, const Profile& p
 }
 
 /// Largest amplitude, mm, that feed marks can have where the lines of an effect in one face lie:
-/// that of the lowest harmonic that sampling folds there, nearer than the gate folded_widths.
-/// Infinite where the nose is not known, 0 where no harmonic is near.
+/// that of the lowest harmonic that is folded there, nearer than the gate folded_widths. Infinite
+/// where the nose is not known, 0 where no harmonic is near.
 double largest_mark_at(const Profile& profile, const Effect& effect,
-                       const std::vector<LineBand>& lines, const Gates& gates) {
+                       const std::vector<LineBand>& lines, double samples_a_value,
+                       const Gates& gates) {
   double out = INFINITY;
   for (const LineBand& line : lines) {
-    const auto mark = mark_at(profile, cycles_along(profile.setup, effect, line), gates);
+    const auto mark =
+        mark_at(profile, cycles_along(profile.setup, effect, line), gates, samples_a_value);
     out = std::min(out, mark ? largest_feed_mark(profile.setup, *mark).value_or(INFINITY) : 0.0);
   }
   return out;
+}
+
+/// How much of its square a profile's white residual loses without what an effect takes of it.
+double gain_in(const Whitened& data, const Eigen::VectorXd& fitted, std::size_t profile) {
+  const auto own = fitted.segment(data.first_row(profile), data.count(profile));
+  return 2.0 * own.dot(data.residual().segment(data.first_row(profile), data.count(profile))) -
+         own.squaredNorm();
 }
 
 /// Whether cuts of different feeds show a wave for certain, and one serves all cuts as well as one
@@ -62,8 +71,7 @@ bool is_one_wave(const std::vector<const Observation*>& observations, const Whit
     const std::optional<double> feed = setup.feed_per_revolution();
     if (!feed) return false;
     cuts.push_back(i);
-    if (fitted.segment(data.first_row(i), data.count(i)).norm() > gates.size)
-      feeds.push_back(*feed);
+    if (gain_in(data, fitted, i) > gates.size * gates.size) feeds.push_back(*feed);
   }
   if (feeds.size() < 2 || std::ranges::max(feeds) < kOtherFeed * std::ranges::min(feeds))
     return false;
@@ -82,16 +90,19 @@ bool is_one_wave(const std::vector<const Observation*>& observations, const Whit
 
 }  // namespace
 
-std::optional<int> mark_at(const Profile& profile, double cycles, const Gates& gates) {
+std::optional<int> mark_at(const Profile& profile, double cycles, const Gates& gates,
+                           double samples_a_value) {
   const Setup& setup = profile.setup;
   const auto samples = static_cast<double>(profile.positions.size());
   if (setup.kind != Kind::face || !setup.feed_mm_per_min || !setup.spindle_rpm || samples < 2.0)
     return std::nullopt;
   const double spacing = (setup.last_mm - setup.first_mm) / (samples - 1.0);
-  const double marks = spacing * *setup.spindle_rpm / *setup.feed_mm_per_min;  // cycles a sample
-  const double own = folded(cycles / (samples - 1.0));
+  const double marks =  // cycles a value
+      samples_a_value * spacing * *setup.spindle_rpm / *setup.feed_mm_per_min;
+  const double own = folded(samples_a_value * cycles / (samples - 1.0));
   for (int m = 1; m <= static_cast<int>(gates.feed_harmonics); ++m)
-    if (std::abs(own - folded(m * marks)) * samples <= gates.folded_widths) return m;
+    if (std::abs(own - folded(m * marks)) * samples / samples_a_value <= gates.folded_widths)
+      return m;
   return std::nullopt;
 }
 
@@ -128,7 +139,7 @@ std::string part_of_a_line(const Model& model, const Eigen::VectorXd& shapes,
 }
 
 bool is_of_feed_marks(const Model& model, const Whitened& data, const Refined& refined,
-                      const Eigen::VectorXd& fitted) {
+                      const Eigen::VectorXd& fitted, Folding folding) {
   const ModelTerm& own = refined.candidate->term;
   const std::vector<const Observation*> observations = fitted_observations(model);
   bool folded_in_one = false;
@@ -138,11 +149,14 @@ bool is_of_feed_marks(const Model& model, const Whitened& data, const Refined& r
     if (!own.acts_on(profile)) continue;
     const auto lines = own.effect->lines(profile.stations(model.machine), refined.shape);
     if (lines.empty()) return false;
-    const double most = largest_mark_at(profile, *own.effect, lines, model.gates);
+    const double samples_a_value = folding == Folding::by_low_band
+                                       ? std::ldexp(1.0, observations[i]->low_band.options().level)
+                                       : 1.0;
+    const double most = largest_mark_at(profile, *own.effect, lines, samples_a_value, model.gates);
     if (most > 0.0 && amplitude_on(model, refined, profile) <= most)
       folded_in_one = true;
     else
-      elsewhere += fitted.segment(data.first_row(i), data.count(i)).squaredNorm();
+      elsewhere += gain_in(data, fitted, i);
   }
   return folded_in_one && elsewhere < model.gates.size * model.gates.size &&
          !is_one_wave(observations, data, refined, fitted, model.gates);

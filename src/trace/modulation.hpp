@@ -9,7 +9,12 @@ namespace slideway {
 
 /// The lowest harmonic of the feed marks that sampling folds to a line of so many cycles along a
 /// trace, nearer than the gate folded_widths; none does, or the feed is not known.
-std::optional<int> mark_at(const Profile& profile, double cycles, const Gates& gates);
+/// @param samples_a_value  1 of the samples; of a low band how many each of its values stands for
+std::optional<int> mark_at(const Profile& profile, double cycles, const Gates& gates,
+                           double samples_a_value = 1.0);
+
+/// What has folded a line to where it is: sampling, or the low band one that the samples have.
+enum class Folding { by_sampling, by_low_band };
 
 /// Whether an effect is a wave in a fitted profile: it makes lines.
 bool is_wave(const Model& model, const ModelTerm& term, std::span<const double> shape);
@@ -23,12 +28,12 @@ bool is_wave(const Model& model, const ModelTerm& term, std::span<const double> 
 std::string part_of_a_line(const Model& model, const Eigen::VectorXd& shapes,
                            const Refined& refined);
 
-/// Whether sampling folds harmonics of the feed marks that can be as large to where the lines of an
+/// Whether harmonics of the feed marks that can be as large are folded to where the lines of an
 /// effect of faces are: in all of them but those that together do not show it for certain
 /// (Gates::size). Not where one wave serves cuts of different feeds: their marks are of different
 /// depths.
 /// @param fitted  what the effect takes of the white residual
 bool is_of_feed_marks(const Model& model, const Whitened& data, const Refined& refined,
-                      const Eigen::VectorXd& fitted);
+                      const Eigen::VectorXd& fitted, Folding folding);
 
 }  // namespace slideway

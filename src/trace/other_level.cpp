@@ -5,6 +5,7 @@
 #include "other_level.hpp"
 #include "search.hpp"
 #include "slideway/identify/noise_model.hpp"
+#include "undescribed.hpp"
 
 namespace slideway {
 namespace {

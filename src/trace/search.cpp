@@ -187,7 +187,7 @@ double penalty(const Whitened& data, const Candidate& candidate, Eigen::Index ra
 }
 
 Priority priority_of(const Candidate& candidate, double delta_bic) {
-  constexpr double kStep = 1e-3;  // of a difference in BIC
+  constexpr double kStep = 0.1;  // of a difference in BIC: that of one optimum found twice
   const std::vector<Parameter>& parameters = candidate.term.effect->parameters();
   return {std::round(delta_bic / kStep),
           std::ranges::min_element(parameters, {}, &Parameter::gauge)->gauge};

@@ -14,6 +14,7 @@
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/low_band_lines.hpp"
 #include "slideway/identify/noise_model.hpp"
+#include "undescribed.hpp"
 
 namespace slideway {
 namespace {
@@ -128,14 +129,21 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     tested.p_value = calibration.p_value(-tested.delta_bic_beside());
     tested.part_of = part_of_a_line(model, fit.estimate.shapes, tested.refined);
     const std::optional<std::size_t> alone = only(*finding.candidate);
-    if (alone && !finding.candidate->is_fast &&
-        is_too_fine(model, finding.candidate->term, tested.refined.shape,
-                    *fit.linear.observations[*alone]))
-      tested.folded = "its profile has too few low-band values a cycle";
-    else if ((tested.of_feed_marks = is_of_feed_marks(model, data, tested.refined, tested.fitted)))
+    const bool is_fine = alone && !finding.candidate->is_fast &&
+                         is_too_fine(model, finding.candidate->term, tested.refined.shape,
+                                     *fit.linear.observations[*alone]);
+    const bool is_in_samples = samples.have(tested.refined);
+    const auto is_of_marks = [&](Folding folding) {
+      return is_of_feed_marks(model, data, tested.refined, tested.fitted, folding);
+    };
+    if (is_of_marks(Folding::by_sampling)) {
+      tested.of_feed_marks = true;
       tested.folded = "its line is that of the feed marks, folded by sampling";
-    else if (!samples.have(tested.refined))
-      tested.folded = "the samples do not have its line: the low band has folded another";
+    } else if (is_fine || !is_in_samples) {
+      tested.of_feed_marks = !is_in_samples && is_of_marks(Folding::by_low_band);
+      tested.folded = is_fine ? "its profile has too few low-band values a cycle"
+                              : "the samples do not have its line: the low band has folded another";
+    }
     return tested;
   };
   const auto worth = [&](double most) {
@@ -347,31 +355,6 @@ std::vector<const TestedCandidate*> SearchRound::outranked(const TestedCandidate
                                                            const Gates& gates) const {
   std::vector<const TestedCandidate*> out = as_good_as(chosen, gates);
   std::erase_if(out, [&](const auto* each) { return !ranks_below(*each, chosen); });
-  return out;
-}
-
-std::size_t count_of(const FreeValues& values) {
-  std::size_t out = 0;
-  for (const ValueIndices& each : values) out += each.size();
-  return out;
-}
-
-FreeValues undescribed_beside(const Model& model, const Solution& fit,
-                              const std::vector<Noise>& noise, const Eigen::VectorXd& suspect) {
-  FreeValues out;
-  Eigen::Index first = 0;
-  for (std::size_t i = 0; i < fit.linear.observations.size(); ++i) {
-    const Observation& observation = *fit.linear.observations[i];
-    Eigen::VectorXd curve = steep_curve(model, fit.estimate, observation);
-    if (suspect.size() > 0) curve += suspect.segment(first, curve.size());
-    const ValueIndices known = left_out_values(observation);
-    ValueIndices either, &own = out.emplace_back();
-    std::ranges::set_union(
-        undescribed_values(model, observation, curve, noise[i].standard_deviation()),
-        values_beside_steps(model, fit.estimate, observation), std::back_inserter(either));
-    std::ranges::set_difference(either, known, std::back_inserter(own));
-    first += observation.values.size();
-  }
   return out;
 }
 

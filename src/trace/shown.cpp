@@ -48,6 +48,7 @@ struct Beside {
   double taken_by_whole = 0.0, columns_of_whole = 0.0;
   double degrees = 0.0;  // of freedom of what is fast
   double noise = 0.0;    // variance of a value, where other effects do not raise it
+  Eigen::MatrixXd slow;  // what is as slow as cosines beside the model, orthonormal
 
   Beside(const Model& model, const Estimate& estimate, const Observation& observation,
          const Eigen::MatrixXd& of_parts, const Eigen::MatrixXd& of_whole, double noise_of_fit) {
@@ -59,8 +60,7 @@ struct Beside {
     images = all.leftCols(parts);
     const Eigen::MatrixXd form = orthonormal(all.rightCols(linear.cols()));
     project_out(form, all);
-    const Eigen::MatrixXd slow =
-        orthonormal(levelled(observation, slow_cosines(n, slow_cosine_count(n, model.gates))));
+    slow = orthonormal(levelled(observation, slow_cosines(n, slow_cosine_count(n, model.gates))));
     project_out(slow, all);
     const Eigen::VectorXd values = all.col(parts + of_whole.cols());
     const Eigen::MatrixXd whole = orthonormal(all.middleCols(parts, of_whole.cols()));
@@ -84,21 +84,28 @@ struct Beside {
   }
 
   /// Of the images together, to be expected.
-  [[nodiscard]] double square() const {
-    const Eigen::Index parameters = images.cols() / 2;
-    return images.leftCols(parameters).rowwise().sum().squaredNorm() +
-           images.rightCols(parameters).squaredNorm();
+  [[nodiscard]] double square() const { return square_of(images); }
+
+  /// The slow part of that: few values of noise hide it.
+  [[nodiscard]] double slow_square() const { return square_of(slow.transpose() * images); }
+
+ private:
+  static double square_of(const Eigen::MatrixXd& columns) {
+    const Eigen::Index parameters = columns.cols() / 2;
+    return columns.leftCols(parameters).rowwise().sum().squaredNorm() +
+           columns.rightCols(parameters).squaredNorm();
   }
 };
 
 constexpr double kLeast = 0.5;    // of the noise of a value, or of what the samples say
 constexpr double kCertain = 2.0;  // standard uncertainties
 
-/// Whether the image is not far below the noise of the low band, and what is fast in that does not
-/// have for certain less than half of it.
+/// Whether the image is not far below the noise of the low band, or its slow part stands out of
+/// that, and what is fast in the low band does not have for certain less than half of it.
 bool has_image(const Beside& beside) {
   const double rest = beside.after / beside.degrees;
-  return beside.square() >= kLeast * kLeast * beside.degrees * beside.noise &&
+  return (beside.square() >= kLeast * kLeast * beside.degrees * beside.noise ||
+          beside.slow_square() >= kCertain * kCertain * beside.noise) &&
          beside.shared + kCertain * std::sqrt(rest * beside.of_sum) >= kLeast * beside.of_sum;
 }
 
@@ -139,15 +146,16 @@ std::vector<std::size_t> seen_in(const Beside& beside, const ShownBySamples& sho
 }
 
 /// The mean of both halves in the place of each, where the low band does not show the difference:
-/// it changes a value by less than half its noise. @return whether it does not
-/// @param noise  variance of a value
+/// it changes a value by less than half its noise, and what is not known of it is not seen where it
+/// is slow. @return whether it does not
 bool join_halves(const Model& model, const std::string& name, const Observation& observation,
-                 double noise, ShownBySamples& shown) {
+                 const Beside& beside, ShownBySamples& shown) {
   EffectOptions options = shown.options;
   options.profiles = {observation.profile->name};
   const ModelTerm term = term_of(model, name, options);
   const auto count = std::ssize(shown.values);
   Eigen::VectorXd apart(count);
+  Eigen::MatrixXd unsure = Eigen::MatrixXd::Zero(count, count);
   std::vector<Prior> means;
   for (std::size_t k = 0; k + 3 < shown.values.size(); k += 4)
     for (const std::size_t p : {k, k + 1}) {  // cosine and sine of the near half, then the far one
@@ -156,12 +164,19 @@ bool join_halves(const Model& model, const std::string& name, const Observation&
       apart[static_cast<Eigen::Index>(p)] = half;
       apart[static_cast<Eigen::Index>(p + 2)] = -half;
       const double uncertainty = std::hypot(near.standard_uncertainty, far.standard_uncertainty);
+      unsure(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(p)) = 0.5 * uncertainty;
+      unsure(static_cast<Eigen::Index>(p + 2), static_cast<Eigen::Index>(p)) = -0.5 * uncertainty;
       means.push_back({near.parameter, near.value - half, std::hypot(half, 0.5 * uncertainty)});
     }
-  const Eigen::VectorXd image =
-      low_band_columns(model, term, observation, {}) * term.effect->from_parameters(apart);
-  if (image.squaredNorm() > kLeast * kLeast * noise * static_cast<double>(image.size()))
+  const Eigen::MatrixXd columns = low_band_columns(model, term, observation, {});
+  const Eigen::VectorXd image = columns * term.effect->from_parameters(apart);
+  if (image.squaredNorm() > kLeast * kLeast * beside.noise * static_cast<double>(image.size()))
     return false;
+  Eigen::MatrixXd open(image.size(), count);
+  for (Eigen::Index k = 0; k < count; ++k)
+    open.col(k) = columns * term.effect->from_parameters(unsure.col(k));
+  open = beside.slow.transpose() * levelled(observation, std::move(open));
+  if (open.squaredNorm() > kCertain * kCertain * beside.noise) return false;
   shown.options.each_half = false;
   shown.values = std::move(means);
   return true;
@@ -188,7 +203,7 @@ std::optional<ShownEffect> shown_in(const FittedModel& declared, const std::stri
                   noise.standard_deviation());
   };
   Beside beside = beside_marks();
-  if (seen->options.each_half && join_halves(model, name, observation, beside.noise, *seen))
+  if (seen->options.each_half && join_halves(model, name, observation, beside, *seen))
     beside = beside_marks();
   if (beside.degrees < 1.0) return std::nullopt;
   ShownEffect out{{name, whole, {}}, seen->p_value};

@@ -203,5 +203,28 @@ TEST_F(OwnEffects, ThatAreNotFiniteOnAProfileAreRefusedWithThePlace) {
   EXPECT_THAT(why(with("[[trace.candidate]]\n" + pole)), HasSubstr(expected));
 }
 
+// A shop's own effects may be for slopes where a problem has heights; one that names its profiles
+// may not.
+TEST_F(OwnEffects, AreRefusedInProfilesOfAnotherQuantity) {
+  const auto why = [&](const std::string& text) -> std::string {
+    const Problem problem = read_problem(write(text + "[truth]\nsamples = 100\n"));
+    try {
+      (void)simulate(problem);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string bend =
+      "name = \"formula\"\nas = \"bend\"\nformula = \"a * tanh(r - 5)\"\n"
+      "parameters = [{ name = \"a\", unit = \"urad\" }]\n";
+  const std::string here = "profiles = [\"feed2\"]\n";
+  const auto refused =
+      HasSubstr("effect 'bend' is in no profile; accepted: a size in um for heights");
+  EXPECT_EQ(why(with("[[trace.candidate]]\n" + bend)), "");
+  EXPECT_THAT(why(with("[[trace.candidate]]\n" + bend + here)), refused);
+  EXPECT_THAT(why(with("[[effect]]\n" + bend)), refused);
+}
+
 }  // namespace
 }  // namespace slideway

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <utility>
 
 #include "../linear_effect.hpp"
 #include "../variable_range.hpp"
@@ -21,6 +22,35 @@ constexpr double kSlowest = 2.0;      // times the log: a first-order lag that i
 constexpr double kWidestGap = 0.2;    // of a profile's stretch on the clock
 constexpr double kEven = 1.5;         // mean spacings: what is wider is a gap
 constexpr double kOfTheEnds = 1e-9;   // rounding of where a log and a profile begin
+
+/// Mean slope of a function over steps; of two that touch, their common end is asked once.
+template <typename Function>
+class MeanSlope {
+ public:
+  explicit MeanSlope(Function function) : function_(std::move(function)) {}
+
+  /// Over [t - width/2, t + width/2].
+  double operator()(double t, double width) {
+    const End low = at(t - width / 2.0, width), high = at(t + width / 2.0, width);
+    low_ = low, high_ = high;
+    return (high.value - low.value) / width;
+  }
+
+ private:
+  struct End {
+    double place = NAN, value = 0.0;
+  };
+
+  End at(double place, double width) const {
+    constexpr double kSame = 1e-9;  // of a step
+    for (const End& known : {low_, high_})
+      if (std::abs(known.place - place) <= kSame * width) return known;
+    return {place, function_(place)};
+  }
+
+  Function function_;
+  End low_, high_;
+};
 
 /// A quantity that is straight between its places, constant beyond them, after a first-order lag,
 /// and its integral.
@@ -48,10 +78,10 @@ class Response {
     return lagged_at(before(t), t);
   }
 
-  /// Mean over [t - width/2, t + width/2].
-  [[nodiscard]] double mean(double t, double width) const {
-    if (!(width > 0.0)) return value(t);
-    return (integral(t + width / 2.0) - integral(t - width / 2.0)) / width;
+  /// Means over steps of this width about each of some places; of none, the value.
+  [[nodiscard]] auto means(double width) const {
+    return [this, width, mean = MeanSlope([this](double t) { return integral(t); })](
+               double t) mutable { return width > 0.0 ? mean(t, width) : value(t); };
   }
 
   /// Of the value in time; right of a place where there is no lag.
@@ -61,18 +91,18 @@ class Response {
     if (tau_ <= 0.0) return p.slope;
     return (p.value + p.slope * (t - p.at) - lagged_at(p, t)) / tau_;
   }
-  [[nodiscard]] double mean_rate(double t, double width) const {
-    if (!(width > 0.0)) return rate(t);
-    return (value(t + width / 2.0) - value(t - width / 2.0)) / width;
+  [[nodiscard]] auto mean_rates(double width) const {
+    return [this, width, mean = MeanSlope([this](double t) { return value(t); })](
+               double t) mutable { return width > 0.0 ? mean(t, width) : rate(t); };
   }
 
   /// Of the value by τ.
   [[nodiscard]] double tau_slope(double t) const {
     return t <= pieces_.front().at ? 0.0 : tau_slope_at(before(t), t);
   }
-  [[nodiscard]] double mean_tau_slope(double t, double width) const {
-    if (!(width > 0.0)) return tau_slope(t);
-    return (integral_tau_slope(t + width / 2.0) - integral_tau_slope(t - width / 2.0)) / width;
+  [[nodiscard]] auto mean_tau_slopes(double width) const {
+    return [this, width, mean = MeanSlope([this](double t) { return integral_tau_slope(t); })](
+               double t) mutable { return width > 0.0 ? mean(t, width) : tau_slope(t); };
   }
 
  private:
@@ -279,8 +309,9 @@ void ChannelEffect::columns(const Stations& stations, std::span<const double> sh
   const double width = range_of(clock).step, later = lag(shape);
   const double start = response_.since_start ? response.value(start_of(stations) - later) : 0.0;
   const double unit = unit_of(stations);
+  auto mean = response.means(width);
   for (Eigen::Index i = 0; i < stations.size(); ++i)
-    out(i, 0) = unit * (response.mean(clock[i] - later, width) - start);
+    out(i, 0) = unit * (mean(clock[i] - later) - start);
 }
 
 void ChannelEffect::derivatives(const Stations& stations, std::span<const double> shape,
@@ -294,11 +325,12 @@ void ChannelEffect::derivatives(const Stations& stations, std::span<const double
   const Eigen::Index by_tau = out.cols() - 1;  // that by the lag is the first
   const double start_rate = from_start && response_.free_lag ? response.rate(begin) : 0.0;
   const double start_slope = from_start && response_.free_tau ? response.tau_slope(begin) : 0.0;
+  auto mean_rate = response.mean_rates(width);
+  auto mean_tau_slope = response.mean_tau_slopes(width);
   for (Eigen::Index i = 0; i < stations.size(); ++i) {
     const double at = clock[i] - later;
-    if (response_.free_lag) out(i, 0) = -unit * (response.mean_rate(at, width) - start_rate);
-    if (response_.free_tau)
-      out(i, by_tau) = unit * (response.mean_tau_slope(at, width) - start_slope);
+    if (response_.free_lag) out(i, 0) = -unit * (mean_rate(at) - start_rate);
+    if (response_.free_tau) out(i, by_tau) = unit * (mean_tau_slope(at) - start_slope);
   }
 }
 

@@ -19,7 +19,7 @@ constexpr int kMostTested = 16;              // by the samples
 constexpr Eigen::Index kMostSamples = 4096;  // looked at for lines
 constexpr Eigen::Index kLeastSamples = 64;
 constexpr double kEnds = 2.0;        // grooves at the axis and at the rim, which have another form
-constexpr double kUnfolded = 0.5;    // cycles a sample
+constexpr double kUnfolded = 0.499;  // cycles a sample: at 0.5 no phase is shown
 constexpr double kMostShared = 0.9;  // of the square of a harmonic with others, folded
 constexpr double kCertain = 2.0;     // standard uncertainties
 
@@ -193,6 +193,15 @@ double p_of_one_form(const std::vector<Part>& halves, double significance) {
   return 1.0;
 }
 
+/// Whether sampling folds one of the strongest harmonics to a slow wave: its phase there turns with
+/// a small part of a feed, which those that are seen may not show.
+bool has_slow_one(const Part& part) {
+  constexpr int kStrongest = 4;  // 1/h² of a parabola: the next one is a twenty-fifth
+  for (int h = 1; h <= kStrongest; ++h)
+    if (!part.lines.is_fast(h * part.phase)) return true;
+  return false;
+}
+
 /// Of parts of a profile together, each part with a phase and a form of its own.
 struct Spectra {
   std::vector<Spectrum> of;
@@ -259,7 +268,8 @@ class FeedMarks : public LinearEffect {
   // that do not, and of those that it has folded to slow waves, which no spectrum tells from other
   // errors, the first one is a bound; of the first one itself, the nose radius. A diameter whose
   // centre is off by part of a feed has marks of another phase on each half: where the halves are
-  // unlike, or where the whole shows none, so that noise may pass at twice the significance.
+  // unlike, where a slow one would be, or where the whole shows none, so that noise may pass at
+  // twice the significance.
   [[nodiscard]] std::optional<ShownBySamples> shown_by(const Stations& stations,
                                                        std::span<const double> values,
                                                        double significance) const override {
@@ -278,8 +288,8 @@ class FeedMarks : public LinearEffect {
     out.p_value = whole[0].p_value();
     bool is_of_each = false;
     if (!halves.empty() && std::ranges::all_of(halves, is_known)) {
-      is_of_each =
-          out.p_value > significance || p_of_one_form(halves, significance) <= significance;
+      is_of_each = out.p_value > significance || has_slow_one(whole[0]) ||
+                   p_of_one_form(halves, significance) <= significance;
       if (out.p_value > significance)
         out.p_value = std::min({1.0, 2.0 * halves[0].p_value(), 2.0 * halves[1].p_value()});
     }
