@@ -118,8 +118,8 @@ CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
   information_ = curve.transpose() * curve;
   products_ = curve.transpose() * target;
   freedom_ = -basis.cols();
-  for (std::size_t i = 0; i < linear.observations.size(); ++i)
-    freedom_ += linear.observations[i]->values.size() - linear.observations[i]->nuisances.cols();
+  for (const Observation* each : linear.observations)
+    freedom_ += each->values.size() - each->nuisances.cols();
   bow_.form = bow_form(knots_);
   const Eigen::VectorXd informed = information_ * bow_.form;
   const double of_data = informed.dot(bow_.form), of_prior = 1.0 / (bow_mm_ * bow_mm_);

@@ -127,9 +127,9 @@ double noise_beside_curve(const Model& model, const Linearisation& linear,
                           const std::vector<Noise>& noise, const Estimate& estimate) {
   const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate, Kinks::none);
   const double least = largest_likelihood(sizes) - kAsLikely;
-  return std::ranges::find_if(sizes,
-                              [&](const NoiseSize& each) { return each.log_likelihood >= least; })
-      ->factor;
+  const auto size = std::ranges::find_if(
+      sizes, [&](const NoiseSize& each) { return each.log_likelihood >= least; });
+  return size == sizes.end() ? 1.0 : size->factor;  // of numbers that are none
 }
 
 std::optional<Eigen::VectorXd> curve_beside_least_noise(const Model& model,
@@ -142,7 +142,7 @@ std::optional<Eigen::VectorXd> curve_beside_least_noise(const Model& model,
   const auto size = std::find_if(sizes.rbegin(), sizes.rend(), [&](const NoiseSize& each) {
     return each.log_likelihood >= least;
   });
-  const Hypothesis* const best = likeliest(size->likely);
+  const Hypothesis* const best = size == sizes.rend() ? nullptr : likeliest(size->likely);
   if (!best) return std::nullopt;
   return CurvePosterior(size->data, best->prior.length_mm, best->prior.roughness).mean(best->prior);
 }

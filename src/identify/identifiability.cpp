@@ -13,8 +13,8 @@
 namespace slideway {
 namespace {
 
-constexpr double kAbsent = 1e-6;     // a coefficient this small in a null direction is rounding
-constexpr double kRounding = 100.0;  // last digits of one, for a condition of 1
+constexpr double kAbsent = 1e-6;         // a coefficient this small in a null direction is rounding
+constexpr double kNullRounding = 100.0;  // last digits of one, for a condition of 1
 
 /// Column-reduces `parameters` (scaled, P by d) so that each column has an own row: a 1 where all
 /// other columns have 0. The same operations go to `amplitudes`.
@@ -103,7 +103,7 @@ Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
                singular.head(r).cwiseInverse().asDiagonal();
   if (r > 0) rank.condition = singular[0] / singular[r - 1];
   const double rounding =
-      std::min(kRounding * std::numeric_limits<double>::epsilon() * rank.condition, kAbsent);
+      std::min(kNullRounding * std::numeric_limits<double>::epsilon() * rank.condition, kAbsent);
   rank.null_space = unit.cwiseInverse().asDiagonal() *
                     svd.matrixV().rightCols(triangle.cols() - r).unaryExpr([&](double share) {
                       return std::abs(share) > rounding ? share : 0.0;

@@ -189,8 +189,8 @@ double penalty(const Whitened& data, const Candidate& candidate, Eigen::Index ra
 Priority priority_of(const Candidate& candidate, double delta_bic) {
   constexpr double kStep = 0.1;  // of a difference in BIC: that of one optimum found twice
   const std::vector<Parameter>& parameters = candidate.term.effect->parameters();
-  return {std::round(delta_bic / kStep),
-          std::ranges::min_element(parameters, {}, &Parameter::gauge)->gauge};
+  const auto first = std::ranges::min_element(parameters, {}, &Parameter::gauge);
+  return {std::round(delta_bic / kStep), first == parameters.end() ? 0 : first->gauge};
 }
 
 void sort_by_priority(std::vector<Finding>& findings) {

@@ -315,8 +315,8 @@ TEST(FeedMarks, OfTwoSamplesATurnAreNoStepAtTheCentre) {
 }
 
 // 20 and 26.7 µm a turn, read every 8.7 µm: the low band shows 4 nm of the third harmonic of the
-// coarser cuts, below its noise of a value, of another phase on each half. Left out, or taken as
-// one wave of both, it was a folded wave without a name in all of 9 such faces.
+// coarser cuts, below its noise of a value, so they are not in the model. Nor are they a folded
+// wave without a name, as in all of 9 such faces.
 TEST(FeedMarks, BelowTheNoiseOfAValueAreNoFoldedWave) {
   const Coarse design{{{0.0, 0.0, 1e-7, -7e-10}, {}, turning::kFaceSquareness},
                       {0.02, 0.02667, 0.02667},
