@@ -71,9 +71,10 @@ struct Hypothesis {
   double log_likelihood = 0.0;
 };
 
-/// Those of the grid that the data do not rule out, by roughness, length and amplitude; with kinks
-/// about as high as a bow, if it has a height, or smooth ones alone.
+/// Whether a curve may have a kink about as high as its bow, if that has a height.
 enum class Kinks { allowed, none };
+
+/// Those of the grid that the data do not rule out, by roughness, length and amplitude.
 std::vector<Hypothesis> likely_priors(const CurveData& data, Kinks kinks = Kinks::allowed);
 
 /// The likeliest, or null.

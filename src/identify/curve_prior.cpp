@@ -30,32 +30,31 @@ struct NoiseSize {
   double log_likelihood = 0.0;  // with the likeliest of them
 };
 
-/// The noise from 2^-kHalvings to 2^kHalvings of what it is where a curve with a form of its own at
-/// each knot could be what was taken for it, and no uncertainty is declared; else the noise as it
-/// is.
+/// Whether a curve with a form of its own at each knot could be what was taken for noise, and no
+/// uncertainty is declared.
+bool is_open(const CurveData& data, const Linearisation& linear) {
+  return static_cast<double>(data.freedom()) <
+             kValuesPerKnot * static_cast<double>(data.knots().positions_mm.size()) &&
+         std::ranges::none_of(linear.observations, is_declared);
+}
+
+/// The noise from 2^kHalvings to 2^-kHalvings of what it is.
 std::vector<NoiseSize> sizes_of(const Model& model, const Linearisation& linear,
                                 const std::vector<Noise>& noise, const Estimate& estimate,
                                 Kinks kinks) {
-  const ModelTerm& term = *curve_term(model);
   std::vector<NoiseSize> out;
-  const CurveData now(term, linear, noise, estimate);
-  const bool is_open = static_cast<double>(now.freedom()) <
-                           kValuesPerKnot * static_cast<double>(now.knots().positions_mm.size()) &&
-                       std::ranges::none_of(linear.observations, is_declared);
-  const auto add = [&](int halvings) {
+  for (int halvings = -kHalvings; halvings <= kHalvings; ++halvings) {
     const double factor = std::pow(4.0, -halvings);
     std::vector<Noise> scaled;
     for (const Noise& each : noise) scaled.push_back(each.scaled(factor));
-    CurveData data(term, linear, scaled, estimate);
+    CurveData data(*curve_term(model), linear, scaled, estimate);
     std::vector<Hypothesis> likely = likely_priors(data, kinks);
     const Hypothesis* const best = likeliest(likely);
     const double of_curve = best ? std::max(best->log_likelihood, 0.0) : 0.0;
     const double log_likelihood = data.log_likelihood() + of_curve -
                                   0.5 * static_cast<double>(data.freedom()) * std::log(factor);
     out.push_back({factor, std::move(likely), std::move(data), log_likelihood});
-  };
-  for (int halvings = is_open ? -kHalvings : 0; halvings <= (is_open ? kHalvings : 0); ++halvings)
-    add(halvings);
+  }
   return out;
 }
 
@@ -125,6 +124,7 @@ CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,
 
 double noise_beside_curve(const Model& model, const Linearisation& linear,
                           const std::vector<Noise>& noise, const Estimate& estimate) {
+  if (!is_open({*curve_term(model), linear, noise, estimate}, linear)) return 1.0;
   const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate, Kinks::none);
   const double least = largest_likelihood(sizes) - kAsLikely;
   const auto size = std::ranges::find_if(
@@ -136,8 +136,8 @@ std::optional<Eigen::VectorXd> curve_beside_least_noise(const Model& model,
                                                         const Linearisation& linear,
                                                         const std::vector<Noise>& noise,
                                                         const Estimate& estimate) {
+  if (!is_open({*curve_term(model), linear, noise, estimate}, linear)) return std::nullopt;
   const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate, Kinks::none);
-  if (sizes.size() == 1) return std::nullopt;
   const double least = largest_likelihood(sizes) - kRuledOut;
   const auto size = std::find_if(sizes.rbegin(), sizes.rend(), [&](const NoiseSize& each) {
     return each.log_likelihood >= least;
@@ -155,7 +155,11 @@ Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisatio
   const CurvePosterior own(data, prior.length_mm, prior.roughness);
   const Eigen::VectorXd centre = own.mean(prior);
   Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(centre.size(), centre.size());
-  const std::vector<NoiseSize> sizes = sizes_of(model, linear, noise, estimate, Kinks::allowed);
+  std::vector<NoiseSize> sizes;
+  if (is_open(data, linear))
+    sizes = sizes_of(model, linear, noise, estimate, Kinks::allowed);
+  else
+    sizes.push_back({1.0, likely_priors(data), data, 0.0});
   const double most = largest_likelihood(sizes);
   double sum = 0.0;
   for (const NoiseSize& size : sizes) {

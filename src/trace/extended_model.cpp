@@ -26,9 +26,9 @@ bool says_the_same(const Candidate& in_model, const Candidate& candidate) {
 
 /// Of amplitudes and shapes, but for what a convention fixes.
 Eigen::Index unknowns_of(const Candidate& candidate) {
-  const Effect& effect = *candidate.term.effect;
-  return effect.amplitudes() + std::ssize(effect.shapes()) -
-         std::ranges::count(effect.parameters(), true, &Parameter::by_convention);
+  return candidate.unknowns(
+      candidate.amplitudes() -
+      std::ranges::count(candidate.term.effect->parameters(), true, &Parameter::by_convention));
 }
 
 bool is_along_slide(const Candidate& candidate) {

@@ -129,21 +129,22 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
     tested.p_value = calibration.p_value(-tested.delta_bic_beside());
     tested.part_of = part_of_a_line(model, fit.estimate.shapes, tested.refined);
     const std::optional<std::size_t> alone = only(*finding.candidate);
-    const bool is_fine = alone && !finding.candidate->is_fast &&
-                         is_too_fine(model, finding.candidate->term, tested.refined.shape,
-                                     *fit.linear.observations[*alone]);
-    const bool is_in_samples = samples.have(tested.refined);
     const auto is_of_marks = [&](Folding folding) {
       return is_of_feed_marks(model, data, tested.refined, tested.fitted, folding);
     };
     if (is_of_marks(Folding::by_sampling)) {
       tested.of_feed_marks = true;
       tested.folded = "its line is that of the feed marks, folded by sampling";
-    } else if (is_fine || !is_in_samples) {
-      tested.of_feed_marks = !is_in_samples && is_of_marks(Folding::by_low_band);
-      tested.folded = is_fine ? "its profile has too few low-band values a cycle"
-                              : "the samples do not have its line: the low band has folded another";
+      return tested;
     }
+    if (!samples.have(tested.refined)) {
+      tested.of_feed_marks = is_of_marks(Folding::by_low_band);
+      tested.folded = "the samples do not have its line: the low band has folded another";
+    }
+    if (alone && !finding.candidate->is_fast &&
+        is_too_fine(model, finding.candidate->term, tested.refined.shape,
+                    *fit.linear.observations[*alone]))
+      tested.folded = "its profile has too few low-band values a cycle";
     return tested;
   };
   const auto worth = [&](double most) {

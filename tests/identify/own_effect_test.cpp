@@ -35,6 +35,17 @@ class OwnEffects : public ProblemFile {
            profile("feed_mm_per_min = 2\ncut_direction = \"inward\"\ncut_radius_mm = 10\n") +
            kEffect + lines;
   }
+
+  /// What a simulation says against a problem; empty: nothing.
+  [[nodiscard]] std::string why(const std::string& text) const {
+    const Problem problem = read_problem(write(text + "[truth]\nsamples = 100\n"));
+    try {
+      (void)simulate(problem);
+    } catch (const UsageError& error) {
+      return error.what();
+    }
+    return "";
+  }
 };
 
 TEST_F(OwnEffects, AreDeclaredByTheNameTheyAreGiven) {
@@ -184,15 +195,6 @@ TEST_F(OwnEffects, OfAFileGoWithASimulation) {
 }
 
 TEST_F(OwnEffects, ThatAreNotFiniteOnAProfileAreRefusedWithThePlace) {
-  const auto why = [&](const std::string& text) -> std::string {
-    const Problem problem = read_problem(write(text + "[truth]\nsamples = 100\n"));
-    try {
-      (void)simulate(problem);
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "";
-  };
   const std::string pole =
       "name = \"formula\"\nas = \"pole\"\nformula = \"a * 2 / (r - 3.3333)\"\n"
       "parameters = [{ name = \"a\", unit = \"um\" }]\n";
@@ -206,15 +208,6 @@ TEST_F(OwnEffects, ThatAreNotFiniteOnAProfileAreRefusedWithThePlace) {
 // A shop's own effects may be for slopes where a problem has heights; one that names its profiles
 // may not.
 TEST_F(OwnEffects, AreRefusedInProfilesOfAnotherQuantity) {
-  const auto why = [&](const std::string& text) -> std::string {
-    const Problem problem = read_problem(write(text + "[truth]\nsamples = 100\n"));
-    try {
-      (void)simulate(problem);
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return "";
-  };
   const std::string bend =
       "name = \"formula\"\nas = \"bend\"\nformula = \"a * tanh(r - 5)\"\n"
       "parameters = [{ name = \"a\", unit = \"urad\" }]\n";

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "slideway/base/units.hpp"
 #include "trace/faces.hpp"
@@ -284,7 +285,7 @@ TEST(FeedMarks, WhoseHarmonicsAreAllSlowLeaveNothing) {
 }
 
 /// The centre of each trace lies so far beside where the problem says.
-std::vector<Profile> off_centre(std::vector<Profile> faces, double by_mm) {
+std::vector<Profile> moved(std::vector<Profile> faces, double by_mm) {
   for (Profile& profile : faces) {
     for (double& position : profile.positions) position += by_mm;
     profile.setup.first_mm += by_mm;
@@ -293,22 +294,27 @@ std::vector<Profile> off_centre(std::vector<Profile> faces, double by_mm) {
   return faces;
 }
 
+/// Diameters of 80 mm, a nose of 0.8 mm, noise of 20 nm.
+Coarse diameters(std::vector<double> feeds_mm, double step_mm, int count) {
+  return {{{0.0, 0.0, 1e-7, -7e-10}, {}, turning::kFaceSquareness},
+          std::move(feeds_mm),
+          40.0,
+          0.8,
+          -39.98,
+          step_mm,
+          count,
+          2e-5};
+}
+
 // 20 µm a turn, read every 10 µm: the first harmonic has half a cycle a sample, where no phase is
 // shown, and the second none: a constant of up to 6 nm, another one on each half where the centre
 // is off by 3 µm. It was a step at the centre, alone, in 5 of 8 such faces.
 TEST(FeedMarks, OfTwoSamplesATurnAreNoStepAtTheCentre) {
-  const Coarse design{{{0.0, 0.0, 1e-7, -7e-10}, {}, turning::kFaceSquareness},
-                      {0.02},
-                      40.0,
-                      0.8,
-                      -39.98,
-                      0.01,
-                      7997,
-                      2e-5};
+  const Coarse design = diameters({0.02}, 0.01, 7997);
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Problem problem = problem_of();
     problem.low_band.level = 4;
-    const Closed result = closed(problem, off_centre(read(design, seed), 0.003));
+    const Closed result = closed(problem, moved(read(design, seed), 0.003));
     SCOPED_TRACE(story(result));
     EXPECT_EQ(named(result), std::vector<std::string>());
   }
@@ -318,18 +324,11 @@ TEST(FeedMarks, OfTwoSamplesATurnAreNoStepAtTheCentre) {
 // coarser cuts, below its noise of a value, so they are not in the model. Nor are they a folded
 // wave without a name, as in all of 9 such faces.
 TEST(FeedMarks, BelowTheNoiseOfAValueAreNoFoldedWave) {
-  const Coarse design{{{0.0, 0.0, 1e-7, -7e-10}, {}, turning::kFaceSquareness},
-                      {0.02, 0.02667, 0.02667},
-                      40.0,
-                      0.8,
-                      -39.98,
-                      0.0087,
-                      9192,
-                      2e-5};
+  const Coarse design = diameters({0.02, 0.02667, 0.02667}, 0.0087, 9192);
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     Problem problem = problem_of();
     problem.low_band.level = 4;
-    const Closed result = closed(problem, off_centre(read(design, seed), 0.003));
+    const Closed result = closed(problem, moved(read(design, seed), 0.003));
     SCOPED_TRACE(story(result));
     EXPECT_EQ(named(result), std::vector<std::string>());
     EXPECT_NE(result.verdict, TraceVerdict::unnamed);
