@@ -18,6 +18,7 @@ bool is_started_by_mpi();
 
 /// The transport of a process that MPI has started, by ../lib/slideway/libslideway_mpi.so relative
 /// to the program; nullptr for any other process.
+/// @throws UsageError          another user could have put the library there
 /// @throws std::runtime_error  MPI has started it, but the library cannot be loaded
 std::unique_ptr<Transport> mpi_transport();
 

@@ -106,6 +106,22 @@ void check_plausibility(const Model& model, const Solution& fit, ModelResult& ou
   out.notes.push_back(out.implausible + ": look for another cause before blaming the slide");
 }
 
+/// Sizes beyond the range that is given for them: the fit does not keep them inside.
+void explain_range(const Model& model, const Solution& fit, ModelResult& out) {
+  for (const ModelTerm& term : model.terms)
+    for (std::size_t p = 0; p < term.effect->parameters().size(); ++p) {
+      const Parameter& parameter = term.effect->parameters()[p];
+      const Eigen::Index at = term.first_parameter + static_cast<Eigen::Index>(p);
+      const double value = fit.parameters.values[at];
+      if (!fit.null.identifiable[at] || (value >= parameter.lower && value <= parameter.upper))
+        continue;
+      out.notes.push_back(term.name + ": " + parameter.symbol + " is " + significant(value, 3) +
+                          " " + parameter.unit + ", outside of " + shortest(parameter.lower) +
+                          " to " + shortest(parameter.upper) +
+                          ": a size is not held inside its bounds, but the model is then wrong");
+    }
+}
+
 void explain_scaling(const Solution& fit, ModelResult& out) {
   const bool estimated =
       std::ranges::any_of(fit.noise, [](const Noise& noise) { return !noise.declared; });
@@ -328,6 +344,7 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
   explain_measured_causes(model, fit, out);
   explain_laws(model, fit, out);
   check_plausibility(model, fit, out);
+  explain_range(model, fit, out);
   for (const Observation& observation : model.observations) {
     if (observation.low_band.resampled())
       out.notes.push_back("profile '" + observation.profile->name +

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "slideway/base/text.hpp"
 #include "slideway/identify/solve.hpp"
@@ -82,6 +83,17 @@ std::string advice(const Model& model, const std::vector<bool>& in_direction) {
          "Z";
 }
 
+/// Singular values, falling, and all right singular vectors.
+std::pair<Eigen::VectorXd, Eigen::MatrixXd> singular_directions(const Eigen::MatrixXd& matrix) {
+  constexpr Eigen::Index kFew = 64;  // columns; of more the exact small ones cost too much
+  if (matrix.cols() > kFew) {
+    const Eigen::BDCSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullV);
+    return {svd.singularValues(), svd.matrixV()};
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(matrix, Eigen::ComputeFullV);
+  return {svd.singularValues(), svd.matrixV()};
+}
+
 }  // namespace
 
 Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale, double tolerance) {
@@ -94,18 +106,17 @@ Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
     rank.null_space = unit.cwiseInverse().asDiagonal();
     return rank;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(triangle * unit.cwiseInverse().asDiagonal(),
-                                              Eigen::ComputeFullV);
-  const Eigen::VectorXd& singular = svd.singularValues();
+  const auto [singular, directions] =
+      singular_directions(triangle * unit.cwiseInverse().asDiagonal());
   Eigen::Index r = 0;
   while (r < singular.size() && singular[r] > tolerance) ++r;
-  rank.basis = unit.cwiseInverse().asDiagonal() * svd.matrixV().leftCols(r) *
+  rank.basis = unit.cwiseInverse().asDiagonal() * directions.leftCols(r) *
                singular.head(r).cwiseInverse().asDiagonal();
   if (r > 0) rank.condition = singular[0] / singular[r - 1];
   const double rounding =
       std::min(kNullRounding * std::numeric_limits<double>::epsilon() * rank.condition, kAbsent);
   rank.null_space = unit.cwiseInverse().asDiagonal() *
-                    svd.matrixV().rightCols(triangle.cols() - r).unaryExpr([&](double share) {
+                    directions.rightCols(triangle.cols() - r).unaryExpr([&](double share) {
                       return std::abs(share) > rounding ? share : 0.0;
                     });
   return rank;

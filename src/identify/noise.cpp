@@ -7,6 +7,7 @@
 
 #include "memory_lattice.hpp"
 #include "restricted_likelihood.hpp"
+#include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
 namespace {
@@ -39,7 +40,7 @@ class Estimator {
       information_[i] =
           ProfileInformation(profiles[i],
                              white_covariance(profiles[i].residual.norm() / std::sqrt(n)))
-              .gram;
+              .of_shared(0.0);
     }
     std::erase_if(pools_, [](const auto& pool) { return pool.empty(); });
   }
@@ -81,7 +82,7 @@ class Estimator {
       noise.pool = profile.pool;
       noise.freedom = memory.best().sizes.freedom[own];
       noise.unlike_sisters = unlike(memory.best().sizes.log_sizes, own);
-      information_[pool[k]] = ProfileInformation(profile, noise.covariance()).gram;
+      information_[pool[k]] = ProfileInformation(profile, noise.covariance()).of_shared(0.0);
     }
   }
 
@@ -157,7 +158,7 @@ Noise Noise::scaled(double factor) const {
       out.is_white() ? nullptr : std::make_shared<const MixtureFactor>(factored(out.covariance_));
   for (Alternative& each : out.alternatives)
     each.covariance = slideway::scaled(each.covariance, factor);
-  if (known_) out.add_known(known_->columns);
+  if (known_) out.set_known(known_->columns);
   return out;
 }
 
@@ -173,7 +174,7 @@ Noise Noise::repeated(const Weight& weight) const {
     out.factor_ = std::make_shared<const MixtureFactor>(factored(out.covariance_));
   out.weight_.memory *= weight.memory;
   out.weight_.white *= weight.white;
-  if (known_) out.add_known(known_->columns);
+  if (known_) out.set_known(known_->columns);
   return out;
 }
 
@@ -216,7 +217,13 @@ double Noise::log_long_run_variance() const {
 }
 
 void Noise::add_known(const Eigen::MatrixXd& columns) {
-  constexpr double kVisible = 0.01;  // of the variance of the noise
+  Eigen::MatrixXd all = known_ ? known_->columns : Eigen::MatrixXd(columns.rows(), 0);
+  append_columns(all, columns);
+  set_known(all);
+}
+
+void Noise::set_known(const Eigen::MatrixXd& columns) {
+  constexpr double kVisible = 1e-4;  // of the variance of the noise
   known_.reset();
   Eigen::MatrixXd white = columns;
   whiten(white);

@@ -13,6 +13,7 @@
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/statistics.hpp"
 #include "slideway/base/units.hpp"
+#include "slideway/identify/column_places.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/linear_algebra.hpp"
@@ -164,6 +165,7 @@ LinearProfile kept(LinearProfile profile, const Observation& observation) {
   profile.stations.resize(rows.size());
   profile.nuisances = orthonormal(profile.nuisances(rows, Eigen::all));
   profile.columns = profile.columns(rows, Eigen::all).eval();
+  if (profile.bounded.cols() > 0) profile.bounded = profile.bounded(rows, Eigen::all).eval();
   profile.residual = profile.residual(rows).eval();
   return profile;
 }
@@ -192,27 +194,41 @@ std::vector<Noise> estimated(const PartialEstimate& part, const Linearisation& l
   return out;
 }
 
+/// Directions of the shared columns that the data determine beside all others.
+Eigen::MatrixXd shared_basis(const ColumnPlaces& places, const Compressed& compressed,
+                             const Gates& gates) {
+  Eigen::MatrixXd beside = compressed.triangle(Eigen::all, places.shared);
+  project_out(orthonormal(compressed.triangle(Eigen::all, places.own)), beside);
+  return analyse_rank(beside, compressed.scale(places.shared), gates.rank_tolerance).basis;
+}
+
 /// Noise of the profiles named, from their whole residuals, the model left free.
 void from_whole_residuals(const Linearisation& linear, const std::vector<std::size_t>& which,
                           const Gates& gates, std::vector<Noise>& noise) {
-  const Compressed compressed = compress(linear, noise);
-  const Eigen::MatrixXd basis =
-      analyse_rank(compressed.triangle, compressed.scale, gates.rank_tolerance).basis;
+  const ColumnPlaces places(linear);
+  const Eigen::MatrixXd basis = shared_basis(places, compress(linear, noise), gates);
   const std::vector<std::size_t> pools = pools_of(linear);
   PartialEstimate part;
   for (const std::size_t i : which) {
     const Observation& observation = *linear.observations[i];
     const Eigen::VectorXd& residual = linear.residuals[i];
     if (is_rounding(residual, observation.values)) {
-      noise[i] = rounding_noise(observation, residual, basis.cols() + observation.nuisances.cols());
+      noise[i] =
+          rounding_noise(observation, residual,
+                         basis.cols() + std::ssize(places.own) + observation.nuisances.cols());
       continue;
     }
-    part.add(i,
-             LinearProfile{observation.nuisances, linear.columns[i] * basis, residual,
-                           observation.profile->standard_uncertainty},
-             observation, pools[i]);
+    LinearProfile profile{observation.nuisances,
+                          linear.columns[i](Eigen::all, places.shared) * basis, places.residuals[i],
+                          observation.profile->standard_uncertainty};
+    if (places.free[i].cols() > 0) {
+      append_columns(profile.nuisances, places.free[i]);
+      profile.nuisances = orthonormal(std::move(profile.nuisances));
+    }
+    profile.bounded = places.bounded[i];
+    part.add(i, profile, observation, pools[i]);
   }
-  const Eigen::MatrixXd priors = linear.prior_rows * basis;
+  const Eigen::MatrixXd priors = linear.prior_rows(places.priors, places.shared) * basis;
   std::vector<Noise> found = estimated(part, linear, priors.transpose() * priors, gates);
   for (std::size_t i = 0; i < found.size(); ++i) noise[part.which[i]] = std::move(found[i]);
 }

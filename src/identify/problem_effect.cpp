@@ -124,8 +124,13 @@ std::vector<std::string> names_of(const std::vector<Parameter>& parameters) {
 }
 
 std::vector<Prior> read_priors(const Section& effect, const std::vector<std::string>& parameters) {
+  constexpr std::size_t kMost = 100;
   std::vector<Prior> priors;
-  for (const Section& section : effect.tables("priors")) {
+  const std::vector<Section> tables = effect.tables("priors");
+  if (tables.size() > kMost)
+    effect.fail("priors", std::to_string(tables.size()) + " priors; accepted: up to " +
+                              std::to_string(kMost) + ", one for each value known of a parameter");
+  for (const Section& section : tables) {
     section.accept("parameter value standard_uncertainty");
     Prior prior;
     prior.parameter = section.required("parameter", section.one_of("parameter", parameters),

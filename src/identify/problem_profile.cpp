@@ -167,11 +167,18 @@ void read_treatment(const Section& section, ProfileEntry& entry) {
     profile.free_offset = std::find(free->begin(), free->end(), "offset") != free->end();
     profile.free_tilt = std::find(free->begin(), free->end(), "tilt") != free->end();
   }
-  if (const auto uncertainty = section.magnitude("standard_uncertainty")) {
+  if (const auto uncertainty = section.positive("standard_uncertainty")) {
+    constexpr double kSmallest = 1e-15, kLargest = 1e12;  // mm, rad
     const std::string& unit = entry.source.value_unit;
     const bool slope = profile.setup.quantity == Quantity::slope;
-    if (const auto scale = slope ? slope_unit(unit) : length_unit(unit))
+    if (const auto scale = slope ? slope_unit(unit) : length_unit(unit)) {
       profile.standard_uncertainty = (*scale)(*uncertainty);
+      if (*profile.standard_uncertainty < kSmallest || *profile.standard_uncertainty > kLargest)
+        section.refuse("standard_uncertainty", shortest(*uncertainty) +
+                                                   " is out of range; accepted: from " +
+                                                   shortest(kSmallest / (*scale)(1.0)) + " to " +
+                                                   shortest(kLargest / (*scale)(1.0)) + " " + unit);
+    }
   }
   const auto loss = section.one_of("loss", "none huber cauchy");
   if (loss)

@@ -326,7 +326,7 @@ Fault Section::fault(std::string_view key, const std::string& what) const {
   const std::string message =
       *file_ + (line > 0 ? ":" + std::to_string(line) : "") + ": " + called(key) + ": " + what;
   // A quoted key may hold anything.
-  return {.message = printable(message, message.size()),
+  return {.message = bounded_message(printable(message, message.size())),
           .file = *file_,
           .line = line,
           .key = entry != nullptr ? std::string(key) : ""};

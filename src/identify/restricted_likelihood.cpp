@@ -1,6 +1,7 @@
 #include "restricted_likelihood.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -31,7 +32,7 @@ Eigen::MatrixXd joint_information(std::span<const ProfileInformation> profiles,
                                   const Eigen::MatrixXd& rest, const Eigen::VectorXd& log_sizes) {
   Eigen::MatrixXd joint = rest;
   for (std::size_t i = 0; i < profiles.size(); ++i)
-    joint += profiles[i].gram * std::exp(-2.0 * log_sizes[static_cast<Eigen::Index>(i)]);
+    joint += profiles[i].of_shared(log_sizes[static_cast<Eigen::Index>(i)]);
   return joint;
 }
 
@@ -40,39 +41,67 @@ Eigen::MatrixXd joint_information(std::span<const ProfileInformation> profiles,
 ProfileInformation::ProfileInformation(const LinearProfile& profile,
                                        const ExponentialMixture& covariance) {
   const Eigen::Index n = profile.residual.size(), m = profile.nuisances.cols();
-  const Eigen::Index r = profile.columns.cols();
-  // Others of the model act in other profiles alone: feed marks of other cuts.
-  std::vector<Eigen::Index> acting;
-  for (Eigen::Index k = 0; k < r; ++k)
-    if ((profile.columns.col(k).array() != 0.0).any()) acting.push_back(k);
-  const auto a = std::ssize(acting);
+  const Eigen::Index r = profile.columns.cols(), q = profile.bounded.cols();
   const MixtureFactor factor = profile.stations.empty()
                                    ? MixtureFactor(covariance, n)
                                    : MixtureFactor(covariance, profile.stations);
-  Eigen::MatrixXd rows(n, m + a + 1);
-  rows << profile.nuisances, profile.columns(Eigen::all, acting), profile.residual;
+  Eigen::MatrixXd rows(n, m + q + r + 1);
+  rows.leftCols(m) = profile.nuisances;
+  if (q > 0) rows.middleCols(m, q) = profile.bounded;
+  rows.rightCols(r + 1) << profile.columns, profile.residual;
   factor.whiten(rows);
   Eigen::MatrixXd own = gram_of(rows);
-  acting.push_back(r);
   freedom = static_cast<double>(n - m);
   log_determinants = factor.log_determinant();
   if (m > 0) {
     const Eigen::LLT<Eigen::MatrixXd> nuisance(own.topLeftCorner(m, m));
     if (nuisance.info() != Eigen::Success) log_determinants = INFINITY;
     log_determinants += 2.0 * nuisance.matrixLLT().diagonal().array().log().sum();
-    const Eigen::MatrixXd cross = nuisance.matrixL().solve(own.topRightCorner(m, a + 1));
-    own = (own.bottomRightCorner(a + 1, a + 1) - cross.transpose() * cross).eval();
+    const Eigen::MatrixXd cross = nuisance.matrixL().solve(own.topRightCorner(m, q + r + 1));
+    own = (own.bottomRightCorner(q + r + 1, q + r + 1) - cross.transpose() * cross).eval();
   }
-  gram = Eigen::MatrixXd::Zero(r + 1, r + 1);
-  gram(acting, acting) = own;
+  gram_ = own.bottomRightCorner(r + 1, r + 1);
+  if (q == 0) return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turned(own.topLeftCorner(q, q));
+  bounded_ = turned.eigenvalues().array().max(0.0);
+  between_ = turned.eigenvectors().transpose() * own.topRightCorner(q, r + 1);
+}
+
+Eigen::MatrixXd ProfileInformation::of_shared(double log_size) const {
+  const double square = std::exp(2.0 * log_size);
+  Eigen::MatrixXd out = gram_ / square;
+  if (bounded_.size() > 0)
+    out.noalias() -= between_.transpose() *
+                     (square * (square + bounded_)).inverse().matrix().asDiagonal() * between_;
+  return out;
+}
+
+Eigen::MatrixXd ProfileInformation::of_rest(double log_size) const {
+  const double square = std::exp(2.0 * log_size);
+  Eigen::MatrixXd out = gram_;
+  if (bounded_.size() > 0)
+    out.noalias() -=
+        between_.transpose() *
+        ((2.0 * square + bounded_) / (square + bounded_).square()).matrix().asDiagonal() * between_;
+  return out;
+}
+
+double ProfileInformation::taken_by_bounded(double log_size) const {
+  return (bounded_ / (std::exp(2.0 * log_size) + bounded_)).sum();
+}
+
+double ProfileInformation::log_determinant_of_bounded(double log_size) const {
+  return (bounded_ * std::exp(-2.0 * log_size)).log1p().sum();
 }
 
 double restricted_cost(std::span<const ProfileInformation> profiles, const Eigen::MatrixXd& rest,
                        const Eigen::VectorXd& log_sizes) {
   double cost = 0.0;
-  for (std::size_t i = 0; i < profiles.size(); ++i)
-    cost += profiles[i].log_determinants +
-            2.0 * profiles[i].freedom * log_sizes[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    const double log_size = log_sizes[static_cast<Eigen::Index>(i)];
+    cost += profiles[i].log_determinants + 2.0 * profiles[i].freedom * log_size +
+            profiles[i].log_determinant_of_bounded(log_size);
+  }
   const Eigen::LLT<Eigen::MatrixXd> joint(joint_information(profiles, rest, log_sizes));
   if (joint.info() != Eigen::Success || !std::isfinite(cost)) return INFINITY;
   const Eigen::Index r = rest.cols() - 1;
@@ -96,10 +125,12 @@ FittedSizes fit_sizes(std::span<const ProfileInformation> profiles, const Eigen:
     const Eigen::VectorXd before = out.log_sizes;
     for (Eigen::Index i = 0; i < count; ++i) {
       const ProfileInformation& own = profiles[static_cast<std::size_t>(i)];
+      const Eigen::MatrixXd rest_of_it = own.of_rest(before[i]);
       const double taken =
-          inverse.cwiseProduct(own.gram.topLeftCorner(r, r)).sum() * std::exp(-2.0 * before[i]);
+          own.taken_by_bounded(before[i]) +
+          inverse.cwiseProduct(rest_of_it.topLeftCorner(r, r)).sum() * std::exp(-2.0 * before[i]);
       out.freedom[i] = std::max(kLeastFreedom, own.freedom - taken);  // also of NaN
-      const double square = std::max((own.gram * change).dot(change), 1e-300);
+      const double square = std::max((rest_of_it * change).dot(change), 1e-300);
       out.log_sizes[i] = settled(before[i], out.freedom[i], square, before.mean(),
                                  count > 1 ? likeness : INFINITY);
     }

@@ -8,14 +8,30 @@
 
 namespace slideway {
 
-/// What one profile says under a covariance: its information on (w, residual), nuisances
-/// eliminated, and ln det V + ln det N' V^-1 N of -2 ln of the restricted likelihood.
+/// What one profile says under a covariance σ² V: its information on (v, w, residual), nuisances
+/// eliminated, and ln det V + ln det N' V^-1 N of -2 ln of the restricted likelihood. v are turned
+/// so that their information is a diagonal a; with b that between them and (w, residual), and C
+/// that of these, they are eliminated at each size by its formulas.
 struct ProfileInformation {
-  Eigen::MatrixXd gram;  // r + 1 by r + 1
   double log_determinants = 0.0;
   double freedom = 0.0;  // values without nuisances
 
   ProfileInformation(const LinearProfile& profile, const ExponentialMixture& covariance);
+
+  /// C / σ² - b' diag(1 / (σ² (σ² + a))) b. r + 1 by r + 1
+  [[nodiscard]] Eigen::MatrixXd of_shared(double log_size) const;
+  /// C - b' diag((2 σ² + a) / (σ² + a)²) b: what (w, residual) and the v that follow from them
+  /// leave of the profile, in units of σ².
+  [[nodiscard]] Eigen::MatrixXd of_rest(double log_size) const;
+  /// Σ a / (σ² + a): degrees of freedom that v takes.
+  [[nodiscard]] double taken_by_bounded(double log_size) const;
+  /// Σ ln(1 + a / σ²).
+  [[nodiscard]] double log_determinant_of_bounded(double log_size) const;
+
+ private:
+  Eigen::MatrixXd gram_;     // C
+  Eigen::MatrixXd between_;  // b
+  Eigen::ArrayXd bounded_;   // a
 };
 
 /// Sizes σ_i of profiles whose covariances are known but for them, and -2 ln of their restricted

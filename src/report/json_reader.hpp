@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "document_node.hpp"
+#include "list_lengths.hpp"
 #include "slideway/base/record.hpp"
 
 /// Reads a record back that JsonWriter wrote. Keys it does not know are passed over; a key that is
@@ -81,6 +82,7 @@ void read(const Node& node, T& object) {
     }
     read(value, member);
   });
+  check_lengths(node, object);
 }
 
 }  // namespace slideway

@@ -5,6 +5,7 @@
 #include "slideway/base/text.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/effects/channel.hpp"
 #include "slideway/identify/agreement.hpp"
 #include "slideway/report/number.hpp"
 #include "slideway/trace/unseen.hpp"
@@ -80,6 +81,30 @@ bool holds(const Result& result, Is&& is) {
   return form && std::ranges::any_of(form->if_no, [&](const std::string& name) {
            return std::ranges::count(effect_names(), name) > 0 && is(specimen(name).description());
          });
+}
+
+/// A log that may be the cause of what has no name, and was not looked at; "": none.
+std::string log_left_aside(const TraceResult& trace) {
+  if (trace.verdict != TraceVerdict::unnamed) return "";
+  for (const auto& [effect, needs] : trace.not_testable)
+    if (needs.starts_with(kLogLacks))
+      return in_words(effect) + " may be the cause: it needs " + needs;
+  return "";
+}
+
+/// A formula that leaves less than half of what has no name, in all profiles; "": none.
+std::string described(const TraceResult& trace) {
+  if (trace.verdict != TraceVerdict::unnamed || !trace.unnamed || trace.unnamed->forms.empty())
+    return "";
+  const UnnamedForm& best = trace.unnamed->forms.front();
+  const auto halved = [](const std::optional<double>& before, const std::optional<double>& after) {
+    return before && after && *after < 0.5 * *before;
+  };
+  if (!best.profiles.empty() || (!halved(best.before_rms_um, best.after_rms_um) &&
+                                 !halved(best.before_rms_urad, best.after_rms_urad)))
+    return "";
+  return "look for the candidate of --full that describes what is left: " + best.form +
+         over(variable_of(*trace.unnamed));
 }
 
 /// What the closed loop leaves to do; "": nothing.
@@ -162,6 +187,9 @@ std::string next_step(const Analysis& analysis) {
   if (!result.final->converged)
     return "declare fewer effects or other priors: the fit must converge";
   if (analysis.trace && !analysis.trace->blunders.empty()) return analysis.trace->advice.front();
+  if (analysis.trace)
+    for (std::string next : {log_left_aside(*analysis.trace), described(*analysis.trace)})
+      if (!next.empty()) return next;
   if (std::string next = reconciled(result.crosscheck); !next.empty()) return next;
   for (const UndeterminedDirection* direction : open_directions(*result.final))
     if (!direction->advice.empty())

@@ -72,7 +72,7 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
     if (conflict)
       out.result.final->notes.push_back("of the declared model " + *conflict +
                                         ". An effect that was added may stand for a wrong prior");
-    doubt_what_is_uncertain(last->model, *out.result.final, *out.trace);
+    doubt_what_is_uncertain(*last, *out.result.final, *out.trace);
     add_conditions(*last, *out.trace, out.result);
     add_next_cut(problem, profiles, *last, std::move(loop.searched), limit, out);
   }

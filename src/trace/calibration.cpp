@@ -99,6 +99,21 @@ Calibration fit_extremes(std::vector<double> gains) {
   return out;
 }
 
+namespace {
+
+/// Of unit variance, each profile's its own. #errors by #draws
+Eigen::MatrixXd known_errors(std::size_t profile, Eigen::Index errors, Eigen::Index draws) {
+  Eigen::MatrixXd out(errors, draws);
+  for (Eigen::Index j = 0; j < draws; ++j) {
+    RandomStream random(kNullSeed + static_cast<std::uint64_t>(j),
+                        "known " + std::to_string(profile));
+    for (double& value : out.col(j)) value = random.normal();
+  }
+  return out;
+}
+
+}  // namespace
+
 Eigen::MatrixXd null_residuals(const Whitened& data, const Gates& gates) {
   const auto count = static_cast<Eigen::Index>(gates.resamples);
   Eigen::MatrixXd out(data.rows(), count);
@@ -110,9 +125,14 @@ Eigen::MatrixXd null_residuals(const Whitened& data, const Gates& gates) {
     for (double& value : normals.row(j)) value = random.normal();
     shares.push_back(random.uniform());
   }
-  for (std::size_t i = 0; i < data.observations(); ++i)
-    colour(data.noise()[i], shares, normals.col(static_cast<Eigen::Index>(i)),
-           out.middleRows(data.first_row(i), data.count(i)));
+  for (std::size_t i = 0; i < data.observations(); ++i) {
+    auto rows = out.middleRows(data.first_row(i), data.count(i));
+    colour(data.noise()[i], shares, normals.col(static_cast<Eigen::Index>(i)), rows);
+    const Eigen::MatrixXd known = data.total_noise()[i].known();
+    const Eigen::Index more =
+        known.cols() - (data.noise()[i].is_estimated() ? 0 : data.noise()[i].known().cols());
+    if (more > 0) rows += known.rightCols(more) * known_errors(i, more, count);
+  }
   return data.outside(std::move(out));
 }
 

@@ -139,12 +139,41 @@ void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
   lay_out(viewer, ShapeLattice(shape_axes(model, candidate.term)), candidate);
 }
 
+/// Axes of the shapes but those of a higher order.
+std::vector<std::vector<double>> lower_axes(const Candidate& candidate,
+                                            const std::vector<std::vector<double>>& axes) {
+  std::vector<std::vector<double>> out;
+  for (std::size_t s = 0; s < axes.size(); ++s)
+    if (!candidate.term.effect->shapes()[s].higher_order) out.push_back(axes[s]);
+  return out;
+}
+
+/// Where an effect differs from an earlier one by shapes of a higher order alone, both have the
+/// same columns on the grid, and share them.
+bool shares_columns(const std::vector<std::vector<double>>& axes, const Candidate& earlier,
+                    const Candidate& candidate) {
+  return earlier.effect_name() == candidate.effect_name() &&
+         earlier.term.profiles == candidate.term.profiles &&
+         earlier.amplitudes() == candidate.amplitudes() && !earlier.raises_degree &&
+         !candidate.raises_degree && axes.size() > earlier.grid.axes().size() &&
+         lower_axes(candidate, axes) == lower_axes(earlier, earlier.grid.axes());
+}
+
 /// Adds a candidate whose effect is set, with what it takes to be named.
 void add(const Model& model, const Viewer& viewer, Candidate candidate, Dictionary& out) {
   const ModelTerm& term = candidate.term;
   candidate.takes = joined(term.effect->lacking_to_be_told(setups_of(model, term)));
   if (!candidate.takes.empty()) out.not_testable.push_back({term.name, candidate.takes});
-  lay_out(model, viewer, candidate);
+  std::vector<std::vector<double>> axes = shape_axes(model, term);
+  const auto earlier = std::ranges::find_if(
+      out.candidates, [&](const Candidate& each) { return shares_columns(axes, each, candidate); });
+  if (earlier == out.candidates.end()) {
+    lay_out(viewer, ShapeLattice(std::move(axes)), candidate);
+  } else {
+    candidate.grid = ShapeLattice(std::move(axes));
+    candidate.columns = earlier->columns;
+    candidate.rows = earlier->rows;
+  }
   out.candidates.push_back(std::move(candidate));
 }
 

@@ -52,6 +52,11 @@ inline bool is_kinematic(const Candidate& candidate) {
   return candidate.term.effect->description().kinematic;
 }
 
+/// Whether somebody logged the cause.
+inline bool is_measured(const Candidate& candidate) {
+  return candidate.term.effect->description().measured;
+}
+
 /// The one profile it acts on alone, by its place among those fitted.
 inline std::optional<std::size_t> only(const Candidate& candidate) {
   return candidate.part.size() == 1 ? std::optional(candidate.part.front()) : std::nullopt;

@@ -29,4 +29,13 @@ double size_in_uncertainties(const ModelResult& fit, const ModelTerm& term) {
   return coverage_factor(std::nullopt) * std::abs(*own->value) / *own->expanded_uncertainty;
 }
 
+double widening_by_bend(const Solution& fit, const ModelTerm& term) {
+  const Eigen::MatrixXd& bends = fit.uncertainty.departures.to_laws;
+  if (bends.cols() == 0) return 1.0;
+  const Eigen::RowVectorXd row = fit.parameters.jacobian.row(term.first_parameter);
+  const double whole = std::pow(fit.uncertainty.of(row).standard_uncertainty, 2);
+  const double beside = whole - (row * bends).squaredNorm();
+  return beside > 0.0 ? std::sqrt(whole / beside) : 1.0;
+}
+
 }  // namespace slideway

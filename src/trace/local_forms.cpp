@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "process.hpp"
 #include "search.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 
@@ -70,8 +69,9 @@ struct Fitted {
 
 class LocalFormSearch {
  public:
-  LocalFormSearch(const Model& model, const Whitened& data, const Linearisation& linear)
-      : data_(data), linear_(linear), x_(slide_positions(model, linear)) {
+  LocalFormSearch(const std::vector<Eigen::VectorXd>& x, const Whitened& data,
+                  const Linearisation& linear)
+      : data_(data), linear_(linear), x_(x) {
     low_ = high_ = x_.front()[0];
     for (const Eigen::VectorXd& x : x_)
       low_ = std::min(low_, x.minCoeff()), high_ = std::max(high_, x.maxCoeff());
@@ -153,15 +153,16 @@ class LocalFormSearch {
 
   const Whitened& data_;
   const Linearisation& linear_;
-  std::vector<Eigen::VectorXd> x_;
+  const std::vector<Eigen::VectorXd>& x_;
   Eigen::MatrixXd taken_;
   double low_ = 0.0, high_ = 0.0;
 };
 
 }  // namespace
 
-double local_forms(const Model& model, const Whitened& data, const Linearisation& linear) {
-  return LocalFormSearch(model, data, linear).run();
+double local_forms(const std::vector<Eigen::VectorXd>& x, const Whitened& data,
+                   const Linearisation& linear) {
+  return LocalFormSearch(x, data, linear).run();
 }
 
 }  // namespace slideway

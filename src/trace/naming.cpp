@@ -47,6 +47,16 @@ bool only_carriage(const Effects& effects, const std::vector<std::size_t>& which
       which, [&](std::size_t i) { return effects[i].candidate->term.effect->is_carriage(); });
 }
 
+/// Whether these are one effect, by itself in each of several cuts: at one time, or after one
+/// distance, it may be in all of them.
+bool is_one_in_several(const Effects& effects, const std::vector<std::size_t>& which) {
+  return which.size() > 1 && std::ranges::all_of(which, [&](std::size_t i) {
+           const Candidate& candidate = *effects[i].candidate;
+           return !candidate.term.profiles.empty() &&
+                  candidate.effect_name() == effects[which.front()].candidate->effect_name();
+         });
+}
+
 /// Whether nothing but the slide shows: a form of it is the way, whatever its shape.
 bool shows_slide_only(const Linearisation& linear) {
   return std::ranges::all_of(linear.observations, [](const Observation* observation) {
@@ -83,9 +93,18 @@ std::vector<UnnamedRival> unnamed_rivals(ModelExtender& extender, const Effects&
     out.push_back({"heat that lifts and tilts the slide", absent, false,
                    0.5 * gain - heat_lifts_and_tilts(fitted.model, data, linear)});
     if (is_way && shows_slide_only(linear)) continue;
-    if (absent.size() == 1 || absent.size() == members.size())
+    const auto add_local_form = [&](const std::string& name, const std::string& symbol) {
       out.push_back(
-          {"a local form", absent, false, 0.5 * gain - local_forms(fitted.model, data, linear)});
+          {name, absent, false,
+           0.5 * gain - local_forms(readings_of(fitted.model, linear, symbol), data, linear)});
+    };
+    if (absent.size() == 1 || absent.size() == members.size())
+      add_local_form("a local form", kSlideSymbol);
+    if (!is_one_in_several(effects, absent)) continue;
+    for (const ProcessVariable& each : rivals)
+      if (!each.of_each && each.symbol != kSlideSymbol &&
+          each.profiles.size() == linear.observations.size())
+        add_local_form("a local form in " + each.symbol, each.symbol);
   }
   return out;
 }

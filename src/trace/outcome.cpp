@@ -98,13 +98,15 @@ void doubt_what_some_have(const Disagreement& among, std::vector<AcceptedEffect>
   }
 }
 
-void doubt_what_is_uncertain(const Model& model, const ModelResult& final, TraceResult& out) {
+void doubt_what_is_uncertain(const FittedModel& fitted, const ModelResult& final,
+                             TraceResult& out) {
+  const Model& model = fitted.model;
   for (TraceRound& round : out.rounds) {
     const std::string name = term_name(round.accepted, round.profiles);
     const auto term = std::ranges::find(model.terms, name, &ModelTerm::name);
     if (!round.ambiguous_with.empty() || term == model.terms.end() || !term->effect->has_one_size())
       continue;
-    const double size = size_in_uncertainties(final, *term);
+    const double size = widening_by_bend(fitted.fit, *term) * size_in_uncertainties(final, *term);
     if (!(size < model.gates.size)) continue;
     round.ambiguous_with.emplace_back(kUnnamedRival);
     if (out.verdict == TraceVerdict::explained) out.verdict = TraceVerdict::ambiguous;

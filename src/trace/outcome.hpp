@@ -32,7 +32,7 @@ void doubt_what_some_have(const Disagreement& among, std::vector<AcceptedEffect>
 
 /// An effect that is no longer so many times larger than its uncertainty as it must be, once that
 /// holds its rivals, those of the others and what has no name, is not said alone.
-void doubt_what_is_uncertain(const Model& model, const ModelResult& final, TraceResult& out);
+void doubt_what_is_uncertain(const FittedModel& fitted, const ModelResult& final, TraceResult& out);
 
 /// With each candidate that passes every gate of its own: why it left again, or `otherwise`.
 void say_why_refused(const std::string& otherwise, TraceResult& out);

@@ -44,7 +44,6 @@ void add_setup(const Setup& setup, Keys& keys) {
   keys.number("spindle_rpm", setup.spindle_rpm);
   if (setup.cut_direction)
     keys.text("cut_direction", setup.cut_direction == CutDirection::inward ? "inward" : "outward");
-  if (setup.start_s != 0.0) keys.number("start_s", setup.start_s);
   keys.number("traverse_mm_per_s", setup.traverse_mm_per_s);
 }
 
@@ -65,7 +64,18 @@ void add_treatment(const Profile& profile, bool is_slope, Keys& keys) {
                 *profile.standard_uncertainty / (is_slope ? kMicroradian : kMicrometre));
 }
 
-std::string profile_text(const CutToCome& cut) {
+/// When the cut starts is not known before it is made. A log is wrong of another time, so it must
+/// be filled in then; without one, what the plan took it to be stands.
+void add_start(const Setup& setup, bool has_log, Keys& keys) {
+  if (has_log)
+    keys.line("start_s",
+              "nan  # fill in: when the cut began, by the clock of the log, which has "
+              "to go on until its end");
+  else if (setup.start_s != 0.0)
+    keys.line("start_s", shortest(setup.start_s) + "  # as planned; change it to what it was");
+}
+
+std::string profile_text(const CutToCome& cut, bool has_log) {
   const Profile& profile = cut.profile;
   const Setup& setup = profile.setup;
   const bool is_slope = setup.quantity == Quantity::slope;
@@ -90,6 +100,7 @@ std::string profile_text(const CutToCome& cut) {
     keys.text("time_unit", "s");
   }
   add_setup(setup, keys);
+  add_start(setup, has_log, keys);
   add_treatment(profile, is_slope, keys);
   return text + keys.all();
 }
@@ -99,7 +110,8 @@ std::string profile_text(const CutToCome& cut) {
 std::string planned_problem_text(const Problem& problem, const std::vector<CutToCome>& cuts,
                                  const std::filesystem::path& directory) {
   std::string text = moved_problem_text(problem, directory);
-  for (const CutToCome& cut : cuts) text += profile_text(cut);
+  const bool has_log = text.find("\n[[channel]]") != std::string::npos;
+  for (const CutToCome& cut : cuts) text += profile_text(cut, has_log);
   return text;
 }
 

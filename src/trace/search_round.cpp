@@ -75,15 +75,11 @@ std::string implausible(const Refined& refined) {
   return "";
 }
 
-bool is_measured(const TestedCandidate& tested) {
-  return tested.refined.candidate->term.effect->description().measured;
-}
-
 /// Whether `each` is neither measured nor of the carriages, and `chosen` a measured cause; or is
 /// the same in fewer readings.
 bool ranks_below(const TestedCandidate& each, const TestedCandidate& chosen) {
   return is_in_fewer_readings(each, chosen) ||
-         (is_measured(chosen) && !is_measured(each) &&
+         (is_measured(*chosen.refined.candidate) && !is_measured(*each.refined.candidate) &&
           !each.refined.candidate->term.effect->is_carriage());
 }
 
@@ -288,7 +284,8 @@ const TestedCandidate* SearchRound::better_known_than(
     const std::vector<std::string>& excluded) const {
   if (choice.refined.candidate->term.effect->is_carriage()) return nullptr;
   const auto at = std::ranges::find_if(tested, [&](const TestedCandidate& each) {
-    return ((is_measured(each) && !is_measured(choice)) || is_in_fewer_readings(choice, each)) &&
+    return ((is_measured(*each.refined.candidate) && !is_measured(*choice.refined.candidate)) ||
+            is_in_fewer_readings(choice, each)) &&
            each.refused(gates).empty() &&
            each.refined.delta_bic <= choice.refined.delta_bic + gates.tie_bic &&
            std::ranges::count(excluded, each.name()) == 0 && alike(each, choice, gates);

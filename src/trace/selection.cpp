@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <map>
 
 #include "additions.hpp"
 #include "outcome.hpp"
@@ -29,6 +30,7 @@ class Comparison {
   Selection run() {
     chosen_.select();
     hold_against_one_in_each();
+    hold_against_measured_causes();
     hold_against_causes();
     hold_against_the_unnamed();
     name_rivals();
@@ -81,6 +83,60 @@ class Comparison {
     chosen_.leaves_to(each, is_difference ? gates_.tie_bic + statistics_.price(each.out().effects) -
                                                 statistics_.price(out_.effects)
                                           : -gates_.exchange_bic);
+  }
+
+  /// Of two measured causes each may predict left-out profiles worse than none, and one that
+  /// follows late may stand for both. So effects are also selected beside the best of each that
+  /// gains much and is not in the set, and beside the simplest.
+  void hold_against_measured_causes() {
+    for (const TestedCandidate* found : measured_causes(extender_.search({}))) {
+      const auto own = std::ranges::find(out_.effects, found->name(), &AcceptedEffect::name);
+      if (own != out_.effects.end() && own->shape.size() <= found->refined.shape.size()) continue;
+      Selector beside = start_();
+      beside.begin_with(*found);
+      beside.select();
+      const bool has_more = measured_in(beside.out().effects) > measured_in(out_.effects);
+      chosen_.leaves_to(beside, has_more ? as_much() : -gates_.exchange_bic);
+    }
+  }
+
+  static std::ptrdiff_t measured_in(const Effects& effects) {
+    return std::ranges::count_if(
+        effects, [](const AcceptedEffect& each) { return is_measured(*each.candidate); });
+  }
+
+  /// Within which difference of BIC another set explains as much as this one.
+  double as_much() {
+    return std::max(gates_.tie_bic, gates_.tie_share * statistics_.lead(out_.effects, {}));
+  }
+
+  /// Of those that are of all profiles and gain much, the best and the simplest; where there is
+  /// but one, the best.
+  [[nodiscard]] std::vector<const TestedCandidate*> measured_causes(
+      const SearchRound& round) const {
+    const auto bic_of = [](const TestedCandidate* each) { return each->refined.delta_bic; };
+    std::map<std::string, std::vector<const TestedCandidate*>> found;
+    for (const TestedCandidate& each : round.tested) {
+      const Candidate& candidate = *each.refined.candidate;
+      if (is_measured(candidate) && candidate.term.profiles.empty() &&
+          each.refined.delta_bic <= -gates_.left_over_bic)
+        found[each.name()].push_back(&each);
+    }
+    std::vector<const TestedCandidate*> out;
+    for (const auto& [name, all] : found) {
+      const auto* simplest = *std::ranges::min_element(
+          all, {}, [](const TestedCandidate* each) { return each->refined.shape.size(); });
+      out.push_back(*std::ranges::min_element(all, {}, bic_of));
+      if (simplest != out.back() && has_other_log(name)) out.push_back(simplest);
+    }
+    std::ranges::sort(out, {}, bic_of);
+    return out;
+  }
+
+  [[nodiscard]] bool has_other_log(const std::string& name) const {
+    return std::ranges::any_of(extender_.dictionary().candidates, [&](const Candidate& each) {
+      return is_measured(each) && each.term.profiles.empty() && each.name() != name;
+    });
   }
 
   /// A carriage's polynomial of a higher degree comes near every sum of smooth effects, beside a

@@ -124,7 +124,10 @@ void Selector::exchange() {
     const TestedCandidate* best = round.choice(gates_, excluded_);
     if (!best) continue;
     const TestedCandidate* own = find_tested(round, out_.effects[i], gates_);
-    if (own && own->refined.delta_bic <= best->refined.delta_bic + gates_.exchange_bic) best = own;
+    if (own && (own->refined.delta_bic <= best->refined.delta_bic + gates_.exchange_bic ||
+                (is_measured(*own->refined.candidate) &&
+                 std::ranges::count(round.outranked(*own, gates_), best) > 0)))
+      best = own;
     if (best->refined.candidate == out_.effects[i].candidate ||
         (own && has_part_in(all_but(out_.effects, i), *best)) ||
         narrows_to_one_of_several(out_.effects[i], *best))
@@ -193,6 +196,10 @@ void Selector::grow_from(const Candidate& raised) {
   out_.effects = {{&raised, {}, {}}};
   out_.effects.front().round.accepted = raised.effect_name();
   grow();
+}
+
+void Selector::begin_with(const TestedCandidate& found) {
+  out_.effects = {accepted(extender_.search({}), found)};
 }
 
 void Selector::complete(const Candidate& raised) {

@@ -26,6 +26,8 @@ class Selector {
   void select();
   /// Begins with a raised degree.
   void grow_from(const Candidate& raised);
+  /// Begins with what the first search found, whether it passes or not.
+  void begin_with(const TestedCandidate& found);
   /// Goes on as select() would, had that been chosen. Nothing is selected where nothing has grown.
   void complete(const Candidate& raised);
   /// Never to be chosen.

@@ -45,9 +45,11 @@ std::string too_small(ModelExtender& extender, const Gates& gates,
     return "";
   const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term->first_parameter);
   const double more = unnamed ? unnamed->variance(row) : 0.0;
-  double size = std::abs(fitted.fit.parameters.values[term->first_parameter]) /
-                std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty, std::sqrt(more));
-  if (!(size < gates.size)) size = size_in_uncertainties(extender.summary(effects), *term);
+  const double bend = widening_by_bend(fitted.fit, *term);
+  double size =
+      std::abs(fitted.fit.parameters.values[term->first_parameter]) /
+      std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty / bend, std::sqrt(more));
+  if (!(size < gates.size)) size = bend * size_in_uncertainties(extender.summary(effects), *term);
   if (!(size < gates.size)) return "";
   return "its size is only " + significant(size, 2) + " of its standard uncertainties";
 }

@@ -1,5 +1,6 @@
 #include "whitened.hpp"
 
+#include "slideway/identify/column_places.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 
 namespace slideway {
@@ -37,29 +38,6 @@ Eigen::MatrixXd stacked_model(const Linearisation& linear) {
   return out;
 }
 
-namespace {
-
-/// Columns of a linearised model by where they act.
-struct ModelColumns {
-  std::vector<std::vector<Eigen::Index>> alone;  // in one profile and in no prior, by profile
-  std::vector<Eigen::Index> shared;              // all others
-};
-
-ModelColumns columns_by_place(const Linearisation& linear) {
-  ModelColumns out;
-  out.alone.resize(linear.columns.size());
-  for (Eigen::Index k = 0; k < linear.prior_rows.cols(); ++k) {
-    std::vector<std::size_t> acts_in;
-    for (std::size_t i = 0; i < linear.columns.size(); ++i)
-      if ((linear.columns[i].col(k).array() != 0.0).any()) acts_in.push_back(i);
-    const bool alone = acts_in.size() == 1 && linear.prior_rows.col(k).isZero(0.0);
-    (alone ? out.alone[acts_in.front()] : out.shared).push_back(k);
-  }
-  return out;
-}
-
-}  // namespace
-
 Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, FreeValues undescribed)
     : noise_(std::move(noise)), undescribed_(std::move(undescribed)) {
   for (const Observation* observation : linear.observations) {
@@ -69,22 +47,23 @@ Whitened::Whitened(const Linearisation& linear, std::vector<Noise> noise, FreeVa
   first_.push_back(values_);
   rows_ = values_ + linear.prior_rows.rows();
   undescribed_.resize(noise_.size());
-  const ModelColumns columns = columns_by_place(linear);
-  std::vector<Eigen::MatrixXd> alone;
-  for (std::size_t i = 0; i < columns.alone.size(); ++i)
-    alone.emplace_back(linear.columns[i](Eigen::all, columns.alone[i]));
-  own_ = own_bases(linear.observations, noise_, undescribed_, alone);
-  Eigen::MatrixXd shared = stacked_model(linear)(Eigen::all, columns.shared);
+  const ColumnPlaces places(linear);
+  total_ = noise_;
+  for (std::size_t i = 0; i < total_.size(); ++i)
+    if (places.bounded[i].cols() > 0) total_[i].add_known(places.bounded[i]);
+  own_ = own_bases(linear.observations, total_, undescribed_, places.free);
+  Eigen::MatrixXd shared = stacked_model(linear)(Eigen::all, places.shared);
   whiten(shared);
   shared_ = orthonormal(own_.beside(std::move(shared)));
-  residual_ = stack(linear, 1, [&](std::size_t i) { return linear.residuals[i]; });
-  residual_.tail(linear.prior_rows.rows()) = linear.prior_residuals;
+  residual_ = stack(linear, 1, [&](std::size_t i) { return places.residuals[i]; });
+  for (const Eigen::Index prior : places.priors)
+    residual_[values_ + prior] = linear.prior_residuals[prior];
   residual_ = outside(residual_);
 }
 
 void Whitened::whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const {
-  for (std::size_t i = 0; i < noise_.size(); ++i)
-    noise_[i].whiten(stacked.middleRows(first_[i], count(i)));
+  for (std::size_t i = 0; i < total_.size(); ++i)
+    total_[i].whiten(stacked.middleRows(first_[i], count(i)));
 }
 
 Eigen::MatrixXd Whitened::outside(Eigen::MatrixXd stacked) const {
@@ -97,14 +76,14 @@ Eigen::MatrixXd Whitened::outside(Eigen::MatrixXd stacked) const {
 Whitened::Seen Whitened::seen_in(std::size_t profile, Eigen::MatrixXd columns) const {
   Seen out;
   out.white = std::move(columns);
-  noise_[profile].whiten(out.white);
+  total_[profile].whiten(out.white);
   out.own = own_[profile].transpose() * out.white;
   out.shared = shared_.middleRows(first_[profile], count(profile)).transpose() * out.white;
   return out;
 }
 
 Whitened::Shown Whitened::shown_in(std::size_t profile, Eigen::MatrixXd columns) const {
-  noise_[profile].whiten(columns);
+  total_[profile].whiten(columns);
   own_.take_out_of(profile, columns);
   const Eigen::Index first = first_[profile], rows = count(profile);
   Shown out;

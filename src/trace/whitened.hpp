@@ -40,6 +40,8 @@ class Whitened {
     return first_[observation + 1] - first_[observation];
   }
   [[nodiscard]] const std::vector<Noise>& noise() const { return noise_; }
+  /// The same with the errors that priors leave what acts in one profile alone.
+  [[nodiscard]] const std::vector<Noise>& total_noise() const { return total_; }
 
   /// Stacked low-band columns (rows() of them, zero in the rows of priors) made white, in place.
   void whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const;
@@ -77,6 +79,7 @@ class Whitened {
 
  private:
   std::vector<Noise> noise_;
+  std::vector<Noise> total_;
   FreeValues undescribed_;
   std::vector<Eigen::Index> first_;
   Eigen::Index values_ = 0;

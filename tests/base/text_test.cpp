@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "slideway/base/error.hpp"
+
 namespace slideway {
 namespace {
 
@@ -110,6 +112,31 @@ TEST(DidYouMean, OverlooksCapitalsButPrefersTheSame) {
   const std::vector<std::string> accepted{"AXIS", "axis", "X_MM"};
   EXPECT_EQ(did_you_mean("axsi", accepted), " (did you mean 'axis'?)");
   EXPECT_EQ(did_you_mean("x_mm", accepted), " (did you mean 'X_MM'?)");
+}
+
+TEST(BoundedMessage, IsWholeOrItsTwoEnds) {
+  EXPECT_EQ(bounded_message("as it is"), "as it is");
+  for (const std::string& word : {std::string(300'000, 'x'), std::string(4, '\n')}) {
+    const std::string message = "problem.toml:3: key '" + word + "' is unknown; accepted: name";
+    const std::string found = bounded_message(message);
+    EXPECT_LE(found.size(), kLongestMessage + 5);
+    EXPECT_TRUE(found.starts_with("problem.toml:3: key '"));
+    EXPECT_TRUE(found.ends_with("' is unknown; accepted: name"));
+    EXPECT_EQ(UsageError(message).what(), found);
+  }
+}
+
+// No character is cut in two.
+TEST(BoundedMessage, IsWholeCharacters) {
+  for (std::size_t shift = 0; shift < 3; ++shift) {
+    std::string message(shift, 'x');
+    for (int i = 0; i < 2000; ++i) message += "µ";
+    const std::string found = bounded_message(message);
+    const std::size_t gap = found.find(" ... ");
+    ASSERT_NE(gap, std::string::npos);
+    EXPECT_EQ(found.substr(gap - 2, 2), "µ");
+    EXPECT_EQ(found.substr(gap + 5, 2), "µ");
+  }
 }
 
 }  // namespace

@@ -69,6 +69,23 @@ TEST_F(PlanCommandTest, WritesJsonAndPage) {
   EXPECT_THAT(contents(path("plan.html")), AllOf(HasSubstr("<svg"), HasSubstr("fast")));
 }
 
+// When a cut began is not known before; beside a log a wrong time would be a wrong cause.
+TEST_F(PlanCommandTest, AsksForTheStartOfANewCutBesideALog) {
+  std::string log = "t_s,T_degC\n";
+  for (int t = 0; t <= 1600; t += 10) log += std::to_string(t) + ",20.0\n";
+  folder_.file("log.csv", log);
+  std::string text = contents(path("problem.toml"));
+  text +=
+      "[[channel]]\nname = \"temperature\"\nfile = \"log.csv\"\ntime_column = \"t_s\"\n"
+      "time_unit = \"s\"\nvalue_column = \"T_degC\"\n";
+  folder_.file("with-log.toml", text);
+  ASSERT_EQ(run({"plan", "with-log.toml", "--out", "next", "--quiet"}).exit_code, 0);
+  EXPECT_THAT(contents(path("next/1-cut.toml")), HasSubstr("start_s = nan  # fill in"));
+  const ProgramRun done = run({"identify", "next/1-cut.toml"});
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_THAT(done.err, HasSubstr("profile.start_s: must be a finite number"));
+}
+
 // A problem that is ready but for the data: with them it runs.
 TEST_F(PlanCommandTest, WritesProblemFilesForTheNewCuts) {
   EXPECT_EQ(run({"plan", "problem.toml", "--out", "next", "--quiet"}).exit_code, 0);

@@ -212,23 +212,40 @@ TEST(Formula, RefusesUnitsThatDoNotFit) {
   EXPECT_THAT(refusal("a * (1 - exp(-t / tau))", {{"a", "um"}, {"tau", "min", 0.1, 5.0}}),
               AllOf(StartsWith("column 19: 'tau' is in \"min\""), HasSubstr("accepted: s,")));
   EXPECT_THAT(refusal("a * t", {{"a", "um/"}}), HasSubstr("cannot be read"));
+  EXPECT_THAT(refusal("a * cos(w * t)", {{"a", "um"}, {"w", "deg/s", 0.1, 9.0}}),
+              AllOf(StartsWith("column 9: 'w' is in \"deg/s\""), HasSubstr("accepted: rad,")));
   for (const auto& [text, parameters] :
        std::initializer_list<std::pair<const char*, std::vector<FormulaParameter>>>{
            {"a * t", {{"a", "um/s"}}},
-           {"a * t", {{"a", "um"}}},  // in the units of the variables
            {"a * t / 60", {{"a", "um/min"}}},
            {"a * s", {{"a", "um/m"}}},
            {"a * r^2 * rpm / feed", {{"a", "um mm^-1"}}},
            {"a * t^2 / r", {{"a", "mm um/s^2"}}},
            {"a * t^2 / r", {{"a", "um mm/s^2"}}},
            {"a * t * exp(-u)", {{"a", "um/s"}, {"u", "%", 1.0, 9.0}}},
-           {"a * sqrt(t)", {{"a", "um"}}},
+           {"a * sqrt(t)", {{"a", "um/s^0.5"}}},
+           {"a * cos(pi / 180 * w * t)", {{"a", "um"}, {"w", "deg/s", 0.1, 9.0}}},
            {"a * sin(2 * pi * f * t + p)",
             {{"a", "um"}, {"f", "Hz", 0.1, 1.0}, {"p", "rad", 0, 6}}},
            {"a * (1 - exp(-max(t - t0, 0) / tau))",
             {{"a", "um"}, {"t0", "s", 0.0, 9.0}, {"tau", "s", 1.0, 9.0}}}})
     EXPECT_NO_THROW((void)formula_effect({.name = "own", .text = text, .parameters = parameters}))
         << text;
+}
+
+// A size is what makes the formula micrometres.
+TEST(Formula, TellsTheUnitOfASizeInMicrometresAlone) {
+  const auto units = [](const std::string& text, const std::vector<FormulaParameter>& sizes) {
+    std::vector<std::string> out;
+    for (const Parameter& each : effect_of(text, sizes)->parameters()) out.push_back(each.unit);
+    return out;
+  };
+  EXPECT_THAT(units("a * t", {{"a", "um"}}), ElementsAre("µm/s"));
+  EXPECT_THAT(units("a * sqrt(x)", {{"a", "um"}}), ElementsAre("µm/mm^0.5"));
+  EXPECT_THAT(units("a * r * x + b * t", {{"a", "um"}, {"b", "um"}}),
+              ElementsAre("µm/mm^2", "µm/s"));
+  EXPECT_THAT(units("a * r / R", {{"a", "um"}}), ElementsAre("µm"));
+  EXPECT_THAT(units("a * r / 10", {{"a", "um"}}), ElementsAre("µm"));
 }
 
 TEST(Formula, SaysWhereOnAProfileItIsNotFinite) {

@@ -178,6 +178,11 @@ TEST_F(ProblemFile, HoldsPriorsAgainstTheParametersOfTheirEffect) {
               HasSubstr("effect.priors.standard_uncertainty"));
   EXPECT_THAT(refusal_behind(effect + "[{ parameter = \"b2\", value = 0.0 }]\n"),
               HasSubstr("missing"));
+  std::string many;
+  for (int i = 0; i < 101; ++i)
+    many += "{ parameter = \"b2\", value = 0.0, standard_uncertainty = 1.0 }, ";
+  EXPECT_THAT(refusal_behind(effect + "[" + many + "]\n"),
+              HasSubstr("effect.priors: 101 priors; accepted: up to 100"));
 }
 
 TEST_F(ProblemFile, HoldsTheTruthAgainstTheModelAndTheCatalogue) {

@@ -124,6 +124,33 @@ TEST(Noise, VarianceCountsTheParametersTaken) {
   EXPECT_NEAR(sum / kRuns, 1.0, 4.0 * std::sqrt(2.0 / (kValues - kParameters) / kRuns));
 }
 
+TEST(Noise, IsTheSameWhereWhatHasPriorsIsAnErrorOfKnownSize) {
+  // v of unit covariance beside w: a prior of w that is nowhere else (Harville 1974).
+  constexpr Eigen::Index kValues = 120, kColumns = 9, kBounded = 6;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const Eigen::VectorXd values = ar1(kValues, seed < 2 ? 0.0 : 0.9, 1.0, seed);
+    Eigen::MatrixXd columns = cosines(kValues, kColumns);
+    for (Eigen::Index j = 0; j < kBounded; ++j) columns.col(j) *= 0.05 * std::pow(4.0, j);
+    LinearProfile with_priors{Eigen::MatrixXd(kValues, 0), columns, values, std::nullopt};
+    Eigen::MatrixXd priors = Eigen::MatrixXd::Zero(kColumns, kColumns);
+    priors.diagonal().head(kBounded).setOnes();
+    LinearProfile bounded{Eigen::MatrixXd(kValues, 0), columns.rightCols(kColumns - kBounded),
+                          values, std::nullopt};
+    bounded.bounded = columns.leftCols(kBounded);
+    constexpr Eigen::Index kOthers = kColumns - kBounded;
+    const Noise expected = estimate_noise({&with_priors, 1}, priors).front();
+    const Noise found =
+        estimate_noise({&bounded, 1}, Eigen::MatrixXd::Zero(kOthers, kOthers)).front();
+    // Sizes settle to 1e-6.
+    EXPECT_NEAR(found.standard_deviation() / expected.standard_deviation(), 1.0, 1e-5);
+    EXPECT_NEAR(found.long_run_deviation() / expected.long_run_deviation(), 1.0, 1e-5);
+    EXPECT_NEAR(found.freedom / expected.freedom, 1.0, 1e-5);
+    ASSERT_EQ(found.alternatives.size(), expected.alternatives.size());
+    for (std::size_t k = 0; k < found.alternatives.size(); ++k)
+      EXPECT_NEAR(found.alternatives[k].probability, expected.alternatives[k].probability, 1e-4);
+  }
+}
+
 TEST(Noise, ThatAlternatesMakesNothingBetterKnown) {
   const Noise noise = estimated(fitted(ar1(2000, -0.6, 1.0, 2), cosines(2000, 5)));
   EXPECT_TRUE(noise.is_white());

@@ -214,10 +214,13 @@ TEST_F(ProblemFile, RefusesNumbersThatLeaveNoDigits) {
     for (const char* value : {" = 1e18", " = -1e300"})
       EXPECT_THAT(profile_refusal(std::string(key) + value), HasSubstr("from -1e+09 to 1e+09"))
           << key;
-  for (const char* key : {"feed_mm_per_min", "spindle_rpm", "cut_radius_mm", "traverse_mm_per_s",
-                          "nose_radius_mm", "standard_uncertainty"})
+  for (const char* key :
+       {"feed_mm_per_min", "spindle_rpm", "cut_radius_mm", "traverse_mm_per_s", "nose_radius_mm"})
     for (const char* value : {" = 1e18", " = 1e-300"})
       EXPECT_THAT(profile_refusal(std::string(key) + value), HasSubstr("from 1e-9 to 1e9")) << key;
+  for (const char* value : {" = 1e18", " = 1e-300"})  // 1e-15 to 1e12 mm, in µm
+    EXPECT_THAT(profile_refusal(std::string("standard_uncertainty") + value),
+                HasSubstr("from 1e-12 to 1e+15 um"));
   EXPECT_THAT(
       refusal("[machine]\nlever = \"paper\"\nspindle_position_mm = 1e18\n" + profile() + kEffect),
       HasSubstr(":3: machine.spindle_position_mm: 1e+18 is out of range"));

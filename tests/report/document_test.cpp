@@ -126,6 +126,31 @@ TEST_F(Document, NamesPlaceAndWhatIsAccepted) {
               HasSubstr("final.correlations[0]"));
 }
 
+TEST_F(Document, RefusesListsThatBelongTogetherOfUnlikeLengths) {
+  Analysis analysis{sample_result(), sample_trace()};
+  Straightness& form = analysis.result.final->straightness.emplace();
+  form.curve.position_mm = form.curve.deviation_um =
+      form.curve.expanded_uncertainty_um = {0.0, 1.0};
+  form.curve.tip_um = form.curve.tip_expanded_uncertainty_um = {0.0, 1.0};
+  ProfileCheck& check = analysis.result.crosscheck.profiles.emplace_back();
+  check.value_um = check.U_um = {1.0, 2.0};
+  UnnamedCurve& left = analysis.trace->unnamed->curve;
+  left.at = left.residual = left.expanded_uncertainty = {1.0, 2.0};
+  const Json report = Json::parse(json_report(analysis));
+  ASSERT_EQ(refusal(report.dump()), "read");
+  for (const std::string list :
+       {"/final/straightness/curve/position_mm", "/final/straightness/curve/deviation_um",
+        "/final/straightness/curve/expanded_uncertainty_um", "/final/straightness/curve/tip_um",
+        "/final/straightness/curve/tip_expanded_uncertainty_um", "/crosscheck/profiles/0/value_um",
+        "/crosscheck/profiles/0/U_um", "/trace/unnamed/curve/at", "/trace/unnamed/curve/residual",
+        "/trace/unnamed/curve/expanded_uncertainty"})
+    for (const Json& value : {Json::array(), Json::array({1.0}), Json::array({1.0, 2.0, 3.0})}) {
+      Json changed = report;
+      changed.at(Json::json_pointer(list)) = value;
+      EXPECT_THAT(refusal(changed.dump()), HasSubstr("accepted: as many numbers as")) << list;
+    }
+}
+
 TEST_F(Document, RefusesWhatIsNoReport) {
   EXPECT_THAT(refusal("/schema", "slideway.diff/1"), HasSubstr("\"slideway.report/2\""));
   for (const char* text : {"", "[]", "3", "{}", "{\"schema\": 1}", "\xff\xfe", "null"})

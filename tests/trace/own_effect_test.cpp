@@ -129,6 +129,16 @@ TEST(OwnEffect, ThatWasMeasuredMayActLater) { LateCause{8.0}.expect_found(); }
 // The clock of the log is 12 s ahead.
 TEST(OwnEffect, ThatWasMeasuredByAWrongClockIsFoundAheadOfIt) { LateCause{-12.0}.expect_found(); }
 
+/// What the loop asks of every log.
+DeclaredEffect followed(const Channel& log) {
+  const std::vector<EffectFactory> laws =
+      channel_effects(log, {{.name = log.name, .free_lag = true, .free_tau = true},
+                            {.name = log.name, .free_tau = true},
+                            {.name = log.name, .free_lag = true},
+                            {.name = log.name}});
+  return {log.name, {.own = laws[0], .simpler = {laws.begin() + 1, laws.end()}}, {}};
+}
+
 // The face follows at once. A log of 0.03 degC, smoothed, leaves a lag and a time constant
 // nothing to explain; with both free they made up for its noise.
 TEST(OwnEffect, OfANoisyLogHasNoLagThatTheDataDoNotAskFor) {
@@ -139,14 +149,8 @@ TEST(OwnEffect, OfANoisyLogHasNoLagThatTheDataDoNotAskFor) {
       log.at.push_back(2.0 * i);
       log.values.push_back(temperature(2.0 * i) + 0.03 * random.normal());
     }
-    std::vector<EffectFactory> laws =
-        channel_effects(log, {{.name = log.name, .free_lag = true, .free_tau = true},
-                              {.name = log.name, .free_tau = true},
-                              {.name = log.name, .free_lag = true},
-                              {.name = log.name}});
     Problem problem = problem_of();
-    problem.trace.own = problem.own_effects = {
-        {log.name, {.own = laws[0], .simpler = {laws.begin() + 1, laws.end()}}, {}}};
+    problem.trace.own = problem.own_effects = {followed(log)};
     const Closed result = closed(problem, warm_faces(seed));
     SCOPED_TRACE(story(result));
     EXPECT_THAT(named(result), ElementsAre("spindle_temperature"));
@@ -154,6 +158,38 @@ TEST(OwnEffect, OfANoisyLogHasNoLagThatTheDataDoNotAskFor) {
     ASSERT_NE(round, nullptr);
     ASSERT_EQ(round->parameters.size(), 1U);
     expect_within_4u(round->parameters, "spindle_temperature.a", 0.2);
+  }
+}
+
+/// Two logs, each of one cause: alone, the first predicts left-out cuts worse than nothing does
+/// where the second is large, and the second, late and turned over, stands for both where the
+/// first is small.
+TEST(OwnEffect, OfTwoThatWereMeasuredBothAreNamed) {
+  const auto pressure = [](double t) { return std::sin(2.0 * 3.141592653589793 * t / 57.0); };
+  for (const auto& [per_degree, per_bar] : {std::pair{0.2, 0.15}, std::pair{0.03, 0.15}}) {
+    Channel heat{.name = "spindle_temperature", .unit = "degC"},
+        air{.name = "air_pressure", .unit = "bar"};
+    RandomStream random(5, "sensors");
+    for (int i = -50; i <= 250; ++i) {
+      const double t = 2.0 * i;
+      heat.at.push_back(t);
+      heat.values.push_back((t > 0.0 ? temperature(t) : 20.0) + 0.01 * random.normal());
+      air.at.push_back(t);
+      air.values.push_back(pressure(t) + 0.001 * random.normal());
+    }
+    Problem problem = problem_of();
+    problem.trace.own = problem.own_effects = {followed(heat), followed(air)};
+    const turning::Hidden both{
+        "both", [&](const turning::ToolPoint& tool) {
+          return 1e-3 * (per_degree * (temperature(tool.t) - 20.0) + per_bar * pressure(tool.t));
+        }};
+    const Closed result = closed(problem, quarter_faces(both, 3, kBlunt, 71));
+    SCOPED_TRACE(story(result));
+    EXPECT_THAT(named(result), ::testing::UnorderedElementsAre(heat.name, air.name));
+    const TraceRound *first = round_of(result, heat.name), *second = round_of(result, air.name);
+    ASSERT_TRUE(first && second);
+    expect_within_4u(first->parameters, heat.name + ".a", per_degree);
+    expect_within_4u(second->parameters, air.name + ".a", per_bar);
   }
 }
 

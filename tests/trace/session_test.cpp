@@ -251,6 +251,24 @@ TEST(Reversal, OfALevelGivesItsZeroAndTheInclinationOfTheWay) {
   expect_within_4u(result.declared->parameters, "straightness.b1", -4.0 * kBow / kTravel);
 }
 
+// The zero is known by the turned line alone: U allows for a bend of the drift, a share of its
+// size, which is no doubt that there is one.
+TEST(Reversal, OfALevelNamesTheDriftOfItsZero) {
+  for (const double rate : {1.0, 6.0}) {
+    const Session session{.rate_rad_per_s = rate * 1e-6 / 60.0};
+    std::vector<Profile> profiles{session.read("line", true, 0.0, 1.0, 6),
+                                  session.read("back", false, 700.0, 1.0, 6),
+                                  session.read("turned", true, 1400.0, -1.0, 6)};
+    for (Profile& profile : profiles) profile.free_offset = profile.free_tilt = false;
+    const Closed result = closed(bed({{"instrument_zero", {}, {}}}), profiles);
+    SCOPED_TRACE(story(result));
+    EXPECT_THAT(named(result), ElementsAre("zero_drift"));
+    const TraceRound* round = round_of(result, "zero_drift");
+    ASSERT_NE(round, nullptr);
+    expect_within_4u(round->parameters, "zero_drift.rate_per_min", rate);
+  }
+}
+
 /// An indicator on the carriage along a straightedge; the edge is turned over for the second line.
 std::vector<Profile> straightedge(std::uint64_t seed) {
   std::vector<Profile> out;

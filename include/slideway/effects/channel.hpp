@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "slideway/effects/effect.hpp"
@@ -27,6 +28,9 @@ struct ChannelResponse {
   std::optional<double> tau_s;  // first-order lag: τ dy/dt = q - y, in balance at its start
   bool since_start = false;     // q is counted from its value where the cut starts
 };
+
+/// How what such an effect lacks (Effect::lacking) begins.
+inline constexpr std::string_view kLogLacks = "the log ";
 
 /// Values of a log that do not belong to it: single ones far from both neighbours, and those of one
 /// number, such as 0 where a sensor was not read, that lies further away from all others than these

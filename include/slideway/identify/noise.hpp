@@ -77,8 +77,13 @@ class Noise {
   [[nodiscard]] MixtureFactor factored(const ExponentialMixture& covariance) const;
 
   /// Adds errors of a known size: C Cᵀ to the covariance, C one standard deviation a column,
-  /// #values by k. Sizes and lengths of the noise are told without them.
+  /// #values by k, to those that were added before. Sizes and lengths of the noise are told
+  /// without them.
   void add_known(const Eigen::MatrixXd& columns);
+  /// C of all that were added; no columns: none.
+  [[nodiscard]] Eigen::MatrixXd known() const {
+    return known_ ? known_->columns : Eigen::MatrixXd(values_, 0);
+  }
 
   /// Rows made independent with unit variance (whitening), and the inverse. In place.
   void whiten(Eigen::Ref<Eigen::MatrixXd> rows) const;
@@ -92,6 +97,8 @@ class Noise {
     Eigen::VectorXd deviations;
   };
 
+  void set_known(const Eigen::MatrixXd& columns);
+
   [[nodiscard]] double extent() const;  // in stations
   [[nodiscard]] double spectrum(const ExponentialMixture& covariance) const;
 
@@ -103,8 +110,8 @@ class Noise {
   std::shared_ptr<const KnownErrors> known_;  // null: none
 };
 
-/// One profile, linearised: values ≈ nuisances * ν + columns * w + noise, with the columns reduced
-/// to directions all data together determine.
+/// One profile, linearised: values ≈ nuisances * ν + columns * w + bounded * v + noise, with the
+/// columns reduced to directions all data together determine and v of unit covariance.
 struct LinearProfile {
   Eigen::MatrixXd nuisances;       // #values by m
   Eigen::MatrixXd columns;         // #values by r
@@ -114,6 +121,7 @@ struct LinearProfile {
   std::vector<double> stations;    // rising, at least 1 apart; empty: neighbours
   std::vector<double> trace;       // stations of the whole trace; empty: neighbours
   Eigen::Index values = 0;         // of the whole trace; 0: as many as there are
+  Eigen::MatrixXd bounded;         // #values by q, one standard deviation a column, mm or rad
 
   /// Length of the whole trace in stations.
   [[nodiscard]] double extent() const;

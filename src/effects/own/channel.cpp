@@ -284,18 +284,18 @@ std::vector<std::string> ChannelEffect::lacking(const Setup& setup) const {
   const std::string where = " from " + significant(earliest, 5) + " to " +
                             significant(range.high, 5) + " " + unit_of_clock(*channel_);
   if (earliest < at.front() - rounding || range.high > at.back() + rounding)
-    return {"the log " + channel_->name + where + " (it has " + significant(at.front(), 5) +
-            " to " + significant(at.back(), 5) + ")"};
+    return {std::string(kLogLacks) + channel_->name + where + " (it has " +
+            significant(at.front(), 5) + " to " + significant(at.back(), 5) + ")"};
   const double spacing = (at.back() - at.front()) / static_cast<double>(at.size() - 1);
   for (std::size_t i = 1; i < at.size(); ++i) {
     const double gap = std::min(at[i], range.high) - std::max(at[i - 1], range.low);
     if (gap <= kWidestGap * range.extent()) continue;
     const std::string unit = " " + unit_of_clock(*channel_);
     if (at[i] - at[i - 1] < kEven * spacing)
-      return {"the log " + channel_->name + where + " at least every " +
+      return {std::string(kLogLacks) + channel_->name + where + " at least every " +
               significant(kWidestGap * range.extent(), 2) + unit + " (it has every " +
               significant(spacing, 2) + unit + ")"};
-    return {"the log " + channel_->name + where + " without the gap at " +
+    return {std::string(kLogLacks) + channel_->name + where + " without the gap at " +
             significant(at[i - 1], 5) + unit};
   }
   return {};

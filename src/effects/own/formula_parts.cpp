@@ -188,9 +188,9 @@ void FormulaParts::check_sizes() {
   quantity_ = *of_all;
 }
 
-// Each unit is scaled alone: the formula has to follow as its sizes do. A number in it may carry a
-// unit, a law that is no power of a unit shows none, and a size in um alone is in the units of the
-// variables.
+// Each unit is scaled alone: the formula has to follow as its sizes do, each of them beside no
+// other. A number in it may carry a unit, and a law that is no power of a unit shows none. A size
+// in um alone gets the unit that it has.
 void FormulaParts::check_units() {
   if (formula_.function || has_number_with_unit(formula_.text)) return;
   const std::string of_size = quantity_ == Quantity::slope ? "urad" : "um";
@@ -216,28 +216,30 @@ void FormulaParts::check_units() {
                                ", or a number in the formula that converts it");
   };
   FormulaProbes probes(formula_, expression_);
-  UnitPowers too_much;
-  for (const std::string& symbol : all) {
-    const auto power_of = [&](std::size_t name) {
-      const auto at = powers[name].find(symbol);
-      return at == powers[name].end() ? 0.0 : at->second;
-    };
-    std::vector<double> exponents;
-    for (std::size_t name = 0; name < powers.size(); ++name) exponents.push_back(power_of(name));
-    if (const std::optional<double> degree = probes.degree(exponents)) {
-      const double more = std::round(2.0 * (*degree - (symbol == of_size ? 1.0 : 0.0))) / 2.0;
-      if (more != 0.0) too_much[symbol] = more;
-    } else if (!known.contains(symbol)) {
-      for (std::size_t name = first; name < powers.size(); ++name)
-        if (power_of(name) != 0.0)
-          refuse_unit(name, "no variable of the formula is", joined(of_variables, " "));
+  for (const std::size_t size : amplitudes_) {
+    UnitPowers fitting = powers[size];
+    for (const std::string& symbol : all) {
+      const auto power_of = [&](std::size_t name) {
+        const auto at = powers[name].find(symbol);
+        return at == powers[name].end() ? 0.0 : at->second;
+      };
+      std::vector<double> exponents;
+      for (std::size_t name = 0; name < powers.size(); ++name) exponents.push_back(power_of(name));
+      if (const auto degree = probes.degree(exponents, amplitudes_, size)) {
+        const double more = std::round(2.0 * (*degree - (symbol == of_size ? 1.0 : 0.0))) / 2.0;
+        if (more != 0.0) fitting[symbol] -= more;
+      } else if (!known.contains(symbol)) {
+        for (std::size_t name = first; name < powers.size(); ++name)
+          if (power_of(name) != 0.0)
+            refuse_unit(name, "no variable of the formula is",
+                        symbol == "deg" ? "rad" : joined(of_variables, " "));
+      }
     }
+    if (fitting == powers[size]) continue;
+    if (powers[size].size() > 1)
+      refuse_unit(size, "the formula is then not in " + of_size, spelled(fitting));
+    formula_.parameters[size - first].unit = spelled(fitting);
   }
-  const std::size_t size = amplitudes_.front();
-  if (too_much.empty() || powers[size].size() == 1) return;
-  UnitPowers fitting = powers[size];
-  for (const auto& [symbol, more] : too_much) fitting[symbol] -= more;
-  refuse_unit(size, "the formula is then not in " + of_size, spelled(fitting));
 }
 
 void FormulaParts::describe_parameters() {

@@ -110,10 +110,13 @@ bool FormulaProbes::moves_a_jump(std::size_t parameter) {
   return static_cast<double>(little) <= kRarely * static_cast<double>(much);
 }
 
-std::optional<double> FormulaProbes::degree(const std::vector<double>& exponents) {
+std::optional<double> FormulaProbes::degree(const std::vector<double>& exponents,
+                                            std::span<const std::size_t> sizes, std::size_t of) {
   constexpr double kScale = 2.0, kSame = 1e-6;
   std::optional<double> out;
-  for (const std::vector<double>& place : places_) {
+  for (std::vector<double> place : places_) {
+    for (const std::size_t size : sizes)
+      if (size != of) place[size] = 0.0;
     std::vector<double> scaled = place;
     for (std::size_t i = 0; i < scaled.size(); ++i) scaled[i] *= std::pow(kScale, exponents[i]);
     const double here = value(place), there = value(scaled);

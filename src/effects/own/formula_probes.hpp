@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,10 @@ class FormulaProbes {
   // f does not change with the parameter but where it jumps.
   [[nodiscard]] bool moves_a_jump(std::size_t parameter);
 
-  // p where f(λ^e_1 v_1, λ^e_2 v_2, ...) = λ^p f(v_1, v_2, ...) of all names; none: it is no power.
-  [[nodiscard]] std::optional<double> degree(const std::vector<double>& exponents);
+  // p where f(λ^e_1 v_1, λ^e_2 v_2, ...) = λ^p f(v_1, v_2, ...) of all names, those of all sizes
+  // but one being 0; none: it is no power.
+  [[nodiscard]] std::optional<double> degree(const std::vector<double>& exponents,
+                                             std::span<const std::size_t> sizes, std::size_t of);
 
   // 0 where all of these are 0.
   [[nodiscard]] bool vanishes_without(const std::vector<std::size_t>& parameters);

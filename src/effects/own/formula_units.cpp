@@ -18,7 +18,7 @@ bool is_letter(char c) {
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 bool has_no_dimension(const std::string& symbol) {
-  for (const char* each : {"rad", "deg", "turn", "turns", "rev", "cycle", "cycles", "%", "1"})
+  for (const char* each : {"rad", "turn", "turns", "rev", "cycle", "cycles", "%", "1"})
     if (symbol == each) return true;
   return false;
 }
@@ -89,7 +89,8 @@ class UnitReader {
     const double sign = is_marked && takes('-') ? -1.0 : 1.0;
     double out = 0.0;
     const std::size_t first = at_;
-    for (; !at_end() && is_digit(unit_[at_]); ++at_) out = 10.0 * out + (unit_[at_] - '0');
+    while (!at_end() && (is_digit(unit_[at_]) || (is_marked && unit_[at_] == '.'))) ++at_;
+    std::from_chars(unit_.data() + first, unit_.data() + at_, out);
     if (at_ == first && is_marked) fail();
     return at_ == first ? 1.0 : sign * out;
   }

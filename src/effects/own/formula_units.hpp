@@ -6,7 +6,8 @@
 
 namespace slideway {
 
-// Exponents of the units that a unit is made of; angles, turns, % and 1 have none.
+// Exponents of the units that a unit is made of; rad, turns, % and 1 have none. A degree has: what
+// cos() takes is in rad.
 using UnitPowers = std::map<std::string, double>;
 
 // "um/min", "mm^-2", "um/(m s)"; Hz is 1/s. Throws UsageError where it cannot be read.
