@@ -32,6 +32,12 @@ Eigen::MatrixXd orthonormal(Eigen::MatrixXd columns) {
   return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), qr.rank());
 }
 
+void clear_rounding(Eigen::Ref<Eigen::MatrixXd> columns, const Eigen::VectorXd& before) {
+  constexpr double kRounding = 1e-9;
+  for (Eigen::Index j = 0; j < columns.cols(); ++j)
+    if (columns.col(j).norm() <= kRounding * before[j]) columns.col(j).setZero();
+}
+
 void append_columns(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more) {
   Eigen::MatrixXd out(std::max(columns.rows(), more.rows()), columns.cols() + more.cols());
   out << columns, more;

@@ -197,8 +197,10 @@ std::vector<Noise> estimated(const PartialEstimate& part, const Linearisation& l
 /// Directions of the shared columns that the data determine beside all others.
 Eigen::MatrixXd shared_basis(const ColumnPlaces& places, const Compressed& compressed,
                              const Gates& gates) {
-  Eigen::MatrixXd beside = compressed.triangle(Eigen::all, places.shared);
-  project_out(orthonormal(compressed.triangle(Eigen::all, places.own)), beside);
+  Eigen::MatrixXd beside = compressed.triangle(Eigen::all, places.shared),
+                  own = compressed.triangle(Eigen::all, places.own);
+  clear_rounding(own, compressed.scale(places.own));
+  project_out(orthonormal(std::move(own)), beside);
   return analyse_rank(beside, compressed.scale(places.shared), gates.rank_tolerance).basis;
 }
 

@@ -35,11 +35,9 @@ void ProfileBases::take_out(Eigen::MatrixXd& white) const {
 }
 
 Eigen::MatrixXd ProfileBases::beside(Eigen::MatrixXd white) const {
-  constexpr double kRounding = 1e-10;  // of a column: what is left of one that the bases make
-  const Eigen::RowVectorXd whole = white.colwise().norm();
+  const Eigen::VectorXd before = white.colwise().norm();
   for (int pass = 0; pass < 2; ++pass) take_out(white);
-  for (Eigen::Index j = 0; j < white.cols(); ++j)
-    if (white.col(j).norm() <= kRounding * whole[j]) white.col(j).setZero();
+  clear_rounding(white, before);
   return white;
 }
 

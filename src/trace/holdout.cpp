@@ -8,8 +8,6 @@
 namespace slideway {
 namespace {
 
-constexpr double kTakenByLevelling = 1e-9;  // of a column, what is left of it at most
-
 /// White columns [model, effect, residual] of one profile, free of its nuisances and loose values,
 /// as the triangle that has the same inner products.
 Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, std::size_t i,
@@ -26,8 +24,7 @@ Eigen::MatrixXd white_rows(const Linearisation& linear, const Whitened& data, st
   Eigen::MatrixXd rest = rows.rightCols(k + a + 1);
   const Eigen::VectorXd before = rest.colwise().norm();
   project_out(basis, rest);
-  for (Eigen::Index j = k; j < k + a; ++j)
-    if (rest.col(j).norm() <= kTakenByLevelling * before[j]) rest.col(j).setZero();
+  clear_rounding(rest.leftCols(k + a), before);
   return upper_triangle(rest);
 }
 

@@ -56,7 +56,9 @@ struct Beside {
     const Eigen::MatrixXd linear = linear_columns(model, estimate, observation);
     Eigen::MatrixXd all(n, parts + of_whole.cols() + 1 + linear.cols());
     all << of_parts, of_whole, observation.values, linear;
+    const Eigen::VectorXd whole_lengths = all.colwise().norm();
     all = levelled(observation, std::move(all));
+    clear_rounding(all, whole_lengths);
     images = all.leftCols(parts);
     const Eigen::MatrixXd form = orthonormal(all.rightCols(linear.cols()));
     project_out(form, all);

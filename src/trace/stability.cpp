@@ -46,7 +46,9 @@ class Choice {
                                const std::string& own_name, double tie) const {
     Eigen::MatrixXd columns(std::ssize(rows), columns_.cols() + 1);
     columns << columns_(rows, Eigen::all), residual(rows);
+    const Eigen::VectorXd before = columns.colwise().norm();
     columns = round_.data.outside_in(rows, std::move(columns));
+    clear_rounding(columns, before);
     const auto rest = columns.rightCols(1);
     const auto count = static_cast<double>(residual.size());
     const double log_count = std::log(count), to_all = count / static_cast<double>(rows.size());

@@ -13,6 +13,11 @@ void project_out(const Eigen::MatrixBase<Basis>& basis, Eigen::MatrixBase<Column
   columns.noalias() -= basis.derived() * (basis.transpose() * columns.derived()).eval();
 }
 
+/// Sets columns to zero that are less than 1e-9 of what they were: the rounding of what was taken
+/// out of them is no direction.
+/// @param before  their lengths
+void clear_rounding(Eigen::Ref<Eigen::MatrixXd> columns, const Eigen::VectorXd& before);
+
 /// Puts more columns, of as many rows, behind the others.
 void append_columns(Eigen::MatrixXd& columns, const Eigen::MatrixXd& more);
 
