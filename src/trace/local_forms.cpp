@@ -73,8 +73,8 @@ class LocalFormSearch {
                   const Linearisation& linear)
       : data_(data), linear_(linear), x_(x) {
     low_ = high_ = x_.front()[0];
-    for (const Eigen::VectorXd& x : x_)
-      low_ = std::min(low_, x.minCoeff()), high_ = std::max(high_, x.maxCoeff());
+    for (const Eigen::VectorXd& each : x_)
+      low_ = std::min(low_, each.minCoeff()), high_ = std::max(high_, each.maxCoeff());
   }
 
   double run() {

@@ -334,5 +334,23 @@ TEST_P(BatchRanks, AProcessThatDiesLosesNoFinishedResult) {
 INSTANTIATE_TEST_SUITE_P(Mpi, BatchRanks, testing::Values(1, 2, 4));
 #endif
 
+// Code that lies beside a copy of the program and that anybody could have put there.
+TEST_F(ProgramTest, MpiPartThatAllMayWriteIsNotLoaded) {
+  namespace fs = std::filesystem;
+  fs::create_directories(path("bin"));
+  fs::create_directories(path("lib/slideway"));
+  fs::copy(SLIDEWAY_PROGRAM, path("bin/slideway"));
+  folder_.file("lib/slideway/libslideway_mpi.so", "no library");
+  fs::permissions(path("lib/slideway/libslideway_mpi.so"), fs::perms::others_write,
+                  fs::perm_options::add);
+  folder_.file("list.csv", "id,problem\na,problem.toml\n");
+  const std::string command = "cd '" + path("").string() +
+                              "' && OMPI_COMM_WORLD_SIZE=1 bin/slideway batch list.csv "
+                              "--out out.jsonl 2> said.txt";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+  EXPECT_THAT(contents(path("said.txt")), HasSubstr("and written by nobody else"));
+}
+
 }  // namespace
 }  // namespace slideway::batch_test
