@@ -17,8 +17,8 @@ std::string variable(const char* name) {
 /// What lies beside the program is code of whoever put it there: it must be of those whom the
 /// program itself is trusted to.
 void require_trusted(const std::filesystem::path& path, const std::filesystem::path& program) {
-  struct stat own {
-  }, of_program{};
+  struct stat own = {};
+  struct stat of_program = {};
   if (::stat(path.c_str(), &own) != 0 || ::stat(program.c_str(), &of_program) != 0) return;
   if ((own.st_uid == 0 || own.st_uid == of_program.st_uid) && (own.st_mode & S_IWOTH) == 0) return;
   throw UsageError("started by MPI, but " + path.string() +

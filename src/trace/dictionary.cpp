@@ -135,10 +135,6 @@ void lay_out(const Viewer& viewer, ShapeLattice grid, Candidate& candidate) {
   candidate.columns = std::move(columns);
 }
 
-void lay_out(const Model& model, const Viewer& viewer, Candidate& candidate) {
-  lay_out(viewer, ShapeLattice(shape_axes(model, candidate.term)), candidate);
-}
-
 /// Axes of the shapes but those of a higher order.
 std::vector<std::vector<double>> lower_axes(const Candidate& candidate,
                                             const std::vector<std::vector<double>>& axes) {
@@ -279,7 +275,7 @@ Eigen::MatrixXd Candidate::columns_around(Eigen::Index atom) const {
 }
 
 void lay_out(const Model& model, Eigen::Index prior_rows, Candidate& candidate) {
-  lay_out(model, Viewer(model, prior_rows), candidate);
+  lay_out(model, prior_rows, ShapeLattice(shape_axes(model, candidate.term)), candidate);
 }
 
 void lay_out(const Model& model, Eigen::Index prior_rows, ShapeLattice grid, Candidate& candidate) {

@@ -57,7 +57,7 @@ AcceptedEffect as_accepted(const SearchRound& round, const TestedCandidate& choi
 std::vector<std::string> outranked_by(const SearchRound& round, const TestedCandidate& chosen,
                                       const Gates& gates) {
   std::vector<std::string> out;
-  const bool measured = chosen.refined.candidate->term.effect->description().measured;
+  const bool measured = is_measured(*chosen.refined.candidate);
   for (const TestedCandidate* each : round.outranked(chosen, gates))
     out.push_back((is_in_fewer_readings(*each, chosen)
                        ? std::string(measured ? "a measured cause is taken to act in all profiles"

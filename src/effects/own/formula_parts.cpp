@@ -60,6 +60,16 @@ std::optional<Quantity> quantity_of(UnitPowers powers) {
   return is_slope ? Quantity::slope : Quantity::height;
 }
 
+/// The power of one unit in that of every name.
+std::vector<double> exponents_of(const std::string& symbol, const std::vector<UnitPowers>& powers) {
+  std::vector<double> out;
+  for (const UnitPowers& of_name : powers) {
+    const auto at = of_name.find(symbol);
+    out.push_back(at == of_name.end() ? 0.0 : at->second);
+  }
+  return out;
+}
+
 std::string symbol_of_unit(std::string unit) {
   if (unit.starts_with("um")) return "µm" + unit.substr(2);
   if (unit.starts_with("urad")) return "µrad" + unit.substr(4);
@@ -219,18 +229,13 @@ void FormulaParts::check_units() {
   for (const std::size_t size : amplitudes_) {
     UnitPowers fitting = powers[size];
     for (const std::string& symbol : all) {
-      const auto power_of = [&](std::size_t name) {
-        const auto at = powers[name].find(symbol);
-        return at == powers[name].end() ? 0.0 : at->second;
-      };
-      std::vector<double> exponents;
-      for (std::size_t name = 0; name < powers.size(); ++name) exponents.push_back(power_of(name));
+      const std::vector<double> exponents = exponents_of(symbol, powers);
       if (const auto degree = probes.degree(exponents, amplitudes_, size)) {
         const double more = std::round(2.0 * (*degree - (symbol == of_size ? 1.0 : 0.0))) / 2.0;
         if (more != 0.0) fitting[symbol] -= more;
       } else if (!known.contains(symbol)) {
         for (std::size_t name = first; name < powers.size(); ++name)
-          if (power_of(name) != 0.0)
+          if (exponents[name] != 0.0)
             refuse_unit(name, "no variable of the formula is",
                         symbol == "deg" ? "rad" : joined(of_variables, " "));
       }
