@@ -106,18 +106,22 @@ void check_plausibility(const Model& model, const Solution& fit, ModelResult& ou
   out.notes.push_back(out.implausible + ": look for another cause before blaming the slide");
 }
 
-/// Sizes beyond the range that is given for them: the fit does not keep them inside.
+/// Sizes beyond the range that is given for them by more than their U: the fit does not keep
+/// them inside.
 void explain_range(const Model& model, const Solution& fit, ModelResult& out) {
   for (const ModelTerm& term : model.terms)
     for (std::size_t p = 0; p < term.effect->parameters().size(); ++p) {
       const Parameter& parameter = term.effect->parameters()[p];
       const Eigen::Index at = term.first_parameter + static_cast<Eigen::Index>(p);
       const double value = fit.parameters.values[at];
-      if (!fit.null.identifiable[at] || (value >= parameter.lower && value <= parameter.upper))
-        continue;
+      const double margin =
+          out.parameters[static_cast<std::size_t>(at)].expanded_uncertainty.value_or(0.0);
+      const bool below = value + margin < parameter.lower;
+      if (!fit.null.identifiable[at] || !(below || value - margin > parameter.upper)) continue;
       out.notes.push_back(term.name + ": " + parameter.symbol + " is " + significant(value, 3) +
-                          " " + parameter.unit + ", outside of " + shortest(parameter.lower) +
-                          " to " + shortest(parameter.upper) +
+                          " " + parameter.unit + ", " + (below ? "below " : "above ") +
+                          shortest(below ? parameter.lower : parameter.upper) + " " +
+                          parameter.unit +
                           ": a size is not held inside its bounds, but the model is then wrong");
     }
 }

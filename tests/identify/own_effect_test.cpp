@@ -2,9 +2,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "identify/cases.hpp"
 #include "problem_file.hpp"
 #include "slideway/base/file.hpp"
+#include "slideway/base/random.hpp"
 #include "slideway/effects/catalogue.hpp"
+#include "slideway/effects/formula.hpp"
 #include "slideway/identify/identify.hpp"
 #include "slideway/identify/simulate.hpp"
 
@@ -217,6 +220,27 @@ TEST_F(OwnEffects, AreRefusedInProfilesOfAnotherQuantity) {
   EXPECT_EQ(why(with("[[trace.candidate]]\n" + bend)), "");
   EXPECT_THAT(why(with("[[trace.candidate]]\n" + bend + here)), refused);
   EXPECT_THAT(why(with("[[effect]]\n" + bend)), refused);
+}
+
+// Noise of 1 µm at 100 stations: U of a is 0.3 µm.
+TEST(OwnEffectBounds, AreSaidToBeLeftWhereTheSizeIsBeyondThemByItsU) {
+  const std::vector<double> x = cases::spaced(0.0, 400.0, 100);
+  const auto notes_of = [&](double size_mm, std::optional<double> upper) {
+    RandomStream random(1, "bounds");
+    std::vector<double> z;
+    for (const double at : x) z.push_back(size_mm * std::sin(at / 30.0) + 1e-3 * random.normal());
+    DeclaredEffect own = cases::effect("own");
+    own.options.own = formula_effect(
+        {.name = "own", .text = "a * sin(x / 30)", .parameters = {{"a", "um", 0.0, upper}}});
+    const std::vector<Profile> profiles{cases::profile("slide", Kind::slide, x, z)};
+    const FittedModel found = fit_declared(cases::problem(Lever::paper, 0, {own}), profiles);
+    return summarise(found.model, found.fit).notes;
+  };
+  const auto said = [](const char* what) { return ::testing::Contains(HasSubstr(what)); };
+  EXPECT_THAT(notes_of(-5e-3, {}), said("below 0 µm: a size is not held inside its bounds"));
+  EXPECT_THAT(notes_of(5e-3, 2.0), said("above 2 µm: a size is not held inside its bounds"));
+  EXPECT_THAT(notes_of(0.0, {}), ::testing::Not(said("inside its bounds")));
+  EXPECT_THAT(notes_of(5e-3, {}), ::testing::Not(said("inside its bounds")));
 }
 
 }  // namespace
