@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include "compared_curves.hpp"
 #include "reported.hpp"
@@ -89,23 +91,31 @@ Eigen::MatrixXd difference_root(const Pair& pair, const Eigen::MatrixXd& of_a,
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-double largest_en(const Pair& pair, const ComparedCurve& curve, double outside) {
+/// The largest difference along a curve, in standard uncertainties, with what its limit depends on.
+struct Largest {
+  double difference = 0.0, freedom = 0.0, length = 0.0;
+};
+
+/// None where the two sides cannot differ: both have the curve from the same priors.
+std::optional<Largest> largest_difference(const Pair& pair, const ComparedCurve& curve) {
   constexpr double kNothing = 1e-12;  // of the largest variance: the ends of a levelled curve
   const Eigen::MatrixXd of_a = curve.rows * pair.a.basis, of_b = curve.rows * pair.b.basis,
                         both = difference_root(pair, of_a, of_b);
   const Eigen::VectorXd variance_a = of_a.rowwise().squaredNorm(),
                         variance_b = of_b.rowwise().squaredNorm(),
                         variance = both.rowwise().squaredNorm();
+  if (!(variance.maxCoeff() > kNothing * (variance_a + variance_b).maxCoeff())) return std::nullopt;
   const double least = kNothing * variance.maxCoeff();
   const Eigen::VectorXd difference = curve.rows * (pair.a.change - pair.b.change);
   Eigen::Index at = 0;
-  const double largest =
+  Largest out;
+  out.difference =
       std::sqrt(difference.cwiseAbs2().cwiseQuotient(variance.cwiseMax(least)).maxCoeff(&at));
-  const double freedom =
+  out.freedom =
       std::pow(variance_a[at] + variance_b[at], 2) /
       (std::pow(variance_a[at], 2) / pair.a.freedom + std::pow(variance_b[at], 2) / pair.b.freedom);
-  const double length = path_length(both, variance, least);
-  return largest / simultaneous_factor(length, freedom, outside);
+  out.length = path_length(both, variance, least);
+  return out;
 }
 
 /// Appends the end-point straightness of a slide as one side has it, and its U.
@@ -212,28 +222,33 @@ class ProfileComparison {
 
   [[nodiscard]] std::vector<ProfileCheck> checks() const {
     const std::optional<Oneness> all = of_all();
-    std::size_t comparisons = all ? 1 : 0;
-    for (const Pair& pair : pairs_) comparisons += pair.curves.size();
-    const Gates& gates = model_.gates;
-    const double outside =
-        -std::expm1(std::log1p(-gates.false_disagreement) / static_cast<double>(comparisons));
+    std::vector<std::pair<ProfileCheck, Largest>> compared;
     Eigen::VectorXd joint(fit_.estimate.amplitudes.size() + fit_.estimate.shapes.size());
     joint << fit_.estimate.amplitudes, fit_.estimate.shapes;
+    const Gates& gates = model_.gates;
+    for (const Pair& pair : pairs_) {
+      const Oneness oneness(noise_, {&pair.a, &pair.b}, gates.rank_tolerance);
+      for (const ComparedCurve& curve : pair.curves) {
+        const std::optional<Largest> largest = largest_difference(pair, curve);
+        if (!largest) continue;
+        ProfileCheck check{pair.names, curve.what};
+        set_chi_square(oneness, check);
+        if (curve.of_slide)
+          for (const Alone* side : {&pair.a, &pair.b}) add_straightness(curve, *side, joint, check);
+        compared.emplace_back(std::move(check), *largest);
+      }
+    }
+    const auto comparisons = static_cast<double>(compared.size() + (all ? 1 : 0));
+    const double outside = -std::expm1(std::log1p(-gates.false_disagreement) / comparisons);
     const auto judge = [&](double en, ProfileCheck& check) {
       check.En = en;
       check.verdict = en <= gates.en_limit ? Consistency::consistent : Consistency::inconsistent;
     };
     std::vector<ProfileCheck> out;
-    for (const Pair& pair : pairs_) {
-      const Oneness oneness(noise_, {&pair.a, &pair.b}, gates.rank_tolerance);
-      for (const ComparedCurve& curve : pair.curves) {
-        ProfileCheck check{pair.names, curve.what};
-        judge(largest_en(pair, curve, outside), check);
-        set_chi_square(oneness, check);
-        if (curve.of_slide)
-          for (const Alone* side : {&pair.a, &pair.b}) add_straightness(curve, *side, joint, check);
-        out.push_back(std::move(check));
-      }
+    for (auto& [check, largest] : compared) {
+      judge(largest.difference / simultaneous_factor(largest.length, largest.freedom, outside),
+            check);
+      out.push_back(std::move(check));
     }
     if (!all) return out;
     ProfileCheck& together = out.emplace_back();

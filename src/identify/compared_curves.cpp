@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/low_band_lines.hpp"
 #include "slideway/identify/straightness.hpp"
 
@@ -28,9 +29,10 @@ SlideRange common_travel(const Model& model, const Profile& a, const Profile& b)
 
 /// Low band of an effect in one profile, as far as levelling leaves it, at most kCurvePoints rows.
 Eigen::MatrixXd levelled_curve(const Linearisation& linear, std::size_t i, const ModelTerm& term) {
-  const Eigen::MatrixXd all =
-      levelled(*linear.observations[i],
-               linear.columns[i].middleCols(term.first_amplitude, term.effect->amplitudes()));
+  const Eigen::MatrixXd columns =
+      linear.columns[i].middleCols(term.first_amplitude, term.effect->amplitudes());
+  Eigen::MatrixXd all = levelled(*linear.observations[i], columns);
+  clear_rounding(all, columns.colwise().norm());
   const Eigen::Index count = std::min(kCurvePoints, all.rows());
   Eigen::MatrixXd out(count, all.cols());
   for (Eigen::Index row = 0; row < count; ++row) out.row(row) = all.row(row * all.rows() / count);

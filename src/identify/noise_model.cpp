@@ -130,7 +130,8 @@ std::vector<std::size_t> pools_of(const Linearisation& linear) {
 }
 
 /// Stations of the low-band values in their median step, for the noise between two of them; empty
-/// if they are neighbours. Those closer than the median step count as neighbours.
+/// if they are neighbours. Those closer than the median step count as neighbours; values beyond an
+/// end of the trace stand at that end, no step apart.
 std::vector<double> stations_of(const Observation& observation) {
   const std::vector<double> positions =
       observation.low_band.positions(observation.profile->positions);
@@ -140,6 +141,7 @@ std::vector<double> stations_of(const Observation& observation) {
   if (steps.empty() || std::ranges::max(steps) <= (1.0 + kSameStep) * std::ranges::min(steps))
     return {};
   std::vector<double> sorted = steps;
+  std::erase(sorted, 0.0);
   const double usual = median(sorted);
   std::vector<double> out{0.0};
   for (const double step : steps)

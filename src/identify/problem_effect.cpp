@@ -48,7 +48,8 @@ std::unique_ptr<Effect> made(const Section& section, const std::string& name,
 }
 
 /// The options of an effect with one size in all its profiles, one for each instrument, or one for
-/// each profile that can see it: by `scope`, and where the effect is of one profile each.
+/// each profile that can see it: by `scope`, and where the effect is of one profile each. As they
+/// are where no profile can.
 std::vector<EffectOptions> by_scope(const Section& section, const Effect& effect,
                                     const EffectOptions& options, const Problem& problem) {
   std::vector<EffectOptions> out;
@@ -71,7 +72,7 @@ std::vector<EffectOptions> by_scope(const Section& section, const Effect& effect
   const std::string scope =
       section.one_of("scope", "all instrument profile")
           .value_or(effect.description().of_instrument ? "instrument" : "all");
-  if (scope == "profile" || of_one) return out;
+  if (!out.empty() && (scope == "profile" || of_one)) return out;
   return scope == "instrument" ? of_each_instrument(options, seen) : std::vector{options};
 }
 

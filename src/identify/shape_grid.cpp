@@ -42,7 +42,50 @@ std::vector<double> places_between(const std::vector<CoarseProfile>& profiles,
   return out;
 }
 
+/// REQUIRES profiles that live as long.
+std::vector<Stations> stations_of(const std::vector<CoarseProfile>& profiles,
+                                  const Machine& machine) {
+  std::vector<Stations> out;
+  for (const CoarseProfile& profile : profiles)
+    out.emplace_back(profile.positions, profile.profile->setup, machine);
+  return out;
+}
+
+/// Over what any of these stations can show.
+std::pair<double, double> search_range(const Effect& effect, int shape,
+                                       const std::vector<Stations>& stations) {
+  std::pair<double, double> out{INFINITY, -INFINITY};
+  for (const Stations& one : stations) {
+    const auto [low, high] = effect.search_range(shape, one);
+    out = {std::min(out.first, low), std::max(out.second, high)};
+  }
+  const Parameter& parameter = effect.parameters()[effect.shapes()[shape].parameter];
+  return {std::max(out.first, parameter.lower), std::min(out.second, parameter.upper)};
+}
+
 }  // namespace
+
+std::pair<double, double> shape_bounds(const Model& model, const ModelTerm& term, int shape) {
+  const Effect& effect = *term.effect;
+  const Parameter& parameter = effect.parameters()[effect.shapes()[shape].parameter];
+  const std::pair<double, double> own{parameter.lower, parameter.upper};
+  if (std::ranges::count(term.priors, parameter.name, &Prior::parameter) > 0) return own;
+  const std::vector<CoarseProfile> profiles = profiles_that_show(model, term);
+  if (profiles.empty()) return own;
+  const std::vector<Stations> stations = stations_of(profiles, model.machine);
+  const auto [low, high] = search_range(effect, shape, stations);
+  const auto cycles = [&](double at) {
+    const std::vector<double> shapes(effect.shapes().size(), at);
+    const std::vector<LineBand> lines = effect.lines(stations.front(), shapes);
+    return lines.empty() ? 0.0 : lines.front().high;
+  };
+  if (!(effect.resolution(shape, low, stations.front()) < high - low)) return own;
+  constexpr double kFold = 2.0;  // a search stops at four values a cycle
+  std::pair<double, double> out = own;
+  if (cycles(low) > cycles(high)) out.first = std::max(own.first, low / kFold);
+  if (cycles(high) > cycles(low)) out.second = std::min(own.second, high * kFold);
+  return out;
+}
 
 std::vector<double> every(std::size_t step, const std::vector<double>& axis) {
   std::vector<double> out;
@@ -60,16 +103,8 @@ std::vector<double> shape_grid(const Model& model, const ModelTerm& term, int sh
   std::vector<double> out;
   if (!profiles.empty() && kind.stepwise) out = places_between(profiles, model.machine);
   if (!profiles.empty() && !kind.stepwise) {
-    std::vector<Stations> stations;
-    double low = INFINITY, high = -INFINITY;
-    for (const CoarseProfile& profile : profiles) {
-      stations.emplace_back(profile.positions, profile.profile->setup, model.machine);
-      const auto range = effect.search_range(shape, stations.back());
-      low = std::min(low, range.first);
-      high = std::max(high, range.second);
-    }
-    low = std::max(low, parameter.lower);
-    high = std::min(high, parameter.upper);
+    const std::vector<Stations> stations = stations_of(profiles, model.machine);
+    const auto [low, high] = search_range(effect, shape, stations);
     for (double value = low; value <= high && out.size() < kMostPoints;) {
       constexpr double kRounding = 1e-12;  // of the range, about zero
       out.push_back(std::abs(value) > kRounding * (high - low) ? value : 0.0);

@@ -41,15 +41,15 @@ ceres::Solver::Options solver_options() {
 }
 
 /// Bounds of the shapes of a term within a parameter block, from `first` on.
-void bound_shapes(const ModelTerm& term, ceres::Problem& problem, double* block, int first) {
+void bound_shapes(const Model& model, const ModelTerm& term, ceres::Problem& problem, double* block,
+                  int first) {
   const std::vector<Shape>& shapes = term.effect->shapes();
   for (std::size_t s = 0; s < shapes.size(); ++s) {
-    const Parameter& parameter = term.effect->parameters()[shapes[s].parameter];
+    const auto [lower, upper] = shape_bounds(model, term, static_cast<int>(s));
     const int index = first + static_cast<int>(s);
-    if (std::isfinite(parameter.lower) && !(shapes[s].logarithmic && parameter.lower <= 0.0))
-      problem.SetParameterLowerBound(block, index, shapes[s].inner(parameter.lower));
-    if (std::isfinite(parameter.upper))
-      problem.SetParameterUpperBound(block, index, shapes[s].inner(parameter.upper));
+    if (std::isfinite(lower) && !(shapes[s].logarithmic && lower <= 0.0))
+      problem.SetParameterLowerBound(block, index, shapes[s].inner(lower));
+    if (std::isfinite(upper)) problem.SetParameterUpperBound(block, index, shapes[s].inner(upper));
   }
 }
 
@@ -150,7 +150,7 @@ Eigen::VectorXd eliminated_optimum(const Model& model, const Linearisation& line
     const std::vector<Shape>& shapes = term.effect->shapes();
     for (std::size_t s = 0; s < shapes.size(); ++s)
       inner[term.first_shape + s] = shapes[s].inner(start[term.first_shape + s]);
-    bound_shapes(term, problem, inner.data(), static_cast<int>(term.first_shape));
+    bound_shapes(model, term, problem, inner.data(), static_cast<int>(term.first_shape));
   }
   ceres::Solver::Options options = solver_options();
   options.initial_trust_region_radius = 1e4;
@@ -179,7 +179,7 @@ class FitProblem {
                               curve_prior_rows(*each.term->effect->knots(), *start.curve)),
             nullptr, blocks_of(each));
       if (each.moves() && problem_.HasParameterBlock(each.shapes.data()))
-        bound_shapes(*each.term, problem_, each.shapes.data(), 0);
+        bound_shapes(model, *each.term, problem_, each.shapes.data(), 0);
     }
   }
 
@@ -266,11 +266,11 @@ void count_by_loss(Linearisation& linear, const std::vector<Noise>& noise) {
 std::vector<bool> bounds_met(const Model& model, const Estimate& estimate) {
   std::vector<bool> out;
   for (const ModelTerm& term : model.terms)
-    for (const Shape& shape : term.effect->shapes()) {
-      const Parameter& parameter = term.effect->parameters()[shape.parameter];
+    for (int s = 0; s < static_cast<int>(term.effect->shapes().size()); ++s) {
+      const auto [lower, upper] = shape_bounds(model, term, s);
       const double value = estimate.shapes[static_cast<Eigen::Index>(out.size())];
       const double near = 1e-9 * std::max(1.0, std::abs(value));
-      out.push_back(value - parameter.lower < near || parameter.upper - value < near);
+      out.push_back(value - lower < near || upper - value < near);
     }
   return out;
 }

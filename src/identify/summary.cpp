@@ -13,6 +13,7 @@ namespace slideway {
 namespace {
 
 constexpr int kMemoryParameters = 2;  // size and length, or size and slope
+constexpr double kCancelled = 1e-12;  // of its terms: a sum that is rounding
 
 bool is_slope(const Observation& observation) {
   return observation.profile->setup.quantity == Quantity::slope;
@@ -108,14 +109,16 @@ void add_identifiability(const Model& model, const Reported& reported, Identifia
     for (const Parameter& parameter : term.effect->parameters()) units.push_back(parameter.unit);
   const Eigen::MatrixXd rows = determined_rows(fit.null);
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const Eigen::RowVectorXd of_estimate = rows.row(i) * fit.parameters.jacobian;
+    const Eigen::RowVectorXd terms = rows.row(i).cwiseAbs() * fit.parameters.jacobian.cwiseAbs();
+    if (of_estimate.norm() <= kCancelled * terms.norm()) continue;  // whatever is measured
     DeterminedCombination combination;
     for (std::size_t p = 0; p < names.size(); ++p) {
       if (rows(i, p) == 0.0) continue;
       combination.combination.emplace_back(names[p], rows(i, p));
       if (rows(i, p) == 1.0 && combination.unit.empty()) combination.unit = units[p];
     }
-    reported.set(rows.row(i).dot(fit.parameters.values), rows.row(i) * fit.parameters.jacobian, 1.0,
-                 combination);
+    reported.set(rows.row(i).dot(fit.parameters.values), of_estimate, 1.0, combination);
     out.determined.push_back(std::move(combination));
   }
 }

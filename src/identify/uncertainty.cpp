@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "slideway/base/distribution.hpp"
@@ -77,7 +78,10 @@ std::vector<std::vector<std::size_t>> pools_of(const std::vector<Noise>& noise) 
 
 Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
   const Eigen::RowVectorXd c = row * basis;
-  const double variance = (c * covariance * c.transpose()).value();
+  // Beside a large part of the covariance a small one is rounding: the number is known no better.
+  const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(c.size()) *
+                          c.squaredNorm() * (c.size() > 0 ? covariance.cwiseAbs().maxCoeff() : 0.0);
+  const double variance = std::max((c * covariance * c.transpose()).value(), rounding);
   Spread spread{std::sqrt(std::max(inflation * variance, 0.0)), std::nullopt};
   if (!(variance > 0.0)) return spread;
   std::vector<double> parts;  // of the variance, by profile

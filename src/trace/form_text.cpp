@@ -49,7 +49,8 @@ class RestWithForm {
     return std::sqrt(squares / values) / unit;
   }
 
-  /// Of the held-out height profiles, each levelled as it comes: as holdout_rms_um().
+  /// Of the held-out height profiles, each levelled as it comes: as holdout_rms_um(). None where
+  /// the form has no finite value in one of them: an exponential far outside of the fitted range.
   [[nodiscard]] std::optional<double> holdout_rms() const {
     const FittedModel& fitted = view().fitted();
     double squares = 0.0;
@@ -66,7 +67,7 @@ class RestWithForm {
       squares += rest.squaredNorm() / static_cast<double>(each.low_band.samples());
       ++count;
     }
-    if (count == 0) return std::nullopt;
+    if (count == 0 || !std::isfinite(squares)) return std::nullopt;
     return std::sqrt(squares / count) / kMicrometre;
   }
 

@@ -1,6 +1,7 @@
 // What leaves the fit nothing to know a number by: it is said to be not determined, or it has an
 // uncertainty above 0. Found by the fuzz target `identify`.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 #include "identify/cases.hpp"
 #include "noise_bounds.hpp"
+#include "slideway/base/random.hpp"
 #include "slideway/identify/identify.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 
@@ -106,6 +108,43 @@ TEST(Degenerate, LackOfFitPassesOverAProfileTooShortToJudge) {
   const LackOfFit left = lack_of_fit(fitted.fit.linear, noise, {});
   EXPECT_TRUE(left.p_value >= 0.0 && left.p_value <= 1.0) << left.p_value;
   EXPECT_TRUE(std::isfinite(left.ratio)) << left.ratio;
+}
+
+// A wave of a period as near zero as one likes passes through values at any places. Two values a
+// cycle tell it from its alias; each of these is noise alone.
+TEST(Degenerate, AWaveInNoiseIsNoAliasOfTheStations) {
+  constexpr double kSpacing = 400.0 / 59.0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomStream random(seed, "noise");
+    std::vector<double> z;
+    for (int i = 0; i < 60; ++i) z.push_back(4e-4 * random.normal());
+    const std::vector<Profile> profiles{profile("slide", Kind::slide, spaced(0, 400, 60), z)};
+    DeclaredEffect wave = effect("slide_periodic");
+    wave.priors = {{"amplitude_um", 0.0, 0.1}};
+    const Result result = identify(problem(Lever::paper, 0, {wave}), profiles, Scope::fit);
+    for (const FittedParameter& each : result.declared->parameters) {
+      ASSERT_TRUE(each.value) << each.name;
+      EXPECT_GT(*each.expanded_uncertainty, 0.0) << each.name;
+    }
+    EXPECT_GE(*result.declared->find("slide_periodic.period_mm")->value, 1.99 * kSpacing) << seed;
+  }
+}
+
+// What one changes nothing of in the values, and both have from the same prior, cannot differ.
+TEST(Degenerate, WhatProfilesHaveFromAPriorAloneIsNotCompared) {
+  DeclaredEffect zero = effect("instrument_zero");
+  zero.priors = {{"zero", 1.0, 0.5}};
+  const std::vector<Profile> profiles{
+      profile("a", Kind::slide, spaced(0, 400, 60), rough(60, 1e-4)),
+      profile("b", Kind::slide, spaced(0, 400, 50), rough(50, 1e-4))};
+  const Result result = identify(problem(Lever::paper, 0, {zero, effect("straightness", 3)}),
+                                 profiles, Scope::identify);
+  std::vector<std::string> compared;
+  for (const ProfileCheck& check : result.crosscheck.profiles) {
+    compared.push_back(check.what);
+    EXPECT_TRUE(check.En && std::isfinite(*check.En)) << check.what;
+  }
+  EXPECT_THAT(compared, ::testing::ElementsAre("straightness"));
 }
 
 }  // namespace

@@ -169,6 +169,18 @@ TEST_F(ProblemFile, ConfinesAnEffectToProfiles) {
   EXPECT_THAT(problem.truth->effects[2].options.profiles, ElementsAre("feed20"));
 }
 
+// It stays in the model, where the report says that it is not determined.
+TEST_F(ProblemFile, KeepsAnEffectOfEachProfileThatNoneOfThemCanShow) {
+  const std::string chord = "name = \"chord\"\nscope = \"profile\"\n";
+  const Problem problem =
+      read(kMachine + profile("kind = \"slide\"\n") + "[[effect]]\n" + chord +
+           "[truth]\n[[truth.effect]]\n" + chord + "slope_um_per_m = 20\ndistance_mm = 1\n");
+  ASSERT_EQ(problem.effects.size(), 1U);
+  EXPECT_EQ(problem.effects[0].name, "chord");
+  ASSERT_TRUE(problem.truth);
+  EXPECT_EQ(problem.truth->effects.size(), 1U);
+}
+
 // The search takes what acts in all profiles apart; what acts in some of them is looked for whole,
 // too: of two cuts that have it, either one alone explains little.
 TEST_F(ProblemFile, LooksForACandidateOfEachProfileInAllOfThemFirst) {

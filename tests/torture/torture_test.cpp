@@ -19,11 +19,14 @@ namespace {
 constexpr double kOfUncertainty = 0.02;  // a change of a value that nobody can see, in U
 constexpr double kOfSize = 1e-6;         // and one of a value whose U is smaller than its digits
 
-/// How many problems each test draws.
-std::size_t problem_count(std::size_t usual) {
-  const char* const asked = std::getenv("SLIDEWAY_TORTURE");
+std::size_t asked_for(const char* variable, std::size_t usual) {
+  const char* const asked = std::getenv(variable);
   return asked == nullptr ? usual : std::strtoul(asked, nullptr, 10);
 }
+
+/// How many problems each test draws, and the number of the first.
+std::size_t problem_count(std::size_t usual) { return asked_for("SLIDEWAY_TORTURE", usual); }
+std::size_t first_problem() { return asked_for("SLIDEWAY_TORTURE_FIRST", 0); }
 
 DrawnProblem drawn(std::size_t number, Intent intent = Intent::legal) {
   constexpr std::size_t kBytes = 700;
@@ -126,7 +129,7 @@ bool has_linear_effects(const Answer& answer) {
 template <typename Each>
 void for_each_linear_problem(std::size_t count, const Each& each) {
   const AnalysisOptions declared_only{.scope = Scope::fit, .closes_loop = false};
-  for (std::size_t number = 0, found = 0; found < count; ++number) {
+  for (std::size_t number = first_problem(), found = 0; found < count; ++number) {
     const DrawnProblem problem = drawn(number);
     if (!is_linear(problem)) continue;
     const Answer answer = answer_to(ProblemFiles(problem), declared_only);
@@ -138,14 +141,16 @@ void for_each_linear_problem(std::size_t count, const Each& each) {
 }
 
 TEST(Drawn, LegalProblemsGetASoundAnswerOrOneLine) {
-  for (std::size_t number = 0; number < problem_count(30); ++number) {
+  for (std::size_t i = 0; i < problem_count(30); ++i) {
+    const std::size_t number = first_problem() + i;
     SCOPED_TRACE("problem " + std::to_string(number));
     expect_sound(ProblemFiles(drawn(number)), {.with_details = true, .with_curves = true});
   }
 }
 
 TEST(Drawn, HostileProblemsGetASoundAnswerOrOneLine) {
-  for (std::size_t number = 0; number < problem_count(30); ++number) {
+  for (std::size_t i = 0; i < problem_count(30); ++i) {
+    const std::size_t number = first_problem() + i;
     SCOPED_TRACE("problem " + std::to_string(number));
     expect_sound(ProblemFiles(drawn(number, Intent::hostile)), {.closes_loop = false});
   }

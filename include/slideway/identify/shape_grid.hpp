@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "slideway/identify/model.hpp"
@@ -11,6 +12,11 @@ namespace slideway {
 /// can show in their low band, in steps of Effect::resolution(); for a stepwise shape every place
 /// between two low-band values. The middle of the parameter's range where no profile shows it.
 std::vector<double> shape_grid(const Model& model, const ModelTerm& term, int shape);
+
+/// Bounds of a shape parameter in a fit: those of the parameter. A wave that is searched for and
+/// has no prior has two low-band values a cycle or more: of fewer they see an alias, and any wave
+/// fits.
+std::pair<double, double> shape_bounds(const Model& model, const ModelTerm& term, int shape);
 
 /// Every so many-th value of an axis, the first and the last among them. REQUIRES step > 0, a
 /// value.
