@@ -68,7 +68,9 @@ Flatness flatness(const FittedModel& fitted) {
     std::vector<Eigen::Index> all(static_cast<std::size_t>(observation.values.size()));
     std::iota(all.begin(), all.end(), 0);
     with_all = std::max(with_all, peak_to_valley_um(observation, all));
-    const double value = peak_to_valley_um(observation, fitted_rows(observation));
+    const std::vector<Eigen::Index> fitted_values = fitted_rows(observation);
+    if (fitted_values.empty()) continue;
+    const double value = peak_to_valley_um(observation, fitted_values);
     if (value <= out.value.value_or(0.0)) continue;
     const double of_value = fitted.fit.noise[i].standard_deviation() * micrometres(observation);
     out.value = value;

@@ -35,7 +35,8 @@ class Toleranced : public ProblemFile {
  protected:
   /// A cone of 20 µm/m over a diameter of 200 mm, and an alternating error of 5 nm; a nub at the
   /// axis.
-  [[nodiscard]] Result of_cone(const std::string& free, double nub_um = 0.0) {
+  [[nodiscard]] Result of_cone(const std::string& free, double nub_um = 0.0,
+                               const std::string& more = "") {
     std::string text = "x_mm,z_um\n";
     for (int i = 0; i <= 200; ++i)
       text += std::to_string(i - 100) + "," +
@@ -47,7 +48,7 @@ class Toleranced : public ProblemFile {
         "[tolerance]\nflatness_um = 2.5\nsquareness_um_per_m = 10\nstraightness_um = 1\n"
         "[about]\nmachine = \"LT-3\"\n[machine]\nlever = \"paper\"\n[low_band]\nlevel = 0\n"
         "[[profile]]\nname = \"cone\"\nfile = \"cone.csv\"\nfree = " +
-        free + "\n[[effect]]\nname = \"squareness\"\n");
+        free + "\n" + more + "[[effect]]\nname = \"squareness\"\n");
     return identify(problem, read_profiles(problem));
   }
 };
@@ -72,6 +73,18 @@ TEST_F(Toleranced, ANubThatTheFitLeavesOutIsPartOfTheFlatness) {
   EXPECT_LT(*flatness.value_um + *flatness.U_um, 2.5);
   EXPECT_NEAR(flatness.with_left_out_um.value_or(0.0), 3.5, 0.04);
   EXPECT_EQ(flatness.verdict, ConformityVerdict::undecided);
+}
+
+// A trace of 6 mm within the first groove, 24 mm wide: none of its values is fitted.
+TEST_F(Toleranced, AFaceOfWhichNothingIsFittedHasNoFlatness) {
+  std::string text = "x_mm,z_um\n";
+  for (int i = 0; i <= 20; ++i)
+    text += std::to_string(0.3 * i - 3.0) + "," + std::to_string(0.01 * (i % 3)) + "\n";
+  write_file(folder_.path() / "middle.csv", text);
+  const Result result = of_cone(R"(["offset", "tilt"])", 0.0,
+                                "[[profile]]\nname = \"middle\"\nfile = \"middle.csv\"\n"
+                                "feed_mm_per_min = 2400\nspindle_rpm = 100\n");
+  EXPECT_NEAR(*result.conformity[0].value_um, 2.0, 0.04);
 }
 
 }  // namespace
