@@ -119,7 +119,8 @@ LackOfFit judged(double found, const std::vector<double>& shares,
     Moments sum;
     for (std::size_t k = 0; k < pools.size(); ++k) sum += pools[k][at[k]].square;
     const double scale = sum.mean / sum.variance;
-    out.p_value += (next - done) * gamma_tail(sum.mean * scale, found * scale);
+    const bool is_known = sum.mean * scale > 0.0;  // else noise of that size leaves anything
+    out.p_value += (next - done) * (is_known ? gamma_tail(sum.mean * scale, found * scale) : 1.0);
     expected += (next - done) * sum.mean;
     done = next;
     for (std::size_t k = 0; k < pools.size(); ++k)

@@ -243,7 +243,8 @@ void settle_residuals(const Model& model, Estimate& estimate, Linearisation& lin
 namespace {
 
 /// Pseudo-values (Huber 1981): the residual of a profile with a loss as a quadratic loss would have
-/// it for the same estimate and covariance, ψ(w) / mean ψ' for each white value w.
+/// it for the same estimate and covariance, ψ(w) / mean ψ' for each white value w. One value counts
+/// whole, though all may lie where ψ does not rise.
 void count_by_loss(Linearisation& linear, const std::vector<Noise>& noise) {
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {
     const std::unique_ptr<ceres::LossFunction> loss =
@@ -258,7 +259,7 @@ void count_by_loss(Linearisation& linear, const std::vector<Noise>& noise) {
       slope += rho[1] + 2.0 * w * w * rho[2];
       w *= rho[1];
     }
-    white *= static_cast<double>(white.size()) / slope;
+    white *= static_cast<double>(white.size()) / std::max(slope, 1.0);
     noise[i].colour(white);
   }
 }

@@ -147,5 +147,17 @@ TEST(Degenerate, WhatProfilesHaveFromAPriorAloneIsNotCompared) {
   EXPECT_THAT(compared, ::testing::ElementsAre("straightness"));
 }
 
+// Huber's ψ rises nowhere where every value lies beyond its corner.
+TEST(Degenerate, ALossThatLeavesNoValueWholeHasAFiniteResidual) {
+  Profile face_a = face("a", 8.0, spaced(1, 40, 40), rough(40, 1.0));
+  face_a.loss = Loss::huber;
+  face_a.standard_uncertainty = 1e-6;  // of values a million times as far apart
+  const std::vector<Profile> profiles{face_a};
+  const Result result =
+      identify(problem(Lever::paper, 0, {effect("squareness")}), profiles, Scope::fit);
+  EXPECT_TRUE(std::isfinite(result.declared->chi_square));
+  EXPECT_TRUE(result.declared->rms_um && std::isfinite(*result.declared->rms_um));
+}
+
 }  // namespace
 }  // namespace slideway::degenerate_test
