@@ -111,7 +111,8 @@ void add_identifiability(const Model& model, const Reported& reported, Identifia
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     const Eigen::RowVectorXd of_estimate = rows.row(i) * fit.parameters.jacobian;
     const Eigen::RowVectorXd terms = rows.row(i).cwiseAbs() * fit.parameters.jacobian.cwiseAbs();
-    if (of_estimate.norm() <= kCancelled * terms.norm()) continue;  // whatever is measured
+    const Eigen::MatrixXd& basis = fit.rank.basis;
+    if ((of_estimate * basis).norm() <= kCancelled * (terms * basis.cwiseAbs()).norm()) continue;
     DeterminedCombination combination;
     for (std::size_t p = 0; p < names.size(); ++p) {
       if (rows(i, p) == 0.0) continue;
