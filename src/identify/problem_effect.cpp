@@ -48,8 +48,8 @@ std::unique_ptr<Effect> made(const Section& section, const std::string& name,
 }
 
 /// The options of an effect with one size in all its profiles, one for each instrument, or one for
-/// each profile that can see it: by `scope`, and where the effect is of one profile each. As they
-/// are where no profile can.
+/// each profile that can see it: by `scope`, and where the effect is of one profile each. Where no
+/// profile can see it, the options unchanged.
 std::vector<EffectOptions> by_scope(const Section& section, const Effect& effect,
                                     const EffectOptions& options, const Problem& problem) {
   std::vector<EffectOptions> out;

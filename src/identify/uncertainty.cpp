@@ -82,7 +82,7 @@ Spread Uncertainty::of(const Eigen::RowVectorXd& row) const {
   const double rounding = std::numeric_limits<double>::epsilon() * static_cast<double>(c.size()) *
                           c.squaredNorm() * (c.size() > 0 ? covariance.cwiseAbs().maxCoeff() : 0.0);
   const double variance = std::max((c * covariance * c.transpose()).value(), rounding);
-  Spread spread{std::sqrt(std::max(inflation * variance, 0.0)), std::nullopt};
+  Spread spread{std::sqrt(inflation * variance), std::nullopt};
   if (!(variance > 0.0)) return spread;
   std::vector<double> parts;  // of the variance, by profile
   for (const Eigen::MatrixXd& of_profile : information)

@@ -1,5 +1,5 @@
 // What leaves the fit nothing to know a number by: it is said to be not determined, or it has an
-// uncertainty above 0. Found by the fuzz target `identify`.
+// uncertainty above 0. Found by the fuzz target `identify` and by drawn problems.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -130,7 +130,7 @@ TEST(Degenerate, AWaveInNoiseIsNoAliasOfTheStations) {
   }
 }
 
-// What one changes nothing of in the values, and both have from the same prior, cannot differ.
+// A parameter that changes no value, and that both profiles have from one prior, cannot differ.
 TEST(Degenerate, WhatProfilesHaveFromAPriorAloneIsNotCompared) {
   DeclaredEffect zero = effect("instrument_zero");
   zero.priors = {{"zero", 1.0, 0.5}};
