@@ -237,7 +237,8 @@ TEST(Formula, RefusesUnitsThatDoNotFit) {
 TEST(Formula, TellsTheUnitOfASizeInMicrometresAlone) {
   const auto units = [](const std::string& text, const std::vector<FormulaParameter>& sizes) {
     std::vector<std::string> out;
-    for (const Parameter& each : effect_of(text, sizes)->parameters()) out.push_back(each.unit);
+    const auto effect = effect_of(text, sizes);
+    for (const Parameter& each : effect->parameters()) out.push_back(each.unit);
     return out;
   };
   EXPECT_THAT(units("a * t", {{"a", "um"}}), ElementsAre("µm/s"));
