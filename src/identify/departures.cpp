@@ -1,5 +1,6 @@
 #include "slideway/identify/departures.hpp"
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -84,6 +85,25 @@ std::vector<Eigen::MatrixXd> errors_of_cause(const Model& model, const Linearisa
   Departures by = term.effect->departures();
   if (by.of_law || by.parts.empty()) return {};
   return columns_at(model, linear, {&term, std::move(by)}, shape, amplitude);
+}
+
+Eigen::MatrixXd directions_of_causes(const Eigen::MatrixXd& errors, Eigen::VectorXd residual) {
+  if (errors.cols() == 0) return errors;
+  const Eigen::BDCSVD<Eigen::MatrixXd> parts(errors, Eigen::ComputeThinU);
+  const Eigen::VectorXd& sizes = parts.singularValues();
+  Eigen::Index count = 0;
+  for (Eigen::Index k = 0; k < std::min(sizes.size(), residual.size() / 2); ++k) {
+    project_out(parts.matrixU().col(k), residual);
+    const auto left = static_cast<double>(residual.size() - k - 1);
+    if (sizes[k] > residual.norm() / std::sqrt(left)) count = k + 1;
+  }
+  return parts.matrixU().leftCols(count);
+}
+
+Eigen::MatrixXd directions_of_causes(const Linearisation& linear, std::size_t observation) {
+  const Eigen::VectorXd& residual = linear.residuals[observation];
+  if (linear.errors_of_causes.empty()) return {residual.size(), 0};
+  return directions_of_causes(linear.errors_of_causes[observation], residual);
 }
 
 DepartureResponse response_to_departures(const Model& model, const Linearisation& linear,

@@ -14,6 +14,7 @@
 #include "slideway/base/statistics.hpp"
 #include "slideway/base/units.hpp"
 #include "slideway/identify/column_places.hpp"
+#include "slideway/identify/departures.hpp"
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/linear_algebra.hpp"
@@ -225,10 +226,10 @@ void from_whole_residuals(const Linearisation& linear, const std::vector<std::si
     LinearProfile profile{observation.nuisances,
                           linear.columns[i](Eigen::all, places.shared) * basis, places.residuals[i],
                           observation.profile->standard_uncertainty};
-    if (places.free[i].cols() > 0) {
-      append_columns(profile.nuisances, places.free[i]);
+    append_columns(profile.nuisances, places.free[i]);
+    append_columns(profile.nuisances, directions_of_causes(linear, i));
+    if (profile.nuisances.cols() > observation.nuisances.cols())
       profile.nuisances = orthonormal(std::move(profile.nuisances));
-    }
     profile.bounded = places.bounded[i];
     part.add(i, profile, observation, pools[i]);
   }
@@ -299,8 +300,11 @@ std::vector<Noise> first_noise(const Model& model) {
 }
 
 std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
-                                const std::vector<Eigen::MatrixXd>& suspect) {
+                                std::vector<Eigen::MatrixXd> suspect) {
   const std::size_t count = linear.observations.size();
+  if (!linear.errors_of_causes.empty()) suspect.resize(count);
+  for (std::size_t i = 0; i < linear.errors_of_causes.size(); ++i)
+    append_columns(suspect[i], directions_of_causes(linear, i));
   std::vector<std::optional<LinearProfile>> fine(count), repeats(count);
   const std::vector<OddRepeat> odd = odd_repeats(linear, gates);
   parallel_for(count, [&](std::size_t i) {

@@ -10,60 +10,15 @@
 #include "sample_residuals.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
-#include "slideway/identify/left_out.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/low_band_lines.hpp"
-#include "slideway/identify/noise_model.hpp"
 #include "undescribed.hpp"
+#include "whiten_beside.hpp"
 
 namespace slideway {
 namespace {
 
 constexpr std::size_t kEnoughPass = 3;  // names: a later check may refuse the best ones
-constexpr int kNoiseRounds = 3;
-
-/// Whether it is of how one trace lies on the workpiece.
-bool is_of_one_trace(const Candidate& candidate) {
-  return only(candidate) &&
-         candidate.term.effect->description().variable == IndependentVariable::trace;
-}
-
-/// What the data may lack: the best finding. Where that is of how one trace lies on the workpiece,
-/// the best such finding of each other profile that would be accepted as well: no trace lies as
-/// another does, and what one hides is no noise of the rest.
-std::vector<Finding> suspects_among(std::vector<Finding> findings, const Gates& gates) {
-  sort_by_priority(findings);
-  std::vector<Finding> out{findings.front()};
-  if (!is_of_one_trace(*out.front().candidate)) return out;
-  for (const Finding& each : findings) {
-    if (each.delta_bic >= -gates.delta_bic) break;
-    const Candidate& own = *each.candidate;
-    if (is_of_one_trace(own) && std::ranges::none_of(out, [&](const Finding& f) {
-          return only(*f.candidate) == only(own);
-        }))
-      out.push_back(each);
-  }
-  return out;
-}
-
-/// What a hypothesis adds to the model, profile by profile: values left undescribed, and the
-/// columns of findings and of their neighbours on the grid (their shapes lie between them).
-std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
-                                                const FreeValues& undescribed,
-                                                const std::vector<Finding>& findings) {
-  std::vector<Eigen::MatrixXd> out;
-  for (const Observation* each : linear.observations) out.emplace_back(each->values.size(), 0);
-  for (const Finding& each : findings) {
-    const std::vector<std::size_t>& part = each.candidate->part;
-    const std::vector<Eigen::MatrixXd> around =
-        by_profile(linear, each.candidate->columns_around(each.atom));
-    for (std::size_t i = 0; i < out.size(); ++i)
-      if (part.empty() || std::ranges::count(part, i) > 0) append_columns(out[i], around[i]);
-  }
-  for (std::size_t i = 0; i < out.size(); ++i)
-    append_columns(out[i], unit_columns(undescribed[i], out[i].rows()));
-  return out;
-}
 
 std::string implausible(const Refined& refined) {
   const std::vector<Parameter>& parameters = refined.candidate->term.effect->parameters();
@@ -165,31 +120,6 @@ std::vector<TestedCandidate> test_best(const Model& model, const Solution& fit,
   }
   std::ranges::stable_sort(out, {}, &TestedCandidate::priority);
   return out;
-}
-
-/// The data made white for a model that lacks what the candidates can bring, and their findings:
-/// the noise is that of the hypothesis which adds the best of them.
-std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, const Solution& fit,
-                                                        const FreeValues& undescribed,
-                                                        const Candidates& candidates) {
-  const auto noise_of = [&](const std::vector<Finding>& suspects) {
-    return noise_beside(fit.linear, model.gates,
-                        columns_by_profile(fit.linear, undescribed, suspects));
-  };
-  Whitened data(fit.linear, noise_of({}), undescribed);
-  if (candidates.empty()) return {std::move(data), std::vector<Finding>{}};
-  std::vector<Finding> findings = search(data, candidates);
-  std::vector<Finding> suspects = suspects_among(findings, model.gates);
-  for (int round = 0; round < kNoiseRounds; ++round) {
-    data = Whitened(fit.linear, noise_of(suspects), undescribed);
-    findings = search(data, candidates);
-    const std::vector<Finding> before =
-        std::exchange(suspects, suspects_among(findings, model.gates));
-    if (suspects.front().delta_bic >= 0.0 ||
-        std::ranges::equal(before, suspects, {}, &Finding::candidate, &Finding::candidate))
-      break;
-  }
-  return {std::move(data), std::move(findings)};
 }
 
 }  // namespace

@@ -189,6 +189,43 @@ TEST(ChannelEffect, IsFreeOfMostOfTheNoiseOfItsLogAndKnowsTheRest) {
   EXPECT_THAT(squares / drawn, AllOf(Gt(0.5), Lt(2.0)));
 }
 
+// A valve that opens and closes at any moment between readings every 10 s. Of a jump of 1 whose
+// moment is uniform over them, the mean over them has a standard deviation of 1/12^1/2, which 400
+// of them tell to 4 %; its error is nowhere but between the two readings.
+TEST(ChannelEffect, JumpsAtAnUnknownMomentBetweenTwoReadings) {
+  Case face = all_cases()[0];
+  face.positions = spaced(0.0, 10.0, 301);
+  for (const double noise : {0.0, 0.02}) {
+    double squares = 0.0, drawn = 0.0, means = 0.0, drawn_means = 0.0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed) {
+      RandomStream random(seed, "valve");
+      const double opens = 60.0 + 60.0 * random.uniform(), closes = 160.0 + 80.0 * random.uniform();
+      const auto valve = [=](double t) { return t > opens && t < closes ? 1.0 : 0.0; };
+      Channel log = log_of(valve, 300.0, 10.0);
+      for (double& value : log.values) value += noise * random.normal();
+      const auto effect = channel_effect(log, {.name = "T"})(lathe(), kTravel);
+      const Eigen::VectorXd error = columns(*effect, face, {}).col(0) -
+                                    column(log_of(valve, 300.0, 0.1), {.name = "T"}, face);
+      const auto between = [&](const Eigen::VectorXd& values, double jump) {
+        double sum = 0.0;
+        for (Eigen::Index i = 0; i < values.size(); ++i)
+          if (std::floor(time_at(face, i) / 10.0) == std::floor(jump / 10.0)) sum += values[i];
+        return sum / 10.0;
+      };
+      for (Eigen::Index i = 2; i + 2 < error.size(); ++i) squares += error[i] * error[i];
+      means += std::pow(between(error, opens), 2) + std::pow(between(error, closes), 2);
+      for (const auto& part : effect->departures().parts) {
+        const Eigen::VectorXd own = columns(*part, face, {}).col(0);
+        drawn += own.squaredNorm();
+        drawn_means += std::pow(between(own, opens), 2) + std::pow(between(own, closes), 2);
+      }
+    }
+    EXPECT_NEAR(std::sqrt(means / 400.0), 1.0 / std::sqrt(12.0), 0.03);
+    EXPECT_NEAR(drawn_means / means, 1.0, 0.15);
+    EXPECT_THAT(squares / drawn, AllOf(Gt(0.8), Lt(1.25)));
+  }
+}
+
 // A wave of 100 s read every 10 s: straight lines miss it by (2π/100)² 10²/8 = 5 % of its size, the
 // cubic spline through it by 5/384 (2π/100)⁴ 10⁴ = 0.2 % (de Boor 2001, A practical guide to
 // splines, chapter V).

@@ -1,5 +1,6 @@
 // Effects nobody shipped and causes somebody measured, looked for by the loop in faces that the
 // process made.
+#include <algorithm>
 #include <cmath>
 
 #include "slideway/effects/channel.hpp"
@@ -159,6 +160,47 @@ TEST(OwnEffect, OfANoisyLogHasNoLagThatTheDataDoNotAskFor) {
     ASSERT_EQ(round->parameters.size(), 1U);
     expect_within_4u(round->parameters, "spindle_temperature.a", 0.2);
   }
+}
+
+/// When the tool was where a value of a face was read, s. The tool has no nose.
+double time_of_cut(const Profile& face, std::size_t value) {
+  const Setup& setup = face.setup;
+  const double radius = std::abs(face.positions[value] - setup.center_mm);
+  const double way =
+      setup.cut_direction == CutDirection::inward ? *setup.cut_radius_mm - radius : radius;
+  return setup.start_s + 60.0 * way / *setup.feed_mm_per_min;
+}
+
+// A valve that opens and closes at moments which its log, read every 5 s, does not show. The
+// straight lines of such a log are wrong by several times the noise of the face: one jump was a
+// step of the way, and all of them a lag.
+TEST(OwnEffect, OfALogThatJumpsIsNoStepAndHasNoLag) {
+  constexpr std::uint64_t seed = 31;
+  RandomStream random(seed, "valve");
+  std::vector<double> jumps;
+  for (double t = 7.0; t < 700.0; t += 25.0 + 40.0 * random.uniform()) jumps.push_back(t);
+  const auto pressure = [jumps](double t) {
+    return std::ranges::count_if(jumps, [t](double jump) { return jump < t; }) % 2 == 0 ? 6.0 : 5.6;
+  };
+  Channel log{.name = "air_pressure", .unit = "bar"};
+  for (double t = -50.0; t <= 700.0; t += 5.0) {
+    log.at.push_back(t);
+    log.values.push_back(pressure(t) + 0.01 * random.normal());
+  }
+  Problem problem = problem_of();
+  problem.trace.own = problem.own_effects = {followed(log)};
+  std::vector<Profile> faces = quarter_faces({}, 3, kBlunt, seed);
+  for (Profile& face : faces)
+    for (std::size_t i = 0; i < face.values.size(); ++i)
+      face.values[i] += 0.1e-3 * pressure(time_of_cut(face, i));
+  const Closed result = closed(problem, std::move(faces));
+  SCOPED_TRACE(story(result));
+  EXPECT_THAT(named(result), ElementsAre("air_pressure"));
+  const TraceRound* round = round_of(result, "air_pressure");
+  ASSERT_NE(round, nullptr);
+  expect_within_4u(round->parameters, "air_pressure.a", 0.1);
+  for (const FittedParameter& each : round->parameters)
+    if (each.name == "air_pressure.lag_s") expect_within_4u(round->parameters, each.name, 0.0);
 }
 
 /// Two logs, each of one cause: alone, the first predicts left-out cuts worse than nothing does

@@ -19,7 +19,7 @@ namespace slideway {
 /// @param linear   the model at its estimate
 /// @param suspect  per fitted observation: low-band columns of an effect under suspicion, or none
 std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
-                                const std::vector<Eigen::MatrixXd>& suspect = {});
+                                std::vector<Eigen::MatrixXd> suspect = {});
 
 /// noise_beside() what a profile may lack, each profile fitted by itself: what profiles disagree by
 /// is in the noise of none of them. They share their memory as in a joint fit.

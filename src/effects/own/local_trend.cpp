@@ -1,7 +1,12 @@
 #include "local_trend.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "slideway/base/distribution.hpp"
+#include "slideway/base/statistics.hpp"
 
 namespace slideway {
 namespace {
@@ -9,6 +14,12 @@ namespace {
 constexpr double kDiffuse = 1e8;  // variance of the start, in those of a reading
 constexpr int kLevels[] = {-4, 4}, kSlopes[] = {-11, 3};  // decades of the ratios
 constexpr int kMostScans = 6;
+constexpr double kFree = 1e8;           // variance of a jump, in those of a reading
+constexpr double kFalseJump = 0.01;     // chance of one in a log without any
+constexpr double kPlain = 6.0;          // standard deviations of most steps
+constexpr double kBesidePlain = 0.25;   // of a plain jump: the steps beside it
+constexpr std::size_t kMostJumps = 32;  // whose own errors are kept
+constexpr int kJumpScans = 5;
 
 /// Level and slope with their covariance, in variances of a reading.
 struct State {
@@ -18,16 +29,27 @@ struct State {
 
 Eigen::Matrix2d transition(double step) { return Eigen::Matrix2d{{1.0, step}, {0.0, 1.0}}; }
 
-/// What the walks add over a step.
-Eigen::Matrix2d walked(const LocalTrend& trend, double step) {
-  const double cross = trend.slope * step * step / 2.0;
-  return Eigen::Matrix2d{{trend.level * step + trend.slope * step * step * step / 3.0, cross},
-                         {cross, trend.slope * step}};
+/// What the jumps add to the level between two places.
+double jumped(const std::vector<LocalTrend::Jump>& jumps, double from, double to) {
+  double out = 0.0;
+  for (auto jump = std::ranges::upper_bound(jumps, from, {}, &LocalTrend::Jump::to);
+       jump != jumps.end() && jump->from < to; ++jump)
+    out += kFree * (std::min(to, jump->to) - std::max(from, jump->from)) / (jump->to - jump->from);
+  return out;
 }
 
-State predicted(const LocalTrend& trend, const State& before, double step) {
-  const Eigen::Matrix2d f = transition(step);
-  return {f * before.mean, f * before.covariance * f.transpose() + walked(trend, step)};
+/// What walks and jumps add between two places.
+Eigen::Matrix2d walked(const LocalTrend& trend, double from, double to) {
+  const double step = (to - from) / trend.spacing, cross = trend.slope * step * step / 2.0;
+  return Eigen::Matrix2d{
+      {trend.level * step + trend.slope * step * step * step / 3.0 + jumped(trend.jumps, from, to),
+       cross},
+      {cross, trend.slope * step}};
+}
+
+State predicted(const LocalTrend& trend, const State& before, double from, double to) {
+  const Eigen::Matrix2d f = transition((to - from) / trend.spacing);
+  return {f * before.mean, f * before.covariance * f.transpose() + walked(trend, from, to)};
 }
 
 /// Of a reading before it is known: its error and the variance of that.
@@ -52,18 +74,59 @@ Deviance deviance_of(const LocalTrend& trend, std::span<const double> at,
                      std::span<const double> readings) {
   State state;
   state.mean[0] = readings[0];
-  double squares = 0.0, logs = 0.0;
+  double squares = 0.0, logs = 0.0, freedom = 0.0;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    if (i > 0) state = predicted(trend, state, (at[i] - at[i - 1]) / trend.spacing);
+    if (i > 0) state = predicted(trend, state, at[i - 1], at[i]);
     const Innovation innovation = update(state, readings[i]);
-    if (i < 2) continue;  // of the diffuse start
+    if (i < 2 || jumped(trend.jumps, at[i - 1], at[i]) > 0.0) continue;  // diffuse
+    ++freedom;
     squares += innovation.error * innovation.error / innovation.variance;
     logs += std::log(innovation.variance);
   }
-  const auto freedom = static_cast<double>(at.size() - 2);
   const double variance = squares / freedom;
   if (!(variance > 0.0)) return {-INFINITY, 0.0};
   return {freedom * std::log(variance) + logs, std::sqrt(variance)};
+}
+
+/// How large the shift between a reading and the one before it would have to be, in its standard
+/// deviation: of the level, and of the slope.
+struct Shift {
+  double level = 0.0, slope = 0.0;
+};
+
+std::vector<Shift> shifts_of(const LocalTrend& trend, std::span<const double> at,
+                             std::span<const double> readings) {
+  const std::size_t n = at.size();
+  struct Step {
+    Innovation innovation;
+    Eigen::Vector2d gain{0.0, 0.0};
+  };
+  std::vector<Step> steps(n);
+  State state;
+  state.mean[0] = readings[0];
+  for (std::size_t i = 0; i < n; ++i) {
+    if (i > 0) state = predicted(trend, state, at[i - 1], at[i]);
+    const Eigen::Vector2d covariance = state.covariance.col(0);
+    steps[i].innovation = update(state, readings[i]);
+    steps[i].gain = covariance / steps[i].innovation.variance;
+  }
+  std::vector<Shift> out(n);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();  // of the innovations from here on, weighted
+  Eigen::Matrix2d variance = Eigen::Matrix2d::Zero();
+  for (std::size_t i = n; i-- > 1;) {
+    Eigen::Matrix2d keep = Eigen::Matrix2d::Identity();  // what the reading leaves of the state
+    keep.col(0) -= steps[i].gain;
+    const Innovation& innovation = steps[i].innovation;
+    sum = keep.transpose() * sum + Eigen::Vector2d(innovation.error / innovation.variance, 0.0);
+    variance = (keep.transpose() * variance * keep).eval();
+    variance(0, 0) += 1.0 / innovation.variance;
+    out[i] = {sum[0] / (trend.noise * std::sqrt(variance(0, 0))),
+              variance(1, 1) > 0.0 ? sum[1] / (trend.noise * std::sqrt(variance(1, 1))) : 0.0};
+    const Eigen::Matrix2d f = transition((at[i] - at[i - 1]) / trend.spacing);
+    sum = f.transpose() * sum;
+    variance = (f.transpose() * variance * f).eval();
+  }
+  return out;
 }
 
 /// The ratios of most likelihood on a grid of decades, then of half ones, one ratio at a time.
@@ -72,10 +135,11 @@ class Search {
   Search(std::span<const double> at, std::span<const double> readings)
       : at_(at), readings_(readings) {
     best_.spacing = (at.back() - at.front()) / static_cast<double>(at.size() - 1);
-    try_out(0.0, 0.0);
+    best_.jumps = plain_jumps(at, readings);
   }
 
   LocalTrend best() {
+    least_ = deviance_of(best_, at_, readings_);
     scan(&LocalTrend::slope, kSlopes);
     const LocalTrend smooth = best_;
     const Deviance of_smooth = least_;
@@ -97,6 +161,24 @@ class Search {
       }
     best_.noise = least_.noise;
     return best_;
+  }
+
+  /// Whether there were any to add.
+  bool adds_jumps() {
+    if (!(best_.noise > 0.0)) return false;
+    const std::vector<Shift> shifts = shifts_of(best_, at_, readings_);
+    const double large =
+        std::sqrt(chi_squared_quantile(1.0, 1.0 - kFalseJump / static_cast<double>(at_.size())));
+    const std::size_t before = best_.jumps.size();
+    const auto size = [&](std::size_t i) {
+      return i < shifts.size() ? std::abs(shifts[i].level) : 0.0;
+    };
+    for (std::size_t i = 1; i < shifts.size() && best_.jumps.size() < kMostJumps; ++i)
+      if (size(i) > std::max(large, std::abs(shifts[i].slope)) && size(i) > size(i - 1) &&
+          size(i) >= size(i + 1) && !(jumped(best_.jumps, at_[i - 1], at_[i]) > 0.0))
+        best_.jumps.push_back({at_[i - 1], at_[i]});
+    std::ranges::sort(best_.jumps, {}, &LocalTrend::Jump::from);
+    return best_.jumps.size() > before;
   }
 
  private:
@@ -123,8 +205,24 @@ class Search {
 
 }  // namespace
 
+std::vector<LocalTrend::Jump> plain_jumps(std::span<const double> at,
+                                          std::span<const double> readings) {
+  std::vector<double> steps(readings.size() + 1, 0.0);  // none before the first and after the last
+  for (std::size_t i = 1; i < readings.size(); ++i)
+    steps[i] = std::abs(readings[i] - readings[i - 1]);
+  const double large = kPlain * deviation_of_most(std::span(steps).subspan(1, readings.size() - 1));
+  std::vector<LocalTrend::Jump> out;
+  for (std::size_t i = 1; i < readings.size() && out.size() < kMostJumps; ++i)
+    if (steps[i] > large && std::max(steps[i - 1], steps[i + 1]) < kBesidePlain * steps[i])
+      out.push_back({at[i - 1], at[i]});
+  return out;
+}
+
 LocalTrend LocalTrend::of(std::span<const double> at, std::span<const double> readings) {
-  return Search(at, readings).best();
+  Search search(at, readings);
+  LocalTrend out = search.best();
+  for (int i = 0; i < kJumpScans && search.adds_jumps(); ++i) out = search.best();
+  return out;
 }
 
 std::vector<double> LocalTrend::smoothed(std::span<const double> at,
@@ -132,7 +230,7 @@ std::vector<double> LocalTrend::smoothed(std::span<const double> at,
   const std::size_t n = at.size();
   std::vector<State> before(n), after(n);  // the reading
   for (std::size_t i = 0; i < n; ++i) {
-    if (i > 0) before[i] = predicted(*this, after[i - 1], (at[i] - at[i - 1]) / spacing);
+    if (i > 0) before[i] = predicted(*this, after[i - 1], at[i - 1], at[i]);
     after[i] = before[i];
     if (std::isfinite(readings[i])) update(after[i], readings[i]);
   }

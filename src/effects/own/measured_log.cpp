@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "slideway/base/statistics.hpp"
 #include "slideway/profile/outliers.hpp"
@@ -16,6 +17,9 @@ constexpr double kMostBetween = 64.0;      // places between two readings
 constexpr double kRareCode = 0.1;          // of the values
 constexpr double kConstantRuns = 0.5;      // of the steps, where the resolution is coarse
 constexpr double kOfRange = 1e-9;          // of the range
+constexpr int kJumpWaves = 5;    // of when it jumps: they hold nine tenths of its variance
+constexpr int kJumpPlaces = 16;  // between the readings
+constexpr double kEdge = 1e-3;   // of the time between the readings
 
 double range_of(const std::vector<double>& values) {
   const auto [low, high] = std::ranges::minmax(values);
@@ -85,7 +89,12 @@ Channel readings_of(const Channel& log) {
   }
   const auto steps = static_cast<double>(runs.values.size()),
              all = static_cast<double>(out.values.size());
-  return runs.values.size() >= kLeastReadings && steps < (1.0 - kConstantRuns) * all ? runs : out;
+  const auto [low, high] = std::ranges::minmax(out.values);
+  const bool is_switch = std::ranges::all_of(
+      out.values, [low = low, high = high](double value) { return value == low || value == high; });
+  return !is_switch && runs.values.size() >= kLeastReadings && steps < (1.0 - kConstantRuns) * all
+             ? runs
+             : out;
 }
 
 }  // namespace
@@ -106,36 +115,75 @@ MeasuredLog::MeasuredLog(const Channel& log) : quantity_(readings_of(log)) {
   const std::vector<double> at = quantity_.at, values = quantity_.values;
   const std::size_t n = values.size();
   if (n < kLeastReadings) return;
-  if (!(deviation_of_most(deviations_of(quantity_)) > kOfRange * range_of(values))) return;
-  trend_ = LocalTrend::of(at, values);
+  const bool is_noisy = deviation_of_most(deviations_of(quantity_)) > kOfRange * range_of(values);
+  if (is_noisy)
+    trend_ = LocalTrend::of(at, values);
+  else
+    trend_.jumps = plain_jumps(at, values);
+  if (!is_noisy && trend_.jumps.empty()) return;
   const double finest = (log.at.back() - log.at.front()) / static_cast<double>(kFinePlaces);
   quantity_.at.clear();
-  const auto add = [&](double place, double reading) {
+  quantity_.values.clear();
+  const auto add = [&](double place, double reading, double straight) {
     quantity_.at.push_back(place);
+    quantity_.values.push_back(straight);
     readings_.push_back(reading);
   };
-  if (log.at.front() < at.front()) add(log.at.front(), NAN);
+  if (log.at.front() < at.front()) add(log.at.front(), NAN, values.front());
   for (std::size_t i = 0; i < n; ++i) {
-    add(at[i], values[i]);
+    add(at[i], values[i], values[i]);
     if (i + 1 == n) break;
-    const double pieces = std::clamp(std::floor((at[i + 1] - at[i]) / finest), 1.0, kMostBetween);
-    for (double k = 1.0; k < pieces; ++k) add(std::lerp(at[i], at[i + 1], k / pieces), NAN);
+    double pieces = std::clamp(std::floor((at[i + 1] - at[i]) / finest), 1.0, kMostBetween);
+    if (std::ranges::binary_search(trend_.jumps, at[i], {}, &LocalTrend::Jump::from))
+      pieces = std::max<double>(pieces, kJumpPlaces);
+    for (double k = 1.0; k < pieces; ++k)
+      add(std::lerp(at[i], at[i + 1], k / pieces), NAN,
+          std::lerp(values[i], values[i + 1], k / pieces));
   }
-  if (log.at.back() > at.back()) add(log.at.back(), NAN);
-  quantity_.values = trend_.smoothed(quantity_.at, readings_);
+  if (log.at.back() > at.back()) add(log.at.back(), NAN, values.back());
+  if (is_noisy) quantity_.values = trend_.smoothed(quantity_.at, readings_);
 }
 
 const std::vector<Channel>& MeasuredLog::errors() const {
   std::call_once(drawn_, [&] {
-    if (!(trend_.noise > 0.0)) return;
-    errors_.assign(kDraws, quantity_);
-    for (std::size_t d = 0; d < kDraws; ++d) {
-      RandomStream random(d, quantity_.name);
-      errors_[d].values = trend_.error(quantity_.at, readings_, random);
-      for (double& each : errors_[d].values) each /= std::sqrt(static_cast<double>(kDraws));
-    }
+    if (trend_.noise > 0.0) add_draws();
+    for (const LocalTrend::Jump& jump : trend_.jumps) add_times(jump);
   });
   return errors_;
+}
+
+void MeasuredLog::add_draws() const {
+  for (std::size_t d = 0; d < kDraws; ++d) {
+    RandomStream random(d, quantity_.name);
+    std::vector<double>& values = errors_.emplace_back(quantity_).values;
+    values = trend_.error(quantity_.at, readings_, random);
+    for (double& each : values) each /= std::sqrt(static_cast<double>(kDraws));
+  }
+}
+
+void MeasuredLog::add_times(const LocalTrend::Jump& jump) const {
+  const auto value_at = [&](double place) {
+    return quantity_.values[static_cast<std::size_t>(std::ranges::lower_bound(quantity_.at, place) -
+                                                     quantity_.at.begin())];
+  };
+  const double size = value_at(jump.to) - value_at(jump.from), length = jump.to - jump.from;
+  const auto add = [&](auto&& part) {
+    Channel& error = errors_.emplace_back(quantity_);
+    error.at = {jump.from - kEdge * length};
+    error.values = {0.0};
+    for (int i = 0; i <= kJumpPlaces; ++i) {
+      const double share = static_cast<double>(i) / kJumpPlaces;
+      error.at.push_back(std::lerp(jump.from, jump.to, share));
+      error.values.push_back(size * part(share));
+    }
+    error.at.push_back(jump.to + kEdge * length);
+    error.values.push_back(0.0);
+  };
+  add([](double) { return 1.0 / std::sqrt(12.0); });
+  for (int wave = 2; wave <= kJumpWaves; ++wave) {
+    const double turn = std::numbers::pi * wave;
+    add([turn](double share) { return std::numbers::sqrt2 / turn * std::sin(turn * share); });
+  }
 }
 
 }  // namespace slideway

@@ -11,7 +11,9 @@ namespace slideway {
 
 /// What a log says of the quantity that it measured: values that do not belong to it are left out,
 /// runs of one value of a coarse resolution count as one reading in their middle, and the white
-/// noise is smoothed away (LocalTrend). In the place of the log the quantity makes a Berkson error:
+/// noise is smoothed away (LocalTrend). Where it jumps between two readings, when is not known: at
+/// any time between them alike, which leaves a straight line with the error of a Brownian bridge
+/// that is as wide as the jump. In the place of the log the quantity makes a Berkson error:
 /// it is independent of what is known and leaves the gain without bias (Carroll et al. 2006,
 /// Measurement Error in Nonlinear Models, section 2.2.3).
 class MeasuredLog {
@@ -28,6 +30,11 @@ class MeasuredLog {
   Channel quantity_;
   LocalTrend trend_;
   std::vector<double> readings_;  // at the places of quantity_; NaN: none there
+  void add_draws() const;
+  /// Of a jump: that it is sooner or later, which moves its straight line, and the sines of the
+  /// bridge (Karhunen-Loeve) but the first, which is that for the most part.
+  void add_times(const LocalTrend::Jump& jump) const;
+
   mutable std::once_flag drawn_;
   mutable std::vector<Channel> errors_;
 };
