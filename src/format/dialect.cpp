@@ -59,6 +59,9 @@ class Head {
   [[nodiscard]] char delimiter_of(std::string_view line) const {
     return asked_ != '\0' ? asked_ : find_delimiter(line);
   }
+  [[nodiscard]] bool is_number(std::string_view field) const {
+    return is_numeric(field) || (!request_->clocks.empty() && clock_time(field));
+  }
   [[nodiscard]] bool is_row(std::string_view line) const;
   [[nodiscard]] bool holds_a_number(std::string_view line) const;
   [[nodiscard]] bool names_all(std::string_view line, char delimiter) const;
@@ -89,8 +92,9 @@ class Head {
 // A line of nothing but numbers, or with numbers wherever a column is asked for by number.
 bool Head::is_row(std::string_view line) const {
   const auto fields = split(line, delimiter_of(line));
-  const auto fits = [](std::string_view f) { return is_missing(f) || is_numeric(f); };
-  if (std::none_of(fields.begin(), fields.end(), is_numeric)) return false;
+  const auto is_one = [this](std::string_view f) { return is_number(f); };
+  const auto fits = [this](std::string_view f) { return is_missing(f) || is_number(f); };
+  if (std::none_of(fields.begin(), fields.end(), is_one)) return false;
   if (std::all_of(fields.begin(), fields.end(), fits)) return true;
   return !numbers_.empty() && words_.empty() && holds_a_number(line) &&
          std::all_of(numbers_.begin(), numbers_.end(), [&](std::size_t column) {
@@ -101,7 +105,7 @@ bool Head::is_row(std::string_view line) const {
 bool Head::holds_a_number(std::string_view line) const {
   const auto fields = split(line, delimiter_of(line));
   return std::any_of(numbers_.begin(), numbers_.end(), [&](std::size_t column) {
-    return column < fields.size() && is_numeric(fields[column]);
+    return column < fields.size() && is_number(fields[column]);
   });
 }
 
@@ -128,7 +132,7 @@ std::optional<std::size_t> Head::first_like_the_next() const {
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     std::vector<bool> numbers;
     for (const auto field : split(lines_[i].text, delimiter_of(lines_[i].text)))
-      numbers.push_back(is_numeric(field));
+      numbers.push_back(is_number(field));
     if (numbers == before && std::ranges::count(numbers, true) > 0) return i - 1;
     before = std::move(numbers);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <string>
 
@@ -102,6 +103,65 @@ bool has_thousands(std::string_view field) {
 bool is_numeric(std::string_view field) {
   return !is_missing(field) &&
          (parse_number(field, '.') || parse_number(field, ',') || has_thousands(field));
+}
+
+namespace {
+
+// Digits that the text starts with, and what parts them from the rest; taken off the text.
+std::optional<unsigned> take_digits(std::string_view& text, std::size_t most,
+                                    std::string_view marks) {
+  std::size_t count = 0;
+  unsigned value = 0;
+  for (; count < std::min(most, text.size()) && is_digit(text[count]); ++count)
+    value = 10 * value + static_cast<unsigned>(text[count] - '0');
+  if (count == 0 || (count < text.size() && marks.find(text[count]) == marks.npos)) return {};
+  text.remove_prefix(std::min(text.size(), count + 1));
+  return value;
+}
+
+// Days from 1970 to a date that the text starts with; taken off the text.
+std::optional<double> take_date(std::string_view& text) {
+  const bool year_first = text.size() > 4 && text[4] == '-';
+  const std::string_view mark = year_first ? "-" : ".";
+  const auto first = take_digits(text, year_first ? 4 : 2, mark);
+  const auto month = first ? take_digits(text, 2, mark) : std::nullopt;
+  const auto last = month ? take_digits(text, year_first ? 2 : 4, "T ") : std::nullopt;
+  if (!last) return std::nullopt;
+  const std::chrono::year_month_day date{
+      std::chrono::year(static_cast<int>(year_first ? *first : *last)), std::chrono::month(*month),
+      std::chrono::day(year_first ? *last : *first)};
+  if (!date.ok() || date.year() <= std::chrono::year(1970)) return std::nullopt;
+  return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count());
+}
+
+bool is_zone(std::string_view text) {
+  return text.empty() || text == "Z" ||
+         ((text[0] == '+' || text[0] == '-') &&
+          text.find_first_not_of("0123456789:", 1) == std::string_view::npos);
+}
+
+}  // namespace
+
+std::optional<double> clock_time(std::string_view field) {
+  double days = 0.0;
+  if (const std::size_t end = field.find_first_of("T "); end != std::string_view::npos) {
+    const std::optional<double> date = take_date(field);
+    if (!date) return std::nullopt;
+    days = *date;
+  }
+  const std::string_view zone = field.substr(std::min(field.size(), field.find_first_of("Z+-")));
+  field.remove_suffix(zone.size());
+  const auto hour = take_digits(field, 2, ":");
+  const auto minute = hour && !field.empty() ? take_digits(field, 2, ":") : std::nullopt;
+  if (!minute || *hour > 23 || *minute > 59 || !is_zone(zone)) return std::nullopt;
+  double second = 0.0;
+  if (!field.empty()) {
+    const char mark = field.find(',') == std::string_view::npos ? '.' : ',';
+    const auto read = is_digit(field[0]) ? parse_number(field, mark) : std::nullopt;
+    if (!read || !(*read < 61.0)) return std::nullopt;
+    second = *read;
+  }
+  return 86400.0 * days + 3600.0 * *hour + 60.0 * *minute + second;
 }
 
 char find_delimiter(std::string_view row) {

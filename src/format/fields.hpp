@@ -33,6 +33,11 @@ bool is_missing(std::string_view field);
 // "1,234", "1.234,5", "1 234", "1'234.5": digits in groups of three. "0,123" is none.
 bool has_thousands(std::string_view field);
 
+// "08:29", "08:29:40.5", both also after a date, "2026-03-12T" or "12.03.2026 ": s from midnight,
+// with a date from 1970. What stands behind them of a time zone is the same for all, and left
+// aside.
+std::optional<double> clock_time(std::string_view field);
+
 // Whether the field is a number in any notation.
 bool is_numeric(std::string_view field);
 

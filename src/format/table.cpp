@@ -5,6 +5,9 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <map>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "append.hpp"
@@ -39,6 +42,26 @@ struct Rows {
   }
 };
 
+// Times of a clock, one part of a column after the other, from the midnight before the first on.
+class Midnight {
+ public:
+  void count_on(std::span<double> times, std::size_t of_clock) {
+    for (double& time : times) {
+      if (std::isnan(time)) continue;
+      if (of_clock-- == 0) throw DataError("has clock times and numbers in one column of times");
+      if (!first_) first_ = kDay * std::floor(time / kDay);
+      time -= *first_;
+      if (*first_ == 0.0) time += kDay * std::max(0.0, std::round((last_ - time) / kDay));
+      last_ = time;
+    }
+  }
+
+ private:
+  static constexpr double kDay = 86400.0;  // s
+  std::optional<double> first_;            // midnight; 0 without a date
+  double last_ = 0.0;
+};
+
 class Reader {
  public:
   Reader(std::string_view text, const std::string& encoding, const TableRequest& request);
@@ -50,6 +73,8 @@ class Reader {
     std::size_t column;  // in the file
     std::size_t slot;    // among those asked for
     double value;        // in the current row
+    bool may_be_clock = false;
+    std::size_t clocks = 0;  // times of a clock that were read
   };
 
   [[nodiscard]] std::string_view rest_of_line(const char* at) const;
@@ -98,7 +123,7 @@ Reader::Reader(std::string_view text, const std::string& encoding, const TableRe
   const std::vector<std::size_t>& columns = dialect_.columns;
   for (std::size_t slot = 0; slot < columns.size(); ++slot)
     if (std::find(columns.begin(), columns.begin() + slot, columns[slot]) == columns.begin() + slot)
-      targets_.push_back({columns[slot], slot, 0.0});
+      targets_.push_back({columns[slot], slot, 0.0, std::ranges::count(request.clocks, slot) > 0});
   std::sort(targets_.begin(), targets_.end(),
             [](const Target& a, const Target& b) { return a.column < b.column; });
   last_is_target_ = !targets_.empty() && targets_.back().column + 1 == dialect_.names.size();
@@ -204,7 +229,11 @@ void Reader::read_irregular_row() {
       target.value = read_missing(field, target, ends_text);
       continue;
     }
-    const auto value = parse_number(field, dialect_.decimal);
+    auto value = parse_number(field, dialect_.decimal);
+    if (!value && target.may_be_clock) {
+      value = clock_time(field);
+      target.clocks += value ? 1 : 0;
+    }
     if (!value || !std::isfinite(*value)) refuse_field(field, target.column);
     target.value = *value;
   }
@@ -290,10 +319,17 @@ Table Reader::read(const TakeRows& take) {
     std::vector<Reader> chunks;
     std::vector<Rows> rows = std::vector<Rows>(kTogether);
   } taken, next;
+  std::map<std::size_t, Midnight> midnights;  // by slot
   const auto take_all = [&] {
     for (std::size_t i = 0; i < taken.chunks.size(); ++i) {
       const Reader& part = taken.chunks[i];
       missing_ += part.missing_;
+      for (const Target& target : part.targets_)
+        if (target.clocks > 0) {
+          const std::span values(taken.rows[i].columns[target.slot]);
+          midnights[target.slot].count_on(values.first(taken.rows[i].count), target.clocks);
+          table.units[target.slot] = "s";
+        }
       take({table, columns_of(taken.rows[i]),
             static_cast<double>(part.end_ - first_) / static_cast<double>(bytes)});
     }
@@ -307,6 +343,8 @@ Table Reader::read(const TakeRows& take) {
     });
     std::swap(taken, next);
   } while (!taken.chunks.empty());
+  if (!midnights.empty())
+    table.decisions.emplace_back("clock times are counted in s from the midnight before the first");
   if (missing_ > 0)
     table.decisions.push_back(std::to_string(missing_) +
                               (missing_ == 1 ? " value is" : " values are") +

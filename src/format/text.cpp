@@ -42,7 +42,9 @@ TableRequest columns_of(const TraceRequest& request) {
           .decimal = request.decimal,
           .encoding = request.encoding,
           .header_lines = request.header_lines,
-          .may_miss = true};
+          .may_miss = true,
+          .clocks = request.positions_are_times ? std::vector<std::size_t>{0}
+                                                : std::vector<std::size_t>{}};
 }
 
 StatedUnits TextFormat::stated_units(std::string_view bytes, const TraceRequest& request) const {
@@ -70,7 +72,10 @@ Trace TextFormat::read_in_parts(std::string_view bytes, const TraceRequest& requ
                      "\" belongs to an areal file; delimited text has columns");
   TableRequest columns = columns_of(request);
   const bool timed = !request.time_column.empty();
-  if (timed) columns.columns.push_back(request.time_column);
+  if (timed) {
+    columns.clocks.push_back(columns.columns.size());
+    columns.columns.push_back(request.time_column);
+  }
   Table table = parse_table(bytes, columns, [&](const TablePart& part) {
     TracePart points{part.table.units[0], part.table.units[1], false,
                      part.columns[0],     part.columns[1],     part.share};

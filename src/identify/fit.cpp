@@ -12,12 +12,14 @@
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
 #include "slideway/identify/planned_fit.hpp"
+#include "slideway/identify/shape_grid.hpp"
 
 namespace slideway {
 namespace {
 
 constexpr double kSettled = 1e-4;  // relative change of the noise: no estimate moves visibly
 constexpr int kMostRounds = 6;
+constexpr double kNear = 0.01;  // standard deviations of the noise: where solvers end
 
 bool has_settled(const std::vector<Noise>& before, const std::vector<Noise>& after) {
   const auto same = [](double a, double b) { return std::abs(a - b) <= kSettled * b; };
@@ -27,18 +29,20 @@ bool has_settled(const std::vector<Noise>& before, const std::vector<Noise>& aft
   });
 }
 
+bool has_no_loss(const Model& model) {
+  return std::ranges::all_of(model.observations, [](const Observation& observation) {
+    return observation.profile->loss == Loss::none;
+  });
+}
+
 /// Whether the sum of squares is smooth about the estimate, which is inside all bounds.
 bool can_be_refined(const Model& model, const Solution& fit) {
-  const auto at_bound = [](bool met) { return met; };
   const auto stepwise = [](const ModelTerm& term) {
     return std::ranges::any_of(term.effect->shapes(), &Shape::stepwise);
   };
   return (fit.converged || model.shapes() == 0) &&
-         std::ranges::none_of(fit.shape_at_bound, at_bound) &&
-         std::ranges::none_of(model.terms, stepwise) &&
-         std::ranges::all_of(model.observations, [](const Observation& observation) {
-           return observation.profile->loss == Loss::none;
-         });
+         std::ranges::count(fit.shape_at_bound, true) == 0 &&
+         std::ranges::none_of(model.terms, stepwise) && has_no_loss(model);
 }
 
 void move(const Compressed& compressed, const Eigen::VectorXd& change, Estimate& estimate) {
@@ -49,12 +53,16 @@ void move(const Compressed& compressed, const Eigen::VectorXd& change, Estimate&
         compressed.profiles[i].levelled(change);
 }
 
+Eigen::VectorXd newton_step(const Compressed& compressed, const Rank& rank) {
+  return rank.basis *
+         (rank.basis.transpose() * (compressed.triangle.transpose() * compressed.target));
+}
+
 /// Gauss-Newton steps as long as they become shorter. They do not look at the sum of squares: it is
 /// flat at the minimum, so that its rounding hides the second half of the digits. Of a linear
 /// problem: iterative refinement.
 Compressed refined(const Model& model, Solution& fit) {
   const bool is_linear = model.shapes() == 0;
-  constexpr double kNear = 0.01;         // standard deviations of the noise: where solvers end
   constexpr double kEnough = 1e-10;      // of the noise: 10 digits where u is as large as the value
   constexpr double kLastDigits = 1e-15;  // of what the model makes
   constexpr double kShorter = 0.9;
@@ -63,13 +71,14 @@ Compressed refined(const Model& model, Solution& fit) {
   fit.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
   double before = is_linear ? INFINITY : kNear;
   for (int step = 0; step < most && can_be_refined(model, fit); ++step) {
-    const Eigen::VectorXd change =
-        fit.rank.basis *
-        (fit.rank.basis.transpose() * (compressed.triangle.transpose() * compressed.target));
+    const Eigen::VectorXd change = newton_step(compressed, fit.rank);
     const double size = (compressed.triangle * change).norm();
     if (!(size < kShorter * before)) break;
+    Estimate moved = fit.estimate;
+    move(compressed, change, moved);
+    if (std::ranges::count(bounds_met(model, moved.shapes), true) > 0) break;
+    fit.estimate = std::move(moved);
     before = size;
-    move(compressed, change, fit.estimate);
     settle_residuals(model, fit.estimate, fit.linear);
     Eigen::VectorXd all(change.size());
     all << fit.estimate.amplitudes, fit.estimate.shapes;
@@ -79,6 +88,18 @@ Compressed refined(const Model& model, Solution& fit) {
     fit.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
   }
   return compressed;
+}
+
+/// solve(); of a linear problem whose equations are too ill-conditioned for its iterations, by the
+/// decomposition of its columns.
+SolveSummary solved(const Model& model, const Estimate& start, Solution& fit) {
+  SolveSummary out = solve(model, fit.linear, fit.noise, start);
+  if (out.converged || model.shapes() > 0 || !has_no_loss(model)) return out;
+  fit.estimate = std::move(out.estimate);
+  const Compressed compressed = refined(model, fit);
+  out.converged = (compressed.triangle * newton_step(compressed, fit.rank)).norm() <= kNear;
+  out.estimate = std::move(fit.estimate);
+  return out;
 }
 
 /// Per parameter: whether a convention fixes it.
@@ -242,18 +263,18 @@ Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
     curve = estimate_curve(model, out.linear, out.noise, start);
     start.curve = curve->prior;
   }
-  SolveSummary solved = solve(model, out.linear, out.noise, start);
+  SolveSummary found = solved(model, start, out);
   for (int round = 0; round < kMostRounds; ++round) {
-    if (settle(model, out, solved.estimate, curve)) break;
+    if (settle(model, out, found.estimate, curve)) break;
     const std::vector<Eigen::VectorXd> residuals = out.linear.residuals;
-    const Estimate before = std::move(solved.estimate);
-    solved = solve(model, out.linear, out.noise, before);
-    if (is_changed_by_model_alone(out.linear, solved.estimate, before, residuals)) break;
+    const Estimate before = std::move(found.estimate);
+    found = solved(model, before, out);
+    if (is_changed_by_model_alone(out.linear, found.estimate, before, residuals)) break;
   }
-  out.estimate = solved.estimate;
-  out.converged = solved.converged;
-  out.message = solved.message;
-  out.shape_at_bound = solved.shape_at_bound;
+  out.estimate = found.estimate;
+  out.converged = found.converged;
+  out.message = found.message;
+  out.shape_at_bound = found.shape_at_bound;
   conclude(model, out);
   return out;
 }

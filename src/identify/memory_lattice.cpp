@@ -137,6 +137,7 @@ FittedSizes PoolMemory::evaluate(const MemoryPlace& place, const Eigen::VectorXd
   for (const LinearProfile* profile : profiles_) information.emplace_back(*profile, covariance);
   FittedSizes out = fit_sizes(information, rest_, gates_.noise_likeness, from);
   out.cost += prior_cost(place, gates_.memory_odds);
+  if (std::isnan(out.cost)) out.cost = INFINITY;  // more digits than the information has
   return out;
 }
 

@@ -96,6 +96,7 @@ Channel read_channel(const Section& section, const ProblemRules& rules, Problem&
   TraceRequest request;
   request.position_column = section.column("time_column").value_or(request.position_column);
   request.value_column = section.column("value_column").value_or(request.value_column);
+  request.positions_are_times = channel.clock != IndependentVariable::slide;
   const std::filesystem::path path =
       resolved(section, "file", section.required("file", section.text("file"), "a path"), rules);
   problem.beside.push_back(path);

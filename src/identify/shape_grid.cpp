@@ -87,6 +87,18 @@ std::pair<double, double> shape_bounds(const Model& model, const ModelTerm& term
   return out;
 }
 
+std::vector<bool> bounds_met(const Model& model, const Eigen::VectorXd& shapes) {
+  std::vector<bool> out;
+  for (const ModelTerm& term : model.terms)
+    for (int s = 0; s < static_cast<int>(term.effect->shapes().size()); ++s) {
+      const auto [lower, upper] = shape_bounds(model, term, s);
+      const double value = shapes[static_cast<Eigen::Index>(out.size())];
+      const double near = 1e-9 * std::max(1.0, std::abs(value));
+      out.push_back(value - lower < near || upper - value < near);
+    }
+  return out;
+}
+
 std::vector<double> every(std::size_t step, const std::vector<double>& axis) {
   std::vector<double> out;
   for (std::size_t i = 0; i < axis.size(); i += step) out.push_back(axis[i]);

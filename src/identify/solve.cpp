@@ -264,18 +264,6 @@ void count_by_loss(Linearisation& linear, const std::vector<Noise>& noise) {
   }
 }
 
-std::vector<bool> bounds_met(const Model& model, const Estimate& estimate) {
-  std::vector<bool> out;
-  for (const ModelTerm& term : model.terms)
-    for (int s = 0; s < static_cast<int>(term.effect->shapes().size()); ++s) {
-      const auto [lower, upper] = shape_bounds(model, term, s);
-      const double value = estimate.shapes[static_cast<Eigen::Index>(out.size())];
-      const double near = 1e-9 * std::max(1.0, std::abs(value));
-      out.push_back(value - lower < near || upper - value < near);
-    }
-  return out;
-}
-
 }  // namespace
 
 Estimate initial_estimate(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
@@ -354,7 +342,7 @@ SolveSummary solve(const Model& model, Linearisation& linear, const std::vector<
   out.estimate.curve = curve;
   settle_residuals(model, out.estimate, linear);
   count_by_loss(linear, noise);
-  out.shape_at_bound = bounds_met(model, out.estimate);
+  out.shape_at_bound = bounds_met(model, out.estimate.shapes);
   return out;
 }
 

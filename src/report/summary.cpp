@@ -239,7 +239,7 @@ void say_verdict(const Analysis& analysis, Summary& out) {
   const auto say = [&](Alarm alarm, const char* badge, const char* sentence) {
     out.alarm = alarm;
     out.badge = badge;
-    out.verdict = sentence;
+    out.verdict = out.verdict_in_brief = sentence;
   };
   const Result& result = analysis.result;
   if (!result.final)

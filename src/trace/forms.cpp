@@ -243,7 +243,8 @@ class FormSearch {
     const Refined& refined = attempt.refined;
     const Eigen::Index sizes = refined.candidate->amplitudes();
     if (refined.projection.rank < sizes || refined.at_end || !refined.uncertainties.allFinite() ||
-        attempt.delta_bic > -gates_.delta_bic || (attempt.held_out && !attempt.held_out->helps))
+        !(refined.uncertainties.array() > 0.0).all() || attempt.delta_bic > -gates_.delta_bic ||
+        (attempt.held_out && !attempt.held_out->helps))
       return false;
     const Eigen::ArrayXd certain =
         refined.values.head(sizes).array().abs() / refined.uncertainties.head(sizes).array();

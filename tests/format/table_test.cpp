@@ -223,5 +223,42 @@ TEST_F(ReadTable, RoundsEveryValueAsStrtodDoes) {
   }
 }
 
+std::vector<double> times_of(const std::string& text, const std::string& column = "1") {
+  return parse_table(text, {.columns = {column, "2"}, .clocks = {0}}).columns[0];
+}
+
+// 08:29:40 is 8 h + 29 min + 40 s = 30580 s after midnight.
+TEST(ClockTimes, AreCountedInSecondsFromTheMidnightBeforeTheFirst) {
+  for (const char* text : {"08:29:40,1\n08:29:40.5,2\n", "t,T\n08:29:40,1\n08:29:40.5,2\n",
+                           "time;T\n08:29:40,0;1,5\n08:29:40,5;2,5\n",
+                           "2026-03-12T08:29:40Z,1\n2026-03-12T08:29:40.5Z,2\n",
+                           "2026-03-12 08:29:40;1\n2026-03-12 08:29:40.5;2\n",
+                           "12.03.2026 08:29:40;1\n12.03.2026 08:29:40,5;2\n",
+                           "2026-03-12T08:29:40+01:00,1\n2026-03-12T08:29:40.5+01:00,2\n"})
+    EXPECT_THAT(times_of(text), ElementsAre(30580.0, 30580.5)) << text;
+  EXPECT_THAT(times_of("time;T\n08:29;1\n08:30;2\n", "time"), ElementsAre(30540.0, 30600.0));
+  const Table table =
+      parse_table("t_min,T\n08:29:40,1\n", {.columns = {"t_min", "T"}, .clocks = {0}});
+  EXPECT_EQ(table.units[0], "s");
+}
+
+TEST(ClockTimes, GoOnOverMidnights) {
+  const auto around = ElementsAre(86390.0, 86400.0, 86410.0);
+  EXPECT_THAT(times_of("23:59:50,1\n00:00:00,2\n00:00:10,3\n"), around);
+  EXPECT_THAT(times_of("2024-02-28T23:59:50,1\n2024-02-29T00:00:00,2\n2024-02-29T00:00:10,3\n"),
+              around);
+  EXPECT_THAT(times_of("23:59:50,1\n06:00:00,2\n05:59:50,3\n"),
+              ElementsAre(86390.0, 108000.0, 107990.0));  // backwards, by less than half a day
+}
+
+TEST(ClockTimes, ThatAreNoneAreRefused) {
+  for (const char* field : {"25:00:00", "08:60", "08:29:61", "2026-02-30T08:00", "03/12/2026 08:00",
+                            "2026-03-12", "08", "8h", "08:29 AM", "T08:29", "08:29:x"}) {
+    const std::string text = std::string("t,T\n08:00:00,1\n") + field + ",2\n";
+    EXPECT_THROW(times_of(text, "t"), DataError) << field;
+  }
+  EXPECT_THROW(parse_table("t,T\n08:29:40,1\n", {.columns = {"t", "T"}}), DataError);
+}
+
 }  // namespace
 }  // namespace slideway::table_test

@@ -47,11 +47,12 @@ using TakePoints = std::function<void(const TracePart&)>;
 struct TraceRequest {
   std::string position_column = "1";  // text: header name or 1-based number
   std::string value_column = "2";
-  std::string time_column;          // text: when each point was read; empty: not asked for
-  std::string delimiter;            // text: "," ";" "tab" "blank"
-  std::string decimal;              // text: "." ","
-  std::string encoding;             // text: "utf-8" "utf-16" "latin-1"
-  std::optional<int> header_lines;  // text: lines before the first row of numbers
+  std::string time_column;           // text: when each point was read; empty: not asked for
+  bool positions_are_times = false;  // text: of a log
+  std::string delimiter;             // text: "," ";" "tab" "blank"
+  std::string decimal;               // text: "." ","
+  std::string encoding;              // text: "utf-8" "utf-16" "latin-1"
+  std::optional<int> header_lines;   // text: lines before the first row of numbers
   std::string line;  // areal files: "row:12" "column:3" (1-based) "diameter:30" (degrees)
   bool areal_without_line = false;  // what such a file holds, or an error
   bool ignore_checksum = false;

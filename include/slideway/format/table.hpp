@@ -18,6 +18,9 @@ struct TableRequest {
   std::string encoding;              // "utf-8" "utf-16" "latin-1"
   std::optional<int> header_lines;   // lines before the first row of numbers
   bool may_miss = false;             // every column but the first may have missing values
+  /// Those of the columns that may be clock times: "08:29:40", "2026-03-12T08:29:40.5",
+  /// "12.03.2026 08:29". They become s from the midnight before the first, over midnights on.
+  std::vector<std::size_t> clocks = {};
 };
 
 /// Columns of numbers read from delimited text.

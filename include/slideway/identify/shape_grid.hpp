@@ -18,6 +18,9 @@ std::vector<double> shape_grid(const Model& model, const ModelTerm& term, int sh
 /// fits.
 std::pair<double, double> shape_bounds(const Model& model, const ModelTerm& term, int shape);
 
+/// Per shape of all terms: whether it is at one of those bounds or beyond.
+std::vector<bool> bounds_met(const Model& model, const Eigen::VectorXd& shapes);
+
 /// Every so many-th value of an axis, the first and the last among them. REQUIRES step > 0, a
 /// value.
 std::vector<double> every(std::size_t step, const std::vector<double>& axis);
