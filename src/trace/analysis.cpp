@@ -73,6 +73,7 @@ Analysis analysed(const Problem& problem, const std::vector<Profile>& profiles,
       out.result.final->notes.push_back("of the declared model " + *conflict +
                                         ". An effect that was added may stand for a wrong prior");
     doubt_what_is_uncertain(*last, *out.result.final, *out.trace);
+    say_unknown_causes(last->model, *out.trace);
     add_conditions(*last, *out.trace, out.result);
     add_next_cut(problem, profiles, *last, std::move(loop.searched), limit, out);
   }

@@ -127,7 +127,7 @@ std::string block(const FormAttempt& attempt, const std::string& name, const std
   return "[[trace.candidate]]\nname = \"formula\"\nas = " + in_quotes(name) +
          "\nformula = " + in_quotes(formula) + "\nparameters = [\n" + joined(parameters, "") +
          "]\n" + (names.empty() ? "" : "profiles = [" + joined(names) + "]\n") +
-         "cause = \"not known: describes what was left without a name\"\n";
+         "cause = " + in_quotes(kUnknownCause) + "\n";
 }
 
 }  // namespace

@@ -23,6 +23,9 @@ struct FormAttempt {
   std::optional<HeldOut> held_out;
 };
 
+/// What a candidate says of its cause that was made from a form.
+inline constexpr const char* kUnknownCause = "not known: describes what was left without a name";
+
 /// The form as the report has it.
 /// @param before  with the effects as accepted
 UnnamedForm told(const FormAttempt& attempt, const FormVariable& variable,

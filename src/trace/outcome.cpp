@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fit_numbers.hpp"
+#include "form_text.hpp"
 #include "slideway/base/text.hpp"
 #include "slideway/effects/catalogue.hpp"
 #include "structure.hpp"
@@ -113,6 +114,15 @@ void doubt_what_is_uncertain(const FittedModel& fitted, const ModelResult& final
     out.notes.push_back(name + ": its size is only " + significant(size, 2) +
                         " of its standard uncertainties, which hold what else may have made the "
                         "form");
+  }
+}
+
+void say_unknown_causes(const Model& model, TraceResult& out) {
+  for (const TraceRound& round : out.rounds) {
+    const std::string name = term_name(round.accepted, round.profiles);
+    const auto term = std::ranges::find(model.terms, name, &ModelTerm::name);
+    if (term != model.terms.end() && term->effect->description().cause == kUnknownCause)
+      out.notes.push_back(name + " describes what was left; its cause is not known");
   }
 }
 

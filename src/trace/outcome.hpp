@@ -34,6 +34,9 @@ void doubt_what_some_have(const Disagreement& among, std::vector<AcceptedEffect>
 /// holds its rivals, those of the others and what has no name, is not said alone.
 void doubt_what_is_uncertain(const FittedModel& fitted, const ModelResult& final, TraceResult& out);
 
+/// Of effects that were made from a form of what was left.
+void say_unknown_causes(const Model& model, TraceResult& out);
+
 /// With each candidate that passes every gate of its own: why it left again, or `otherwise`.
 void say_why_refused(const std::string& otherwise, TraceResult& out);
 
