@@ -180,12 +180,19 @@ std::string say_finding(const Analysis& analysis, Summary& out) {
           left_over(trace));
 }
 
+/// The error from the line through the end points; null where it is not known.
+const StraightnessError* end_point_error(const Straightness& form) {
+  const auto at = std::ranges::find_if(form.errors, [](const StraightnessError& error) {
+    return error.line == ReferenceLineKind::end_point && is_known(error);
+  });
+  return at == form.errors.end() ? nullptr : &*at;
+}
+
 std::string straightness_of(const Result& result) {
   if (!result.final || !result.final->straightness) return "E_ZX is not in the model";
   const Straightness& form = *result.final->straightness;
-  for (const StraightnessError& error : form.errors)
-    if (error.line == ReferenceLineKind::end_point && is_known(error))
-      return "E_ZX " + value_text(error) + " µm";
+  if (const StraightnessError* const error = end_point_error(form))
+    return "E_ZX " + value_text(*error) + " µm";
   return "E_ZX is not determined" + (form.reason.empty() ? "" : ": " + form.reason);
 }
 
@@ -211,7 +218,7 @@ std::string lead_of(const Result& result, bool with_size) {
   const FittedParameter* const angle = result.final->squareness();
   const bool has_angle = angle != nullptr && is_known(*angle);
   const auto& way = result.final->straightness;
-  const bool has_form = way && way->end_point_um;
+  const bool has_form = way && end_point_error(*way) != nullptr;
   const std::string straightness = straightness_of(result), squareness = squareness_of(result);
   if (!angle && has_form)
     return "the slide is straight to " + straightness.substr(std::string("E_ZX ").size()) +
