@@ -130,6 +130,8 @@ TEST(ChannelEffect, NeedsALogOfTheWholeCutWithoutAWideGap) {
   EXPECT_THAT(lacking(log_of(ramp)), IsEmpty());
   EXPECT_THAT(lacking(log_of(ramp, 200.0)),
               ElementsAre("the log spindle_temperature from 0 to 300 s (it has 0 to 200)"));
+  EXPECT_THAT(lacking(log_of(ramp, 295.0, 5.0)), IsEmpty());  // the next reading was at 300
+  EXPECT_THAT(lacking(log_of(ramp, 290.0, 5.0)), ElementsAre(HasSubstr("it has 0 to 290")));
   EXPECT_THAT(lacking(log_of(ramp, 400.0, 80.0)),
               ElementsAre("the log spindle_temperature from 0 to 300 s at least every 60 s (it has "
                           "every 80 s)"));

@@ -279,14 +279,17 @@ std::vector<std::string> ChannelEffect::lacking(const Setup& setup) const {
   if (acts_on_the_reading(*channel_)) ends = setup.reading_times->positions_mm;
   const Machine machine(Machine::paper_lathe(), Lever::paper);
   const VariableRange range = range_of(readings({ends, setup, machine}, reading()));
-  const double rounding = kOfTheEnds * range.extent(), earliest = range.low - response_.lag_s;
   const std::vector<double>& at = channel_->at;
+  const double spacing = (at.back() - at.front()) / static_cast<double>(at.size() - 1);
+  const double earliest = range.low - response_.lag_s;
+  const double beyond =
+      std::min(spacing, kWidestGap * range.extent()) +
+      kOfTheEnds * range.extent();  // as far as it is from one reading to the next
   const std::string where = " from " + significant(earliest, 5) + " to " +
                             significant(range.high, 5) + " " + unit_of_clock(*channel_);
-  if (earliest < at.front() - rounding || range.high > at.back() + rounding)
+  if (earliest < at.front() - beyond || range.high > at.back() + beyond)
     return {std::string(kLogLacks) + channel_->name + where + " (it has " +
             significant(at.front(), 5) + " to " + significant(at.back(), 5) + ")"};
-  const double spacing = (at.back() - at.front()) / static_cast<double>(at.size() - 1);
   for (std::size_t i = 1; i < at.size(); ++i) {
     const double gap = std::min(at[i], range.high) - std::max(at[i - 1], range.low);
     if (gap <= kWidestGap * range.extent()) continue;
