@@ -61,16 +61,29 @@ std::vector<Eigen::MatrixXd> directions_beside(const Model& model, const Whitene
   return any ? out : std::vector<Eigen::MatrixXd>{};
 }
 
-/// The best finding of every log whose error is more than noise.
-std::vector<Finding> measured_among(const Model& model, const Whitened& data,
-                                    const Linearisation& linear, std::vector<Finding> findings) {
+/// What a hypothesis adds: a finding, and beside it its directions_beside().
+struct Suspect {
+  Finding finding;
+  std::vector<Eigen::MatrixXd> beside;
+};
+
+/// The findings, and the best one of every log whose error is more than noise.
+std::vector<Suspect> with_measured(const Model& model, const Whitened& data,
+                                   const Linearisation& linear,
+                                   const std::vector<Finding>& suspects,
+                                   std::vector<Finding> findings) {
+  std::vector<Suspect> out;
+  for (const Finding& each : suspects)
+    out.push_back({each, directions_beside(model, data, linear, each)});
   sort_by_priority(findings);
-  std::vector<Finding> out;
   std::set<std::string> names;
-  for (const Finding& each : findings)
-    if (is_measured(*each.candidate) && names.insert(each.candidate->effect_name()).second &&
-        !directions_beside(model, data, linear, each).empty())
-      out.push_back(each);
+  for (const Finding& each : findings) {
+    if (!is_measured(*each.candidate) || !names.insert(each.candidate->effect_name()).second ||
+        std::ranges::find(suspects, each.candidate, &Finding::candidate) != suspects.end())
+      continue;
+    std::vector<Eigen::MatrixXd> beside = directions_beside(model, data, linear, each);
+    if (!beside.empty()) out.push_back({each, std::move(beside)});
+  }
   return out;
 }
 
@@ -86,16 +99,14 @@ std::vector<Eigen::MatrixXd> columns_of(const Linearisation& linear,
 /// What a hypothesis adds to the model, profile by profile: values left undescribed, and the
 /// columns of findings and of their neighbours on the grid (their shapes lie between them), with
 /// what the error of a log makes beyond all noise.
-std::vector<Eigen::MatrixXd> columns_by_profile(const Model& model, const Whitened& data,
-                                                const Linearisation& linear,
+std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
                                                 const FreeValues& undescribed,
-                                                const std::vector<Finding>& findings) {
+                                                const std::vector<Suspect>& suspects) {
   std::vector<Eigen::MatrixXd> out = columns_of(linear, undescribed);
-  for (const Finding& each : findings) {
-    const std::vector<std::size_t>& part = each.candidate->part;
+  for (const auto& [finding, beside] : suspects) {
+    const std::vector<std::size_t>& part = finding.candidate->part;
     const std::vector<Eigen::MatrixXd> around =
-        by_profile(linear, each.candidate->columns_around(each.atom));
-    const std::vector<Eigen::MatrixXd> beside = directions_beside(model, data, linear, each);
+        by_profile(linear, finding.candidate->columns_around(finding.atom));
     for (std::size_t i = 0; i < out.size(); ++i) {
       if (!part.empty() && std::ranges::count(part, i) == 0) continue;
       append_columns(out[i], around[i]);
@@ -117,14 +128,11 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
   std::vector<Finding> findings = search(data, candidates);
   std::vector<Finding> suspects = suspects_among(findings, model.gates);
   for (int round = 0; round < kNoiseRounds; ++round) {
-    std::vector<Finding> free = suspects;
-    for (const Finding& each : measured_among(model, data, fit.linear, findings))
-      if (std::ranges::find(free, each.candidate, &Finding::candidate) == free.end())
-        free.push_back(each);
-    data = Whitened(fit.linear,
-                    noise_beside(fit.linear, model.gates,
-                                 columns_by_profile(model, data, fit.linear, undescribed, free)),
-                    undescribed);
+    const std::vector<Suspect> all = with_measured(model, data, fit.linear, suspects, findings);
+    data = Whitened(
+        fit.linear,
+        noise_beside(fit.linear, model.gates, columns_by_profile(fit.linear, undescribed, all)),
+        undescribed);
     findings = search(data, candidates);
     const std::vector<Finding> before =
         std::exchange(suspects, suspects_among(findings, model.gates));

@@ -172,8 +172,7 @@ double time_of_cut(const Profile& face, std::size_t value) {
 }
 
 // A valve that opens and closes at moments which its log, read every 5 s, does not show. The
-// straight lines of such a log are wrong by several times the noise of the face: one jump was a
-// step of the way, and all of them a lag.
+// straight lines of such a log are wrong by several times the noise of the face.
 TEST(OwnEffect, OfALogThatJumpsIsNoStepAndHasNoLag) {
   constexpr std::uint64_t seed = 31;
   RandomStream random(seed, "valve");

@@ -3,7 +3,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/statistics.hpp"
@@ -11,10 +10,9 @@
 namespace slideway {
 namespace {
 
-constexpr double kDiffuse = 1e8;  // variance of the start, in those of a reading
+constexpr double kDiffuse = 1e8;  // variance of the start and of a jump, in those of a reading
 constexpr int kLevels[] = {-4, 4}, kSlopes[] = {-11, 3};  // decades of the ratios
 constexpr int kMostScans = 6;
-constexpr double kFree = 1e8;           // variance of a jump, in those of a reading
 constexpr double kFalseJump = 0.01;     // chance of one in a log without any
 constexpr double kPlain = 6.0;          // standard deviations of most steps
 constexpr double kBesidePlain = 0.25;   // of a plain jump: the steps beside it
@@ -34,7 +32,8 @@ double jumped(const std::vector<LocalTrend::Jump>& jumps, double from, double to
   double out = 0.0;
   for (auto jump = std::ranges::upper_bound(jumps, from, {}, &LocalTrend::Jump::to);
        jump != jumps.end() && jump->from < to; ++jump)
-    out += kFree * (std::min(to, jump->to) - std::max(from, jump->from)) / (jump->to - jump->from);
+    out +=
+        kDiffuse * (std::min(to, jump->to) - std::max(from, jump->from)) / (jump->to - jump->from);
   return out;
 }
 

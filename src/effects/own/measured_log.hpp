@@ -27,14 +27,14 @@ class MeasuredLog {
   [[nodiscard]] const std::vector<Channel>& errors() const;
 
  private:
-  Channel quantity_;
-  LocalTrend trend_;
-  std::vector<double> readings_;  // at the places of quantity_; NaN: none there
   void add_draws() const;
   /// Of a jump: that it is sooner or later, which moves its straight line, and the sines of the
   /// bridge (Karhunen-Loeve) but the first, which is that for the most part.
   void add_times(const LocalTrend::Jump& jump) const;
 
+  Channel quantity_;
+  LocalTrend trend_;
+  std::vector<double> readings_;  // at the places of quantity_; NaN: none there
   mutable std::once_flag drawn_;
   mutable std::vector<Channel> errors_;
 };
