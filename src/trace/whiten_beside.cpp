@@ -61,18 +61,18 @@ std::vector<Eigen::MatrixXd> directions_beside(const Model& model, const Whitene
   return any ? out : std::vector<Eigen::MatrixXd>{};
 }
 
-/// What a hypothesis adds: a finding, and beside it its directions_beside().
-struct Suspect {
+/// What a hypothesis leaves free: a finding, and its directions_beside().
+struct FreeFinding {
   Finding finding;
   std::vector<Eigen::MatrixXd> beside;
 };
 
 /// The findings, and the best one of every log whose error is more than noise.
-std::vector<Suspect> with_measured(const Model& model, const Whitened& data,
-                                   const Linearisation& linear,
-                                   const std::vector<Finding>& suspects,
-                                   std::vector<Finding> findings) {
-  std::vector<Suspect> out;
+std::vector<FreeFinding> with_measured(const Model& model, const Whitened& data,
+                                       const Linearisation& linear,
+                                       const std::vector<Finding>& suspects,
+                                       std::vector<Finding> findings) {
+  std::vector<FreeFinding> out;
   for (const Finding& each : suspects)
     out.push_back({each, directions_beside(model, data, linear, each)});
   sort_by_priority(findings);
@@ -101,7 +101,7 @@ std::vector<Eigen::MatrixXd> columns_of(const Linearisation& linear,
 /// what the error of a log makes beyond all noise.
 std::vector<Eigen::MatrixXd> columns_by_profile(const Linearisation& linear,
                                                 const FreeValues& undescribed,
-                                                const std::vector<Suspect>& suspects) {
+                                                const std::vector<FreeFinding>& suspects) {
   std::vector<Eigen::MatrixXd> out = columns_of(linear, undescribed);
   for (const auto& [finding, beside] : suspects) {
     const std::vector<std::size_t>& part = finding.candidate->part;
@@ -128,7 +128,7 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
   std::vector<Finding> findings = search(data, candidates);
   std::vector<Finding> suspects = suspects_among(findings, model.gates);
   for (int round = 0; round < kNoiseRounds; ++round) {
-    const std::vector<Suspect> all = with_measured(model, data, fit.linear, suspects, findings);
+    const std::vector<FreeFinding> all = with_measured(model, data, fit.linear, suspects, findings);
     data = Whitened(
         fit.linear,
         noise_beside(fit.linear, model.gates, columns_by_profile(fit.linear, undescribed, all)),
