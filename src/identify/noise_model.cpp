@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "kept_values.hpp"
 #include "noise_bounds.hpp"
 #include "outstanding_line.hpp"
 #include "repeats.hpp"
@@ -18,13 +19,13 @@
 #include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/lack_of_fit.hpp"
 #include "slideway/identify/linear_algebra.hpp"
+#include "whole_residuals.hpp"
 
 namespace slideway {
 namespace {
 
 constexpr Eigen::Index kLeastSpare = 6;  // values beyond what is free, else the whole residual
 constexpr double kSameStep = 0.1;        // relative; values as far apart have the same memory
-constexpr double kGrid = 1024.0;         // places of a station in a step: more is jitter
 
 /// First low-band value of the near half of a diameter; 0 where there is no far one.
 Eigen::Index near_half(const Observation& observation) {
@@ -130,49 +131,6 @@ std::vector<std::size_t> pools_of(const Linearisation& linear) {
   return out;
 }
 
-/// Stations of the low-band values in their median step, for the noise between two of them; empty
-/// if they are neighbours. Those closer than the median step count as neighbours; values beyond an
-/// end of the trace stand at that end, no step apart.
-std::vector<double> stations_of(const Observation& observation) {
-  const std::vector<double> positions =
-      observation.low_band.positions(observation.profile->positions);
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < positions.size(); ++i)
-    steps.push_back(std::abs(positions[i] - positions[i - 1]));
-  if (steps.empty() || std::ranges::max(steps) <= (1.0 + kSameStep) * std::ranges::min(steps))
-    return {};
-  std::vector<double> sorted = steps;
-  std::erase(sorted, 0.0);
-  const double usual = median(sorted);
-  std::vector<double> out{0.0};
-  for (const double step : steps)
-    out.push_back(out.back() + std::max(std::round(kGrid * step / usual) / kGrid, 1.0));
-  return out;
-}
-
-/// The rows of the values that are not left out.
-LinearProfile kept(LinearProfile profile, const Observation& observation) {
-  profile.values = observation.values.size();
-  profile.trace = stations_of(observation);
-  profile.stations = profile.trace;
-  if (observation.left_out() == 0) return profile;
-  const std::vector<Eigen::Index> left_out = left_out_values(observation);
-  std::vector<Eigen::Index> rows;
-  for (Eigen::Index i = 0; i < profile.values; ++i)
-    if (!std::ranges::binary_search(left_out, i)) rows.push_back(i);
-  if (profile.trace.empty())
-    profile.stations.assign(rows.begin(), rows.end());
-  else
-    std::ranges::transform(rows, profile.stations.begin(),
-                           [&](Eigen::Index row) { return profile.trace[row]; });
-  profile.stations.resize(rows.size());
-  profile.nuisances = orthonormal(profile.nuisances(rows, Eigen::all));
-  profile.columns = profile.columns(rows, Eigen::all).eval();
-  if (profile.bounded.cols() > 0) profile.bounded = profile.bounded(rows, Eigen::all).eval();
-  profile.residual = profile.residual(rows).eval();
-  return profile;
-}
-
 /// One estimate of the noise, from a part of some residuals.
 struct PartialEstimate {
   std::vector<std::size_t> which;
@@ -197,44 +155,22 @@ std::vector<Noise> estimated(const PartialEstimate& part, const Linearisation& l
   return out;
 }
 
-/// Directions of the shared columns that the data determine beside all others.
-Eigen::MatrixXd shared_basis(const ColumnPlaces& places, const Compressed& compressed,
-                             const Gates& gates) {
-  Eigen::MatrixXd beside = compressed.triangle(Eigen::all, places.shared),
-                  own = compressed.triangle(Eigen::all, places.own);
-  clear_rounding(own, compressed.scale(places.own));
-  project_out(orthonormal(std::move(own)), beside);
-  return analyse_rank(beside, compressed.scale(places.shared), gates.rank_tolerance).basis;
-}
-
 /// Noise of the profiles named, from their whole residuals, the model left free.
 void from_whole_residuals(const Linearisation& linear, const std::vector<std::size_t>& which,
                           const Gates& gates, std::vector<Noise>& noise) {
-  const ColumnPlaces places(linear);
-  const Eigen::MatrixXd basis = shared_basis(places, compress(linear, noise), gates);
+  const WholeResiduals whole(linear, noise, gates);
   const std::vector<std::size_t> pools = pools_of(linear);
   PartialEstimate part;
   for (const std::size_t i : which) {
     const Observation& observation = *linear.observations[i];
     const Eigen::VectorXd& residual = linear.residuals[i];
-    if (is_rounding(residual, observation.values)) {
+    if (is_rounding(residual, observation.values))
       noise[i] =
-          rounding_noise(observation, residual,
-                         basis.cols() + std::ssize(places.own) + observation.nuisances.cols());
-      continue;
-    }
-    LinearProfile profile{observation.nuisances,
-                          linear.columns[i](Eigen::all, places.shared) * basis, places.residuals[i],
-                          observation.profile->standard_uncertainty};
-    append_columns(profile.nuisances, places.free[i]);
-    append_columns(profile.nuisances, directions_of_causes(linear, i));
-    if (profile.nuisances.cols() > observation.nuisances.cols())
-      profile.nuisances = orthonormal(std::move(profile.nuisances));
-    profile.bounded = places.bounded[i];
-    part.add(i, profile, observation, pools[i]);
+          rounding_noise(observation, residual, whole.determined() + observation.nuisances.cols());
+    else
+      part.add(i, whole.of(i), observation, pools[i]);
   }
-  const Eigen::MatrixXd priors = linear.prior_rows(places.priors, places.shared) * basis;
-  std::vector<Noise> found = estimated(part, linear, priors.transpose() * priors, gates);
+  std::vector<Noise> found = estimated(part, linear, whole.priors(), gates);
   for (std::size_t i = 0; i < found.size(); ++i) noise[part.which[i]] = std::move(found[i]);
 }
 

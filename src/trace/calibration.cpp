@@ -136,11 +136,23 @@ Eigen::MatrixXd null_residuals(const Whitened& data, const Gates& gates) {
   return data.outside(std::move(out));
 }
 
+double probability_of_others(const std::vector<Noise>& noise) {
+  double out = 0.0;
+  for (const Noise& each : noise)
+    if (each.is_estimated())
+      out = std::max(out,
+                     1.0 - std::ranges::max(each.alternatives, {}, &Noise::Alternative::probability)
+                               .probability);
+  return out;
+}
+
 Calibration calibrate(const Whitened& data, const Candidates& candidates, const Gates& gates,
                       const std::function<void(double)>& progress) {
   const Eigen::VectorXd gains =
       largest_gains(data, candidates, null_residuals(data, gates).cast<float>(), progress);
-  return fit_extremes({gains.begin(), gains.end()});
+  Calibration out = fit_extremes({gains.begin(), gains.end()});
+  out.of_others = probability_of_others(data.noise());
+  return out;
 }
 
 }  // namespace slideway

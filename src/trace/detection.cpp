@@ -136,10 +136,12 @@ std::optional<double> found_in(const Design& design, const Whitened& data, const
       stacked_slopes(one.model, one.candidate.term, one.shape, inner, data.rows() - data.values());
   const Eigen::MatrixXd covariance = amplitude_covariance(data.outside(std::move(joint)));
   const ParameterValues at = one.candidate.term.effect->parameter_values(inner, one.shape);
-  const double uncertainty =
-      std::sqrt(at.jacobian.row(0) * covariance * at.jacobian.row(0).transpose());
-  if (!std::isfinite(uncertainty)) return std::nullopt;
-  return std::max(*seen, (design.gates().size + design.deviate) * uncertainty);
+  const int decisive = one.candidate.term.effect->decisive_parameter();
+  const Eigen::RowVectorXd row = at.jacobian.row(decisive);
+  const double relative =
+      std::sqrt((row * covariance * row.transpose()).value()) / std::abs(at.values[decisive]);
+  if (!std::isfinite(relative)) return std::nullopt;
+  return *seen * std::max(1.0, (design.gates().size + design.deviate) * relative);
 }
 
 struct Limit {

@@ -259,9 +259,11 @@ void add_fast(const Model& model, const Viewer& viewer, const std::vector<FastLi
 
 bool is_of_place(const Candidate& candidate) {
   const Description& own = candidate.term.effect->description();
-  return own.of_face || std::ranges::any_of(own.confounded_effects, [](const std::string& other) {
-           return specimen(other).description().of_face;
-         });
+  const auto is_as_of_face = [&](const std::string& other) {
+    return specimen(other).description().of_face;
+  };
+  return own.of_face || (own.variable == IndependentVariable::trace &&
+                         std::ranges::any_of(own.confounded_effects, is_as_of_face));
 }
 
 Eigen::MatrixXd Candidate::columns_around(Eigen::Index atom) const {

@@ -24,7 +24,8 @@ std::vector<FittedParameter> parameters_of(const ModelResult& fit, const std::st
 }
 
 double size_in_uncertainties(const ModelResult& fit, const ModelTerm& term) {
-  const FittedParameter* own = fit.find(term.name + "." + term.effect->parameters()[0].name);
+  const auto decisive = static_cast<std::size_t>(term.effect->decisive_parameter());
+  const FittedParameter* own = fit.find(term.name + "." + term.effect->parameters()[decisive].name);
   if (!own || !own->value || !own->expanded_uncertainty) return INFINITY;
   return coverage_factor(std::nullopt) * std::abs(*own->value) / *own->expanded_uncertainty;
 }

@@ -19,11 +19,13 @@ constexpr int kEachWay = 24;           // centres that are tried on either side 
 constexpr double kFarther = 2;         // than X0: what lies there may have moved it
 constexpr std::size_t kMostNear = 64;  // values at the axis that neither noise nor step is taken of
 
-/// What a trace off its centre shows of the face.
+/// What a trace shows of the face whose centre lies elsewhere along it.
 std::unique_ptr<Effect> effect_of_face(const Model& model) {
   const std::vector<std::string>& names = effect_names();
-  const auto name = std::ranges::find_if(
-      names, [](const std::string& each) { return specimen(each).description().of_face; });
+  const auto name = std::ranges::find_if(names, [](const std::string& each) {
+    const Description& about = specimen(each).description();
+    return about.of_face && about.variable == IndependentVariable::trace;
+  });
   return make_effect(*name, {}, model.machine, model.range);
 }
 

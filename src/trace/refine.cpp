@@ -213,8 +213,9 @@ void assess(const Model& model, const Whitened& data, Refined& out) {
                           .cwiseMax(0.0)
                           .cwiseSqrt();
   // One number for the size: the parameter itself, or for several amplitudes their joint gain.
-  out.size_in_uncertainties = term.effect->has_one_size() && out.uncertainties[0] > 0.0
-                                  ? std::abs(out.values[0]) / out.uncertainties[0]
+  const int decisive = term.effect->decisive_parameter();
+  out.size_in_uncertainties = term.effect->has_one_size() && out.uncertainties[decisive] > 0.0
+                                  ? std::abs(out.values[decisive]) / out.uncertainties[decisive]
                                   : std::sqrt(out.projection.gain);
 }
 

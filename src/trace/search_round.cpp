@@ -18,6 +18,7 @@
 namespace slideway {
 namespace {
 
+constexpr double kBetterKnown = 0.5;    // of what was open of the noise: the null is another one
 constexpr std::size_t kEnoughPass = 3;  // names: a later check may refuse the best ones
 
 std::string implausible(const Refined& refined) {
@@ -293,7 +294,9 @@ SearchRound search_round(const Model& model, const Solution& fit, const Candidat
   auto [data, findings] = whiten_beside(model, fit, beside, candidates);
   SearchRound out{std::move(data), {}};
   if (candidates.empty()) return out;
-  if (!calibration) calibration = calibrate(out.data, candidates, model.gates, progress);
+  if (!calibration ||
+      probability_of_others(out.data.noise()) < kBetterKnown * calibration->of_others)
+    calibration = calibrate(out.data, candidates, model.gates, progress);
   out.tested = test_best(model, fit, out.data, findings, *calibration);
   if (out.tested.empty() ||
       !out.tested.front().refined.candidate->term.effect->description().steep_at_centre)

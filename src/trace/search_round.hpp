@@ -84,7 +84,8 @@ struct SearchRound {
                                                                const Gates& gates) const;
 };
 
-/// @param calibration  null distribution of the search; made here if it is not there yet
+/// @param calibration  null distribution of the search; made here if it is not there yet, and again
+///                     where the noise is better known than it was for that
 /// @param progress     is given the part of that which is done
 SearchRound search_round(const Model& model, const Solution& fit, const Candidates& candidates,
                          std::optional<Calibration>& calibration,

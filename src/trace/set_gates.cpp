@@ -43,11 +43,12 @@ std::string too_small(ModelExtender& extender, const Gates& gates,
   if (!term->effect->has_one_size() || effects[which].candidate->raises_degree ||
       effects[which].is_expected)
     return "";
-  const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(term->first_parameter);
+  const Eigen::Index decisive = term->first_parameter + term->effect->decisive_parameter();
+  const Eigen::RowVectorXd row = fitted.fit.parameters.jacobian.row(decisive);
   const double more = unnamed ? unnamed->variance(row) : 0.0;
   const double bend = widening_by_bend(fitted.fit, *term);
   double size =
-      std::abs(fitted.fit.parameters.values[term->first_parameter]) /
+      std::abs(fitted.fit.parameters.values[decisive]) /
       std::hypot(fitted.fit.uncertainty.of(row).standard_uncertainty / bend, std::sqrt(more));
   if (!(size < gates.size)) size = bend * size_in_uncertainties(extender.summary(effects), *term);
   if (!(size < gates.size)) return "";

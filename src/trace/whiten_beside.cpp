@@ -16,25 +16,25 @@ constexpr int kNoiseRounds = 3;
 
 /// Whether it is of how one trace lies on the workpiece.
 bool is_of_one_trace(const Candidate& candidate) {
-  return only(candidate) &&
-         candidate.term.effect->description().variable == IndependentVariable::trace;
+  const Description& about = candidate.term.effect->description();
+  return only(candidate) && (about.of_face || about.variable == IndependentVariable::trace);
 }
 
-/// What the data may lack: the best finding. Where that is of how one trace lies on the workpiece,
-/// the best such finding of each other profile that would be accepted as well: no trace lies as
-/// another does, and what one hides is no noise of the rest.
+/// What the data may lack: the best finding. Where that, or one as good, is of how one trace lies
+/// on the workpiece, the best such finding of each other profile as well: no trace lies as another
+/// does, and what one hides is no noise of the rest.
 std::vector<Finding> suspects_among(std::vector<Finding> findings, const Gates& gates) {
   sort_by_priority(findings);
-  std::vector<Finding> out{findings.front()};
-  if (!is_of_one_trace(*out.front().candidate)) return out;
-  for (const Finding& each : findings) {
-    if (each.delta_bic >= -gates.delta_bic) break;
-    const Candidate& own = *each.candidate;
-    if (is_of_one_trace(own) && std::ranges::none_of(out, [&](const Finding& f) {
-          return only(*f.candidate) == only(own);
+  const auto is_place = [](const Finding& each) { return is_of_one_trace(*each.candidate); };
+  const auto place = std::ranges::find_if(findings, is_place);
+  if (place == findings.end() || place->delta_bic > findings.front().delta_bic + gates.exchange_bic)
+    return {findings.front()};
+  std::vector<Finding> out{*place};
+  for (const Finding& each : findings)
+    if (each.delta_bic < 0.0 && is_place(each) && std::ranges::none_of(out, [&](const Finding& f) {
+          return only(*f.candidate) == only(*each.candidate);
         }))
       out.push_back(each);
-  }
   return out;
 }
 
@@ -127,12 +127,11 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
   if (candidates.empty()) return {std::move(data), std::vector<Finding>{}};
   std::vector<Finding> findings = search(data, candidates);
   std::vector<Finding> suspects = suspects_among(findings, model.gates);
+  std::vector<Eigen::MatrixXd> free;
   for (int round = 0; round < kNoiseRounds; ++round) {
     const std::vector<FreeFinding> all = with_measured(model, data, fit.linear, suspects, findings);
-    data = Whitened(
-        fit.linear,
-        noise_beside(fit.linear, model.gates, columns_by_profile(fit.linear, undescribed, all)),
-        undescribed);
+    free = columns_by_profile(fit.linear, undescribed, all);
+    data = Whitened(fit.linear, noise_beside(fit.linear, model.gates, free), undescribed);
     findings = search(data, candidates);
     const std::vector<Finding> before =
         std::exchange(suspects, suspects_among(findings, model.gates));
@@ -140,6 +139,9 @@ std::pair<Whitened, std::vector<Finding>> whiten_beside(const Model& model, cons
         std::ranges::equal(before, suspects, {}, &Finding::candidate, &Finding::candidate))
       break;
   }
+  std::vector<Noise> noise = data.noise();
+  rule_out_by_whole(fit.linear, model.gates, free, noise);
+  data.set_alternatives(std::move(noise));
   return {std::move(data), std::move(findings)};
 }
 

@@ -43,6 +43,9 @@ class Whitened {
   /// The same with the errors that priors leave what acts in one profile alone.
   [[nodiscard]] const std::vector<Noise>& total_noise() const { return total_; }
 
+  /// The same noises, their alternatives weighed anew.
+  void set_alternatives(std::vector<Noise> noise) { noise_ = std::move(noise); }
+
   /// Stacked low-band columns (rows() of them, zero in the rows of priors) made white, in place.
   void whiten(Eigen::Ref<Eigen::MatrixXd> stacked) const;
 

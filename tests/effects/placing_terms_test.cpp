@@ -143,18 +143,44 @@ TEST(Centring, WithoutAnOffsetIsTheCentreStep) {
   EXPECT_EQ(columns(*make("centring"), diameter, none), columns(*make("centre_step"), diameter));
 }
 
-// 3, 4, 5: a cone of 200 µm/m at r = 4 mm read beside the diameter by 3 mm is that at 5 mm.
+/// Height 1 mm beside the axis of a cone of 200 µm/m read beside the diameter by d mm, µm.
+double chord_height(double d) { return 0.2 * (std::hypot(1.0, d) - 1.0); }
+
+// 3, 4, 5: a cone at r = 4 mm read beside the diameter by 3 mm is that at 5 mm.
 TEST(Chord, IsTheConeFurtherOut) {
-  const Eigen::VectorXd z = height_um("chord", face({4.0, 0.0}), {200.0, 3.0});
+  const Eigen::VectorXd z = height_um("chord", face({4.0, 0.0}), {chord_height(3.0), 3.0});
   EXPECT_NEAR(z[0], 0.2 * (5.0 - 4.0), 1e-15);
   EXPECT_NEAR(z[1], 0.2 * 3.0, 1e-15);
 }
 
 TEST(Chord, IsTheNubOfATooHighTool) {
   const Case profile = face(spaced(0, 10, 21));
-  const Eigen::VectorXd chord = height_um("chord", profile, {200.0, 0.5});
+  const Eigen::VectorXd chord = height_um("chord", profile, {chord_height(0.5), 0.5});
   const Eigen::VectorXd nub = height_um("centre_height", profile, {0.2 * 0.5, 0.5});
   EXPECT_LT((chord - nub).norm(), 1e-14 * nub.norm());
+}
+
+// Where the slope of the face is known, the height alone tells the distance, whatever the width of
+// the form seems to be; its derivative is that of the height the other way round. A form that falls
+// where the face rises is of no trace.
+TEST(Chord, IsAtTheDistanceThatMakesItsHeight) {
+  FaceSlope cone;
+  cone.values = {2e-4, 2e-4};
+  TravelRange range;
+  range.face_slope = std::make_shared<const FaceSlope>(cone);
+  const auto effect = make_effect("chord", {}, lathe(), range);
+  const auto with_height = [&](double micrometres) {
+    const std::vector<double> wide{2.0};
+    return effect->parameter_values(Eigen::VectorXd::Constant(1, micrometres * kMicrometre), wide);
+  };
+  for (const double d : {0.05, 0.5, 3.0}) {
+    const ParameterValues known = with_height(chord_height(d));
+    EXPECT_NEAR(known.values[1], d, 1e-11);  // cancellation: of 1.001 mm, 1e-13 in d²
+    const double slope = 2e-4 * d / std::hypot(1.0, d);
+    EXPECT_NEAR(known.jacobian(1, 0) * slope, 1.0, 1e-9);
+    EXPECT_EQ(known.jacobian(1, 1), 0.0);
+  }
+  EXPECT_LT(with_height(-0.01).values[1], effect->parameters()[1].lower);
 }
 
 TEST(Hysteresis, ChangesSignWithTheDirection) {

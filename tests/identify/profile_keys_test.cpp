@@ -174,7 +174,7 @@ TEST_F(ProblemFile, KeepsAnEffectOfEachProfileThatNoneOfThemCanShow) {
   const std::string chord = "name = \"chord\"\nscope = \"profile\"\n";
   const Problem problem =
       read(kMachine + profile("kind = \"slide\"\n") + "[[effect]]\n" + chord +
-           "[truth]\n[[truth.effect]]\n" + chord + "slope_um_per_m = 20\ndistance_mm = 1\n");
+           "[truth]\n[[truth.effect]]\n" + chord + "height_um = 0.02\ndistance_mm = 1\n");
   ASSERT_EQ(problem.effects.size(), 1U);
   EXPECT_EQ(problem.effects[0].name, "chord");
   ASSERT_TRUE(problem.truth);

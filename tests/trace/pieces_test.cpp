@@ -34,11 +34,11 @@ Noise first_order(double rho, double innovation, Eigen::Index n = 160) {
   return {covariance, n};
 }
 
-/// One cut of 160 low-band values, its model and the noise it is whitened with.
+/// Cuts of 160 low-band values, their model and the noise it is whitened with.
 struct Bench {
-  explicit Bench(const turning::Hidden& hidden = {"clean"}, std::uint64_t seed = 3)
+  explicit Bench(const turning::Hidden& hidden = {"clean"}, std::uint64_t seed = 3, int cuts = 1)
       : problem(make_problem()),
-        profiles(quarter_faces(hidden, 1, kBlunt, seed)),
+        profiles(quarter_faces(hidden, cuts, kBlunt, seed)),
         model(build_model(problem, profiles)),
         fitted(fit(model)) {}
 
@@ -148,6 +148,55 @@ TEST(NoiseBeside, IsTheInstrumentsBesideFeedMarksAndAStrongLine) {
         EXPECT_LT(found, (hidden.tool ? 2.5 : 1.6) * kLowBandNoise) << name << ' ' << seed;
       }
     }
+}
+
+/// That the noise is none but the likeliest, of the fine band alone and after the slow one has been
+/// heard, over residuals of white noise and of what is added to it.
+template <typename Slow>
+std::pair<double, double> open_noises(Slow&& slow) {
+  const Bench bench({"clean"}, 3, 3);
+  Linearisation linear = bench.fitted.linear;
+  std::pair<double, double> sum{0.0, 0.0};
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomStream random(seed, "white");
+    for (Eigen::VectorXd& residual : linear.residuals) {
+      for (double& value : residual) value = 1e-5 * random.normal();
+      residual += slow(random, residual.size());
+    }
+    const Gates gates;
+    std::vector<Noise> noise = noise_beside(linear, gates);
+    const std::vector<Noise::Alternative> before = noise[0].alternatives;
+    sum.first += probability_of_others(noise);
+    rule_out_by_whole(linear, gates, {}, noise);
+    sum.second += probability_of_others(noise);
+    double total = 0.0;
+    const auto likeliest =
+        std::ranges::max_element(before, {}, &Noise::Alternative::probability) - before.begin();
+    for (std::size_t g = 0; g < before.size(); ++g) {
+      const double now = noise[0].alternatives[g].probability;
+      total += now;
+      if (std::ssize(before) > 1 && static_cast<std::ptrdiff_t>(g) != likeliest)
+        EXPECT_LE(now, before[g].probability);
+    }
+    EXPECT_NEAR(total, 1.0, 1e-12);
+  }
+  return sum;
+}
+
+// Of white noise the fine band leaves open what is slow, and the whole residual does not: half of
+// the odds at least are gone. Where a random walk is in it, most of them stay.
+TEST(RuleOutByWhole, HearsTheSlowBandOfNoiseThatIsWhite) {
+  const auto white = open_noises(
+      [](RandomStream&, Eigen::Index n) -> Eigen::VectorXd { return Eigen::VectorXd::Zero(n); });
+  EXPECT_GT(white.first, 0.5);
+  EXPECT_LT(white.second, 0.5 * white.first);
+  const auto walking = open_noises([](RandomStream& random, Eigen::Index n) {
+    Eigen::VectorXd walk(n);
+    double at = 0.0;
+    for (double& value : walk) value = at += 3e-6 * random.normal();
+    return walk;
+  });
+  EXPECT_GT(walking.second, 0.5 * walking.first);
 }
 
 TEST(Projection, GainIsTheFallOfTheSumOfSquares) {

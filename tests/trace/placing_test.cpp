@@ -199,6 +199,28 @@ TEST(Placing, EachCutMayBeOffItsCentreByAnother) {
   EXPECT_EQ(names.size(), 3U);
 }
 
+// A cone of 200 µrad, each trace beside the axis by a distance of its own: it is what the height of
+// its form and the slope of the face make it.
+TEST(Placing, EachTraceMayPassBesideTheAxisByAnother) {
+  const std::vector<double> beside{0.3, 0.7, 0.5};
+  const Closed result =
+      closed(problem_of({"chord", "step", "linear_drift"}),
+             at_azimuths(
+                 [&](double x, double azimuth) {
+                   const auto trace = std::lround(azimuth * 180.0 / kPi / 50.0);
+                   return 2e-4 * std::hypot(x, beside[static_cast<std::size_t>(trace)]);
+                 },
+                 6));
+  SCOPED_TRACE(story(result));
+  ASSERT_THAT(named(result), ElementsAre("chord", "chord", "chord"));
+  for (const TraceRound& round : result.rounds) {
+    ASSERT_EQ(round.profiles.size(), 1U);
+    const std::size_t trace = round.profiles[0].back() - '1';
+    expect_within_4u(round.parameters, "chord[" + round.profiles[0] + "].distance_mm",
+                     beside[trace]);
+  }
+}
+
 // 0.05 mm is little beside the others, and whether it is a step or off its centre does not show. It
 // is there all the same, and the others are not said to be off by it.
 TEST(Placing, ATraceLittleOffBesideTwoThatAreFarOffIsSeen) {

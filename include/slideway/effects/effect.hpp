@@ -269,6 +269,10 @@ class Effect {
     return std::abs(parameter_values[0]);
   }
 
+  /// Which parameter must be known to some of its uncertainties before the effect may be named. The
+  /// first, unless that and a shape tell the same together.
+  [[nodiscard]] virtual int decisive_parameter() const { return 0; }
+
   [[nodiscard]] bool is_carriage() const { return description().motion != MotionError::none; }
 
   /// Adds what the effect does to the bodies of the machine (errors[j-1] of body j) when the slide

@@ -21,6 +21,13 @@ namespace slideway {
 std::vector<Noise> noise_beside(const Linearisation& linear, const Gates& gates,
                                 std::vector<Eigen::MatrixXd> suspect = {});
 
+/// Of the noises that noise_beside() allows, each is no more probable, beside the likeliest, than
+/// the whole residuals make it, the model and the suspect left free: the fine band shows nothing of
+/// what is slow. None becomes more probable, for what the model lacks is no noise.
+/// @param suspect  as there
+void rule_out_by_whole(const Linearisation& linear, const Gates& gates,
+                       const std::vector<Eigen::MatrixXd>& suspect, std::vector<Noise>& noise);
+
 /// noise_beside() what a profile may lack, each profile fitted by itself: what profiles disagree by
 /// is in the noise of none of them. They share their memory as in a joint fit.
 /// @param joint  of the fit of all: the answer where the model has a curve, which would take all of

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "../linear_effect.hpp"
+#include "../of_face.hpp"
 #include "../request.hpp"
 #include "../variable_range.hpp"
 
@@ -27,53 +27,8 @@ std::pair<double, double> centring_search(const Stations& stations) {
   return {-farthest, farthest};
 }
 
-// The step of a cone, in proportion to the slope of the face. Where that is known, the offset is
-// what makes the step of it; the width of the ramp, which often no value shows, says where it lies.
-class Centring final : public SingleAmplitude {
- public:
-  Centring(SingleAmplitudeSpec spec, std::shared_ptr<const FaceSlope> slope)
-      : SingleAmplitude(std::move(spec)), slope_(std::move(slope)) {
-    if (slope_ && slope_->rms() == 0.0) slope_ = nullptr;
-  }
-
-  void columns(const Stations& stations, std::span<const double> shape,
-               Eigen::Ref<Eigen::MatrixXd> out) const override {
-    SingleAmplitude::columns(stations, shape, out);
-    in_proportion(stations, out);
-  }
-
-  void columns_of_shapes(const Stations& stations, std::span<const std::vector<double>> shapes,
-                         Eigen::Ref<Eigen::MatrixXd> out) const override {
-    SingleAmplitude::columns_of_shapes(stations, shapes, out);
-    in_proportion(stations, out);
-  }
-
-  void derivatives(const Stations& stations, std::span<const double> shape,
-                   Eigen::Ref<Eigen::MatrixXd> out) const override {
-    SingleAmplitude::derivatives(stations, shape, out);
-    in_proportion(stations, out);
-  }
-
-  [[nodiscard]] ParameterValues parameter_values(const Eigen::VectorXd& amplitudes,
-                                                 std::span<const double> shape) const override {
-    ParameterValues out = SingleAmplitude::parameter_values(amplitudes, shape);
-    if (!slope_) return out;
-    out.values[1] = -amplitudes[0] / slope_->rms();
-    out.jacobian.row(1) << -1.0 / slope_->rms(), 0.0;
-    out.by_slope = Eigen::Vector2d(0.0, -out.values[1] / slope_->rms());
-    return out;
-  }
-
- private:
-  void in_proportion(const Stations& stations, Eigen::Ref<Eigen::MatrixXd> out) const {
-    if (!slope_) return;
-    const double whole = slope_->rms();
-    for (Eigen::Index i = 0; i < stations.size(); ++i)
-      out.row(i) *= slope_->at(stations.radius(i)) / whole;
-  }
-
-  std::shared_ptr<const FaceSlope> slope_;
-};
+// A step of the height A = -X0 z'.
+OfFace::Distance centring_distance(double of_slope) { return {-of_slope, -1.0}; }
 
 }  // namespace
 
@@ -106,7 +61,7 @@ std::unique_ptr<Effect> make_centring(const Request& request) {
                          .shape = {.parameter = 1, .logarithmic = false, .stepwise = false},
                          .derivative = centring_derivative,
                          .range = centring_search}};
-  return std::make_unique<Centring>(std::move(spec), request.range.face_slope);
+  return std::make_unique<OfFace>(std::move(spec), request.range.face_slope, centring_distance);
 }
 
 }  // namespace slideway
