@@ -68,6 +68,21 @@ if(shlibdeps)
   if(NOT out STREQUAL "slideway ${VERSION}\n")
     message(FATAL_ERROR "--version of the package: ${out}")
   endif()
+  # Every library it loads stands in the table of third parts, but for the C library.
+  file(READ ${SOURCE}/THIRD_PARTY.md parts)
+  run(ldd ${OUT}/root/usr/bin/slideway)
+  string(REGEX MATCHALL "=> /[^ ]+" libraries "${out}")
+  foreach(library IN LISTS libraries)
+    string(REPLACE "=> " "*" library ${library})  # in /lib or in /usr/lib
+    run(dpkg-query -S ${library})
+    string(REGEX MATCH "^[^:,]+" part "${out}")
+    string(FIND "${parts}" "| ${part} |" at)
+    if(at EQUAL -1 AND NOT part MATCHES "^lib(c6|gcc-s1)$")
+      message(FATAL_ERROR "THIRD_PARTY.md lacks ${part}, whose ${library} the program loads")
+    endif()
+  endforeach()
+  run(${CMAKE_COMMAND} -D READELF=${READELF} -D PROGRAM=${OUT}/root/usr/bin/slideway
+      -P ${CMAKE_CURRENT_LIST_DIR}/hardened.cmake)
 endif()
 
 file(STRINGS ${SOURCE}/CHANGELOG.md versions REGEX "^## \\[")

@@ -1,4 +1,5 @@
-# What the linker was asked for is in the program: READELF, PROGRAM.
+# What compiler and linker were asked for is in the program: READELF, PROGRAM; NM and GUARDED, an
+# archive that was compiled with stack protector and _FORTIFY_SOURCE.
 function(read_elf out)
   execute_process(COMMAND ${READELF} ${ARGN} ${PROGRAM} OUTPUT_VARIABLE text RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
@@ -24,4 +25,14 @@ if(NOT segments MATCHES "GNU_STACK[^\n]* RW +0x")
 endif()
 if(dynamic MATCHES "RPATH|RUNPATH")
   message(SEND_ERROR "${PROGRAM}: libraries are looked for in a place of the build")
+endif()
+
+# Libraries that are linked in call the guard too, so it is asked of an archive of our own.
+if(GUARDED)
+  execute_process(COMMAND ${NM} -u ${GUARDED} OUTPUT_VARIABLE symbols ERROR_QUIET)
+  foreach(symbol __stack_chk_fail __[a-z]+_chk)
+    if(NOT symbols MATCHES "${symbol}")
+      message(SEND_ERROR "${GUARDED}: calls no ${symbol}")
+    endif()
+  endforeach()
 endif()
