@@ -19,8 +19,8 @@ DesignRank rank_of_design(Model model) {
   const Compressed compressed = compress(linear, noise);
   const Rank rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
   const Eigen::MatrixXd jacobian = all_parameters(model, middle).jacobian;
-  const NullDirections null = null_directions(model, rank.null_space, jacobian,
-                                              parameter_scale(jacobian, compressed.scale));
+  const NullDirections null =
+      null_directions(model, rank, jacobian, parameter_scale(jacobian, compressed.scale));
   DesignRank out{{}, undetermined(model, null)};
   const std::vector<std::string> names = model.parameter_names();
   for (std::size_t p = 0; p < names.size(); ++p)

@@ -51,7 +51,7 @@ Evidence evidence(const Model& model, const Solution& fit) {
   auto rows = system.leftCols(model.parameters());
   rows = root.matrixL().solve(image * compressed.triangle * to_amplitudes);
   if (has_priors)
-    clear_along(null_directions(model, rank.null_space, fit.parameters.jacobian,
+    clear_along(null_directions(model, rank, fit.parameters.jacobian,
                                 (compressed.scale.asDiagonal() * to_amplitudes)
                                     .colwise()
                                     .norm()

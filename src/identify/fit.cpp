@@ -141,7 +141,7 @@ void fix_gauge(const Model& model, const Compressed& compressed, Solution& fit) 
 }
 
 void find_null_directions(const Model& model, const Compressed& compressed, Solution& fit) {
-  fit.null = null_directions(model, fit.rank.null_space, fit.parameters.jacobian,
+  fit.null = null_directions(model, fit.rank, fit.parameters.jacobian,
                              parameter_scale(fit.parameters.jacobian, compressed.scale));
 }
 

@@ -16,6 +16,8 @@ namespace {
 
 constexpr double kAbsent = 1e-6;         // a coefficient this small in a null direction is rounding
 constexpr double kNullRounding = 100.0;  // last digits of one, for a condition of 1
+constexpr double kExactlyNull = 1e-12;   // of a scaled column: what changes by less is rounding
+constexpr double kUnseen = 0.1;          // of an uncertainty: adds 0.5 % to it
 
 /// Column-reduces `parameters` (scaled, P by d) so that each column has an own row: a 1 where all
 /// other columns have 0. The same operations go to `amplitudes`.
@@ -98,7 +100,7 @@ std::pair<Eigen::VectorXd, Eigen::MatrixXd> singular_directions(const Eigen::Mat
 
 Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale, double tolerance) {
   Rank rank;
-  rank.basis = rank.null_space = Eigen::MatrixXd(triangle.cols(), 0);
+  rank.basis = rank.null_space = rank.nearly_null = Eigen::MatrixXd(triangle.cols(), 0);
   if (triangle.cols() == 0) return rank;
   const Eigen::VectorXd unit = scale.unaryExpr([](double s) { return s > 0.0 ? s : 1.0; });
   if (triangle.size() == 0) {  // nothing is asked, or nothing was measured
@@ -113,6 +115,10 @@ Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
   rank.basis = unit.cwiseInverse().asDiagonal() * directions.leftCols(r) *
                singular.head(r).cwiseInverse().asDiagonal();
   if (r > 0) rank.condition = singular[0] / singular[r - 1];
+  Eigen::Index nearly = 0;
+  while (r + nearly < singular.size() && singular[r + nearly] > kExactlyNull) ++nearly;
+  rank.nearly_null = unit.cwiseInverse().asDiagonal() * directions.middleCols(r, nearly) *
+                     singular.segment(r, nearly).cwiseInverse().asDiagonal();
   const double rounding =
       std::min(kNullRounding * std::numeric_limits<double>::epsilon() * rank.condition, kAbsent);
   rank.null_space = unit.cwiseInverse().asDiagonal() *
@@ -125,25 +131,34 @@ Rank analyse_rank(const Eigen::MatrixXd& triangle, const Eigen::VectorXd& scale,
 Eigen::VectorXd parameter_scale(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& scale) {
   const auto or_one = [](double s) { return s > 0.0 ? s : 1.0; };
   if (jacobian.size() == 0) return Eigen::VectorXd::Ones(jacobian.rows());
-  const Eigen::VectorXd unit = scale.unaryExpr(or_one);
-  const Eigen::MatrixXd inverse = (jacobian * unit.cwiseInverse().asDiagonal())
-                                      .completeOrthogonalDecomposition()
-                                      .pseudoInverse();
-  return inverse.colwise().norm().transpose().unaryExpr(or_one);
+  const Eigen::MatrixXd rows = jacobian * scale.unaryExpr(or_one).cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd inverse = rows.completeOrthogonalDecomposition().pseudoInverse();
+  // Of rows that depend on one another, as a height and the distance that follows from it, each has
+  // a part of its size there: it has all of it alone.
+  const Eigen::VectorXd alone = rows.rowwise().norm().unaryExpr(
+      [](double length) { return length > 0.0 ? 1.0 / length : 0.0; });
+  return inverse.colwise().norm().transpose().cwiseMax(alone).unaryExpr(or_one);
 }
 
-NullDirections null_directions(const Model& model, const Eigen::MatrixXd& null_space,
+NullDirections null_directions(const Model& model, const Rank& rank,
                                const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& scale) {
   NullDirections null;
   std::vector<int> order;
   for (const ModelTerm& term : model.terms)
     for (const Parameter& parameter : term.effect->parameters()) order.push_back(parameter.gauge);
-  null.amplitudes = null_space;
-  Eigen::MatrixXd scaled = scale.asDiagonal() * (jacobian * null_space);
+  null.amplitudes = rank.null_space;
+  Eigen::MatrixXd scaled = scale.asDiagonal() * (jacobian * rank.null_space);
   null.own = reduce(scaled, null.amplitudes, order);
   null.identifiable.resize(order.size());
   for (std::size_t p = 0; p < order.size(); ++p)  // what moves with nothing is not known
     null.identifiable[p] = !jacobian.row(static_cast<Eigen::Index>(p)).isZero(0.0);
+  if (rank.nearly_null.cols() > 0) {
+    const Eigen::VectorXd unseen = (jacobian * rank.nearly_null).rowwise().norm(),
+                          seen = (jacobian * rank.basis).rowwise().norm();
+    for (std::size_t p = 0; p < order.size(); ++p)
+      if (const auto i = static_cast<Eigen::Index>(p); unseen[i] > kUnseen * seen[i])
+        null.identifiable[p] = false;
+  }
   for (Eigen::Index j = 0; j < scaled.cols(); ++j) {
     const double largest = scaled.col(j).cwiseAbs().maxCoeff();
     for (Eigen::Index i = 0; i < scaled.rows(); ++i) {

@@ -230,6 +230,17 @@ TEST(ParameterScale, IsTheSizeOfOneUnitInTheData) {
   EXPECT_EQ(parameter_scale(Eigen::MatrixXd(2, 0), Eigen::VectorXd(0)), Eigen::Vector2d::Ones());
 }
 
+// A height in µm and the distance that a slope of 1e-10 makes of it: neither is nothing beside the
+// other.
+TEST(ParameterScale, OfTwoParametersOfOneAmplitudeIsThatOfEachAlone) {
+  const Eigen::Vector2d jacobian(1e3, 1e10);
+  EXPECT_LT(
+      (parameter_scale(jacobian, Eigen::VectorXd::Constant(1, 2.0)) - Eigen::Vector2d(2e-3, 2e-10))
+          .cwiseQuotient(Eigen::Vector2d(2e-3, 2e-10))
+          .norm(),
+      1e-12);
+}
+
 TEST(Rank, OfNoColumnsIsNothing) {
   const Rank rank = analyse_rank(Eigen::MatrixXd(3, 0), Eigen::VectorXd(0), kTolerance);
   EXPECT_EQ(rank.basis.rows(), 0);
@@ -237,7 +248,7 @@ TEST(Rank, OfNoColumnsIsNothing) {
   EXPECT_EQ(rank.null_space.cols(), 0);
   EXPECT_EQ(rank.condition, 1.0);
   const NullDirections null =
-      null_directions(Model{{Machine::paper_lathe(), Lever::paper}, {}, {}, {}}, rank.null_space,
+      null_directions(Model{{Machine::paper_lathe(), Lever::paper}, {}, {}, {}}, rank,
                       Eigen::MatrixXd(0, 0), Eigen::VectorXd(0));
   EXPECT_THAT(null.own, IsEmpty());
   EXPECT_EQ(determined_rows(null).rows(), 0);

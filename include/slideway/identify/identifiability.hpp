@@ -13,7 +13,10 @@ namespace slideway {
 struct Rank {
   Eigen::MatrixXd basis;       // A by r: amplitudes = basis * w; w has unit covariance
   Eigen::MatrixXd null_space;  // A by (A - r): directions that change no prediction
-  double condition = 1.0;      // of the scaled columns within the rank
+  /// A by q: those of them that change it by more than rounding, each as far as the data let it go,
+  /// one standard uncertainty.
+  Eigen::MatrixXd nearly_null;
+  double condition = 1.0;  // of the scaled columns within the rank
 };
 
 /// Rank by SVD on scaled columns.
@@ -39,10 +42,11 @@ struct NullDirections {
   std::vector<bool> identifiable;  // P
 };
 
-/// @param null_space  A by d, Rank::null_space
-/// @param jacobian    P by A, d(parameters)/d(amplitudes, shapes)
-/// @param scale       P, size of one unit of each parameter in the data
-NullDirections null_directions(const Model& model, const Eigen::MatrixXd& null_space,
+/// A parameter that is in none of them, but that nearly null directions could move by what counts
+/// beside its uncertainty, is not identifiable either.
+/// @param jacobian  P by A, d(parameters)/d(amplitudes, shapes)
+/// @param scale     P, size of one unit of each parameter in the data
+NullDirections null_directions(const Model& model, const Rank& rank,
                                const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& scale);
 
 /// The directions in words, with what to measure.
