@@ -31,7 +31,7 @@ LinearProfile WholeResiduals::of(std::size_t i, const Eigen::MatrixXd& suspect) 
                     places_.residuals[i], observation.profile->standard_uncertainty};
   append_columns(out.nuisances, places_.free[i]);
   append_columns(out.nuisances, directions_of_causes(linear_, i));
-  append_columns(out.nuisances, suspect);
+  if (suspect.cols() > 0) append_columns(out.nuisances, suspect);
   if (out.nuisances.cols() > observation.nuisances.cols())
     out.nuisances = orthonormal(std::move(out.nuisances));
   out.bounded = places_.bounded[i];
