@@ -122,13 +122,18 @@ TEST(Centring, GoesWithTheSlopeOfTheFace) {
   EXPECT_NEAR(z[3], 20.0 / whole, 1e-14);
 }
 
-// The step is A = -X0 z'_rms whatever the width of the ramp seems to be, which few values show.
-TEST(Centring, HasTheOffsetThatMakesItsStep) {
+/// An effect of a face that is known to be a cone of 200 µm/m.
+std::unique_ptr<Effect> on_cone(const char* name) {
   FaceSlope cone;
   cone.values = {2e-4, 2e-4};
   TravelRange range;
   range.face_slope = std::make_shared<const FaceSlope>(cone);
-  const auto effect = make_effect("centring", {}, lathe(), range);
+  return make_effect(name, {}, lathe(), range);
+}
+
+// The step is A = -X0 z'_rms whatever the width of the ramp seems to be, which few values show.
+TEST(Centring, HasTheOffsetThatMakesItsStep) {
+  const auto effect = on_cone("centring");
   const std::vector<double> wide{2.0};
   const ParameterValues known =
       effect->parameter_values(Eigen::VectorXd::Constant(1, -0.1 * kMicrometre), wide);
@@ -164,11 +169,7 @@ TEST(Chord, IsTheNubOfATooHighTool) {
 // the form seems to be; its derivative is that of the height the other way round. A form that falls
 // where the face rises is of no trace.
 TEST(Chord, IsAtTheDistanceThatMakesItsHeight) {
-  FaceSlope cone;
-  cone.values = {2e-4, 2e-4};
-  TravelRange range;
-  range.face_slope = std::make_shared<const FaceSlope>(cone);
-  const auto effect = make_effect("chord", {}, lathe(), range);
+  const auto effect = on_cone("chord");
   const auto with_height = [&](double micrometres) {
     const std::vector<double> wide{2.0};
     return effect->parameter_values(Eigen::VectorXd::Constant(1, micrometres * kMicrometre), wide);
