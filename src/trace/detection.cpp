@@ -135,11 +135,8 @@ std::optional<double> found_in(const Design& design, const Whitened& data, const
   joint.rightCols(std::ssize(one.shape)) =
       stacked_slopes(one.model, one.candidate.term, one.shape, inner, data.rows() - data.values());
   const Eigen::MatrixXd covariance = amplitude_covariance(data.outside(std::move(joint)));
-  const ParameterValues at = one.candidate.term.effect->parameter_values(inner, one.shape);
-  const int decisive = one.candidate.term.effect->decisive_parameter();
-  const Eigen::RowVectorXd row = at.jacobian.row(decisive);
   const double relative =
-      std::sqrt((row * covariance * row.transpose()).value()) / std::abs(at.values[decisive]);
+      relative_uncertainty(*one.candidate.term.effect, inner, one.shape, covariance);
   if (!std::isfinite(relative)) return std::nullopt;
   return *seen * std::max(1.0, (design.gates().size + design.deviate) * relative);
 }
@@ -289,6 +286,14 @@ std::optional<DetectionLimit> detection_limit(const Design& design, const Candid
 }
 
 }  // namespace
+
+double relative_uncertainty(const Effect& effect, const Eigen::VectorXd& amplitudes,
+                            std::span<const double> shape, const Eigen::MatrixXd& covariance) {
+  const ParameterValues at = effect.parameter_values(amplitudes, shape);
+  const Eigen::RowVectorXd row = at.jacobian.row(effect.decisive_parameter());
+  return std::sqrt((row * covariance * row.transpose()).value()) /
+         std::abs(at.values[effect.decisive_parameter()]);
+}
 
 std::string shape_text(const Candidate& candidate, std::span<const double> shape) {
   const Effect& effect = *candidate.term.effect;

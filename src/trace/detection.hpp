@@ -25,4 +25,9 @@ std::string shape_text(const Candidate& candidate, std::span<const double> shape
 std::vector<NotSeparable> inseparable(const Model& model, const Solution& fit, const Whitened& data,
                                       const Candidates& candidates);
 
+/// Standard uncertainty of an effect's decisive parameter over its value.
+/// @param covariance  of amplitudes and shapes
+double relative_uncertainty(const Effect& effect, const Eigen::VectorXd& amplitudes,
+                            std::span<const double> shape, const Eigen::MatrixXd& covariance);
+
 }  // namespace slideway

@@ -249,11 +249,8 @@ std::optional<double> Suspects::limit(const Suspect& suspect, const PaperData& d
     const Eigen::MatrixXd covariance = unit.asDiagonal() *
                                        scaled.completeOrthogonalDecomposition().pseudoInverse() *
                                        unit.asDiagonal();
-    const Effect& effect = *suspect.candidate->term.effect;
-    const ParameterValues at = effect.parameter_values(inner, suspect.shape);
-    const Eigen::RowVectorXd row = at.jacobian.row(effect.decisive_parameter());
-    const double relative = std::sqrt((row * covariance * row.transpose()).value()) /
-                            std::abs(at.values[effect.decisive_parameter()]);
+    const double relative =
+        relative_uncertainty(*suspect.candidate->term.effect, inner, suspect.shape, covariance);
     size *= std::max(1.0, (gates.size + power_deviate(gates)) * relative);
   }
   if (!(size > 0.0) || !(size <= suspect.most)) return std::nullopt;
