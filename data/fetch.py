@@ -16,6 +16,7 @@ import struct
 import sys
 import urllib.request
 from collections.abc import Callable
+from http.client import HTTPException
 from pathlib import Path
 
 TIMEOUT = 60.0  # seconds without a byte
@@ -69,7 +70,7 @@ def fetch(path: Path, wanted: str, how: str, addresses: list[str]) -> str:
         return "made by hand from " + " ".join(addresses)
     try:
         content = MAKERS[how]([download(address) for address in addresses])
-    except (OSError, ValueError, struct.error, IndexError) as fault:
+    except (OSError, HTTPException, ValueError, struct.error, IndexError) as fault:
         return f"{' '.join(addresses)}: {fault}"
     found = checksum(content, how)
     if found != wanted:

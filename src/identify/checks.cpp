@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "curve_likelihood.hpp"
 #include "form_columns.hpp"
+#include "form_notes.hpp"
 #include "noise_bounds.hpp"
 #include "residual.hpp"
 #include "slideway/base/distribution.hpp"
@@ -159,18 +159,6 @@ void explain_resolution(const Solution& fit, ModelResult& out) {
                         "makes it; their noise is taken as that rounding's (GUM F.2.2.1)");
 }
 
-void explain_other_form(const Model& model, const Solution& fit, ModelResult& out) {
-  if (!fit.other_form) return;
-  const ModelTerm& form = *model.find_term(MotionError::straightness);
-  const std::string degree = form.effect->parameters().back().name.substr(1);
-  out.notes.push_back(
-      "the data refute degree " + degree + " of the " + form.name +
-      ": a curve beside it is likelier by a factor of e^" +
-      significant(fit.other_form->log_likelihood_ratio, 2) +
-      "; every uncertainty is widened by that curve, and the coefficients are those of the nearest "
-      "polynomial, not the slide's. Declare form = \"curve\", or a higher degree");
-}
-
 void explain_other_shapes(const Model& model, const Solution& fit, ModelResult& out) {
   const std::vector<std::string> names = model.parameter_names();
   for (const OtherShape& each : fit.other_shapes)
@@ -182,41 +170,17 @@ void explain_other_shapes(const Model& model, const Solution& fit, ModelResult& 
                              : "U, that of the formula's linear model, does not reach it"));
 }
 
-void explain_few_stations(const Model& model, ModelResult& out) {
-  for (const ModelTerm& term : model.terms)
-    if (term.effect->description().motion == MotionError::straightness &&
-        has_few_stations(model, term))
-      out.notes.push_back("the " + term.name + " is read at " +
-                          std::to_string(station_positions(model, term).size()) +
-                          " stations, too few to show what its polynomial does between them: U of "
-                          "E_ZX reaches to that of the stations alone");
-}
-
-void explain_parts(ModelResult& out) {
-  if (out.straightness && !out.straightness->parts.empty())
-    out.notes.push_back("E_ZX is that of the straightness and " +
-                        joined(out.straightness->parts, " and ") +
-                        " together: every reading of the slide shows them");
-}
-
-/// Nothing but a second reading tells a slow noise of the first from a curve that may have any
-/// form.
-void explain_lone_curve(const Model& model, const Solution& fit, ModelResult& out) {
-  if (curve_term(model) && fit.linear.observations.size() == 1)
-    out.notes.emplace_back(
-        "the curve rests on one trace: a drift while it was read would look the same, and U does "
-        "not hold it; a second reading, back, shows it");
-  if (curve_term(model) && curve_beside_least_noise(model, fit.linear, fit.noise, fit.estimate))
-    out.notes.emplace_back(
-        "so few readings do not tell the form of the slide from noise; standard_uncertainty, or "
-        "the slide read once more, does");
-}
-
 void explain_noise(const Solution& fit, ModelResult& out) {
   constexpr double kFew = 8.0;  // effective values: the memory is as long as the trace
   for (std::size_t i = 0; i < fit.noise.size(); ++i) {
-    const std::string profile = "profile '" + fit.linear.observations[i]->profile->name + "'";
+    const Observation& observation = *fit.linear.observations[i];
+    const std::string profile = "profile '" + observation.profile->name + "'";
     const Noise& noise = fit.noise[i];
+    if (!noise.declared && is_rounding(fit.linear.residuals[i], observation.values) &&
+        noise.standard_deviation() > observation.profile->resolution)
+      out.notes.push_back(profile +
+                          ": the model passes through its values, so U holds the rounding of "
+                          "numbers alone; no instrument is so exact");
     if (!noise.is_white() && noise.effective_values() < kFew)
       out.notes.push_back(profile +
                           ": the residual is correlated over the whole trace; a slow error that "
@@ -255,8 +219,8 @@ void explain_far_values(const Model& model, const Solution& fit, ModelResult& ou
   for (std::size_t i = 0; i < fit.noise.size(); ++i) {
     const Observation& observation = *fit.linear.observations[i];
     const Profile& profile = *observation.profile;
-    if (profile.loss != Loss::none) continue;
     const Eigen::VectorXd& residual = fit.linear.residuals[i];
+    if (profile.loss != Loss::none || is_rounding(residual, observation.values)) continue;
     const auto far = far_value(observation, residual, fit.noise[i], model.gates.lack_of_fit_p);
     if (!far) continue;
     const bool height = profile.setup.quantity == Quantity::height;
@@ -290,13 +254,14 @@ void explain_measured_cause(const Parameter& parameter, const FittedParameter& f
 }
 
 void explain_measured_causes(const Model& model, const Solution& fit, ModelResult& out) {
-  if (fit.uncertainty.departures.to_causes.cols() == 0) return;
+  const Eigen::MatrixXd& to_causes = fit.uncertainty.departures.to_causes;
   for (const ModelTerm& term : model.terms) {
     if (!term.effect->description().measured) continue;
     Eigen::Index row = term.first_parameter;
     for (const Parameter& parameter : term.effect->parameters()) {
       const double error =
-          (fit.parameters.jacobian.row(row++) * fit.uncertainty.departures.to_causes).norm();
+          to_causes.cols() > 0 ? (fit.parameters.jacobian.row(row) * to_causes).norm() : 0.0;
+      ++row;
       const FittedParameter* found = out.find(term.name + "." + parameter.name);
       if (found && found->value && found->expanded_uncertainty)
         explain_measured_cause(parameter, *found, error, out);
@@ -338,11 +303,8 @@ void add_checks(const Model& model, const Solution& fit, ModelResult& out) {
     out.neglected_um = *gap / kMicrometre;
   explain_scaling(fit, out);
   explain_resolution(fit, out);
-  explain_other_form(model, fit, out);
-  explain_few_stations(model, out);
-  explain_parts(out);
+  explain_form(model, fit, out);
   explain_other_shapes(model, fit, out);
-  explain_lone_curve(model, fit, out);
   explain_noise(fit, out);
   explain_far_values(model, fit, out);
   explain_measured_causes(model, fit, out);

@@ -39,7 +39,7 @@ std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, d
   const IsotropicPrior prior(inner, root.transpose() * data.products());
   const double last = std::sqrt(kMostInformation / most);
   for (double a = std::sqrt(kLeastInformation / most); a < last; a *= kAmplitudeStep)
-    out.push_back({{a, length, roughness, data.bow_mm()}, prior.log_evidence(a * a)});
+    out.push_back({{a, length, roughness, data.bow_mm(), data.kinks()}, prior.log_evidence(a * a)});
   if (!(data.bow_mm() > 0.0) || kinks == Kinks::none) return out;
   const Eigen::Index smooth = std::ssize(out);
   Eigen::RowVectorXd amplitudes(smooth), without(smooth);
@@ -55,10 +55,10 @@ std::vector<Hypothesis> along_amplitudes(const CurveData& data, double length, d
   const double least = std::max(kinked.maxCoeff(), without.maxCoeff()) + std::log(kLikely);
   for (Eigen::Index i = 0; i < smooth; ++i)
     for (Eigen::Index k = 0; k < kinked.rows(); ++k)
-      if (kinked(k, i) > least)
-        out.push_back(
-            {{amplitudes[i], length, roughness, data.bow_mm(), CurveKink{k + 1, data.bow_mm()}},
-             kinked(k, i)});
+      if (kinked(k, i) > least) {
+        out.push_back({out[static_cast<std::size_t>(i)].prior, kinked(k, i)});
+        out.back().prior.kinks.push_back({k + 1, data.bow_mm()});
+      }
   return out;
 }
 
@@ -93,8 +93,12 @@ Eigen::MatrixXd correlation_root(const Knots& knots, double length, double rough
 }
 
 CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
-                     const std::vector<Noise>& noise, const Estimate& estimate)
-    : knots_(*term.effect->knots()), bow_mm_(estimate.curve->bow_mm) {
+                     const std::vector<Noise>& noise, const Estimate& estimate,
+                     std::vector<CurveKink> kinks)
+    : knots_(*term.effect->knots()),
+      bow_mm_(estimate.curve->bow_mm),
+      kinks_(std::move(kinks)),
+      kink_forms_(slideway::kink_forms(knots_)) {
   Linearisation data = linear;
   const Eigen::Index declared = linear.prior_rows.rows() - linear.curve_rows;
   data.prior_rows = linear.prior_rows.topRows(declared);
@@ -120,20 +124,38 @@ CurveData::CurveData(const ModelTerm& term, const Linearisation& linear,
   freedom_ = -basis.cols();
   for (const Observation* each : linear.observations)
     freedom_ += each->values.size() - each->nuisances.cols();
-  bow_.form = bow_form(knots_);
-  const Eigen::VectorXd informed = information_ * bow_.form;
-  const double of_data = informed.dot(bow_.form), of_prior = 1.0 / (bow_mm_ * bow_mm_);
-  bow_.variance = 1.0 / (of_data + of_prior);
-  bow_.mean = bow_.variance * products_.dot(bow_.form);
-  log_likelihood_ =
-      0.5 * (bow_.mean * products_.dot(bow_.form) - std::log1p(of_data * bow_mm_ * bow_mm_) -
-             target.squaredNorm() - square_beyond(compressed, data.prior_residuals));
-  bow_.moved = bow_.variance * informed;
-  bow_.determined = of_data > of_prior;
-  products_ -= bow_.mean * informed;
-  information_ -= bow_.moved * informed.transpose();
-  kinks_ = kink_forms(knots_);
-  informed_kinks_ = information_ * kinks_;
+  log_likelihood_ = -0.5 * (target.squaredNorm() + square_beyond(compressed, data.prior_residuals));
+  free_forms();
+}
+
+void CurveData::free_forms() {
+  const Eigen::Index count = 1 + std::ssize(kinks_);
+  forms_.forms.resize(information_.rows(), count);
+  Eigen::VectorXd heights(count);
+  forms_.forms.col(0) = bow_form(knots_);
+  heights[0] = bow_mm_;
+  for (Eigen::Index i = 1; i < count; ++i) {
+    const CurveKink& kink = kinks_[static_cast<std::size_t>(i) - 1];
+    forms_.forms.col(i) = kink_forms_.col(kink.knot - 1);
+    heights[i] = kink.height_mm;
+    log_likelihood_ -= std::log(static_cast<double>(kink_forms_.cols()));
+  }
+  const Eigen::MatrixXd informed = information_ * forms_.forms;
+  const Eigen::VectorXd product = forms_.forms.transpose() * products_;
+  // In units of their prior standard deviations: I + what the data say.
+  const Eigen::MatrixXd known =
+      heights.asDiagonal() * (forms_.forms.transpose() * informed) * heights.asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> both(Eigen::MatrixXd::Identity(count, count) + known);
+  forms_.covariance = heights.asDiagonal() * both.solve(heights.asDiagonal().toDenseMatrix());
+  forms_.mean = forms_.covariance * product;
+  const Eigen::MatrixXd root = both.matrixL();
+  log_likelihood_ += 0.5 * forms_.mean.dot(product) - root.diagonal().array().log().sum();
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (known(i, i) > 1.0) forms_.determined.push_back(i);
+  forms_.moved = informed * forms_.covariance;
+  products_ -= informed * forms_.mean;
+  information_ -= forms_.moved * informed.transpose();
+  informed_kinks_ = information_ * kink_forms_;
 }
 
 Eigen::MatrixXd kink_forms(const Knots& knots) {
@@ -165,16 +187,19 @@ std::vector<Hypothesis> likely_priors(const CurveData& data, Kinks kinks) {
   parallel_for(shapes.size(), [&](std::size_t i) {
     found[i] = along_amplitudes(data, shapes[i].length_mm, shapes[i].roughness, kinks);
   });
+  const auto has_one_more = [&](const Hypothesis& each) {
+    return each.prior.kinks.size() > data.kinks().size();
+  };
   std::vector<Hypothesis> out;
   double smooth = -INFINITY, best = -INFINITY;
   for (const std::vector<Hypothesis>& each : found)
     for (const Hypothesis& one : each) {
       best = std::max(best, one.log_likelihood);
-      if (!one.prior.kink) smooth = std::max(smooth, one.log_likelihood);
+      if (!has_one_more(one)) smooth = std::max(smooth, one.log_likelihood);
     }
   for (const std::vector<Hypothesis>& each : found)
     for (const Hypothesis& one : each)
-      if (one.log_likelihood > (one.prior.kink ? best : smooth) + std::log(kLikely))
+      if (one.log_likelihood > (has_one_more(one) ? best : smooth) + std::log(kLikely))
         out.push_back(one);
   return out;
 }
@@ -184,7 +209,8 @@ const Hypothesis* likeliest(const std::vector<Hypothesis>& hypotheses) {
   return found == hypotheses.end() ? nullptr : &*found;
 }
 
-CurvePosterior::CurvePosterior(const CurveData& data, double length_mm, double roughness) {
+CurvePosterior::CurvePosterior(const CurveData& data, double length_mm, double roughness)
+    : known_kinks_(data.kinks().size()), forms_(data.forms()) {
   const Knots& knots = data.knots();
   const Eigen::MatrixXd root = correlation_root(knots, length_mm, roughness);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(root.transpose() * data.information() *
@@ -193,11 +219,14 @@ CurvePosterior::CurvePosterior(const CurveData& data, double length_mm, double r
   const Eigen::MatrixXd axes = root * eigen.eigenvectors();
   products_ = axes.transpose() * data.products();
   kinks_on_axes_ = axes.transpose() * data.informed_kinks();
-  kink_information_ = data.kinks().cwiseProduct(data.informed_kinks()).colwise().sum();
-  kink_products_ = data.kinks().transpose() * data.products();
-  bow_ = data.bow();
-  axes_ = bow_.beside(axes);
-  kinks_ = bow_.beside(data.kinks());
+  kink_information_ = data.kink_forms().cwiseProduct(data.informed_kinks()).colwise().sum();
+  kink_products_ = data.kink_forms().transpose() * data.products();
+  axes_ = forms_.beside(axes);
+  kinks_ = forms_.beside(data.kink_forms());
+}
+
+bool CurvePosterior::has_one_more(const CurvePrior& prior) const {
+  return prior.kinks.size() > known_kinks_;
 }
 
 Eigen::VectorXd CurvePosterior::variances(double amplitude) const {
@@ -219,44 +248,45 @@ Eigen::MatrixXd CurvePosterior::log_evidence_of_kinks(const Eigen::RowVectorXd& 
 }
 
 CurvePosterior::Kink CurvePosterior::kink_of(const CurvePrior& prior) const {
-  const Eigen::Index k = prior.kink->knot - 1;
+  const Eigen::Index k = prior.kinks.back().knot - 1;
   const Eigen::VectorXd own = variances(prior.amplitude_mm);
   const Eigen::VectorXd shared = own.cwiseProduct(kinks_on_axes_.col(k));
   const double information =
       std::max(kink_information_[k] - kinks_on_axes_.col(k).dot(shared), 0.0);
   const double product = kink_products_[k] - shared.dot(products_);
-  const double before = prior.kink->height_mm * prior.kink->height_mm;
+  const double before = std::pow(prior.kinks.back().height_mm, 2);
   const double variance = before / (1.0 + before * information);
   return {variance * product, variance, before * information, kinks_.col(k) - axes_ * shared};
 }
 
 Eigen::VectorXd CurvePosterior::mean(const CurvePrior& prior) const {
   Eigen::VectorXd out =
-      bow_.mean * bow_.form + axes_ * variances(prior.amplitude_mm).cwiseProduct(products_);
-  if (!prior.kink) return out;
+      forms_.forms * forms_.mean + axes_ * variances(prior.amplitude_mm).cwiseProduct(products_);
+  if (!has_one_more(prior)) return out;
   const Kink kink = kink_of(prior);
   return out + kink.height * kink.moves;
 }
 
 Eigen::MatrixXd CurvePosterior::covariance(const CurvePrior& prior) const {
   Eigen::MatrixXd out = axes_ * variances(prior.amplitude_mm).asDiagonal() * axes_.transpose() +
-                        bow_.variance * bow_.form * bow_.form.transpose();
-  if (!prior.kink) return out;
+                        forms_.forms * forms_.covariance * forms_.forms.transpose();
+  if (!has_one_more(prior)) return out;
   const Kink kink = kink_of(prior);
   return out + kink.variance * kink.moves * kink.moves.transpose();
 }
 
 Eigen::MatrixXd CurvePosterior::determined(const CurvePrior& prior, Eigen::Index most) const {
-  const bool has_kink = prior.kink && kink_of(prior).determined > 1.0;
-  most -= (bow_.determined ? 1 : 0) + (has_kink ? 1 : 0);
+  const Eigen::Index of_kink = has_one_more(prior) && kink_of(prior).determined > 1.0 ? 1 : 0,
+                     of_forms = std::ssize(forms_.determined);
+  most -= of_forms + of_kink;
   std::vector<Eigen::Index> which;
   for (Eigen::Index i = information_.size() - 1; i >= 0 && std::ssize(which) < most; --i)
     if (prior.amplitude_mm * prior.amplitude_mm * information_[i] > 1.0) which.push_back(i);
-  const Eigen::Index of_axes = std::ssize(which), of_bow = bow_.determined ? 1 : 0;
-  Eigen::MatrixXd out(axes_.rows(), of_axes + of_bow + (has_kink ? 1 : 0));
+  const Eigen::Index of_axes = std::ssize(which);
+  Eigen::MatrixXd out(axes_.rows(), of_axes + of_forms + of_kink);
   out.leftCols(of_axes) = axes_(Eigen::all, which);
-  if (bow_.determined) out.col(of_axes) = bow_.form;
-  if (has_kink) out.rightCols(1) = kinks_.col(prior.kink->knot - 1);
+  out.middleCols(of_axes, of_forms) = forms_.forms(Eigen::all, forms_.determined);
+  if (of_kink > 0) out.rightCols(1) = kinks_.col(prior.kinks.back().knot - 1);
   return out;
 }
 
@@ -264,7 +294,7 @@ void CurvePosterior::add_moments(std::span<const Hypothesis> hypotheses,
                                  std::span<const double> weights, const Eigen::VectorXd& centre,
                                  Eigen::MatrixXd& out) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(information_.size());
-  const Eigen::VectorXd bow = bow_.mean * bow_.form;
+  const Eigen::VectorXd of_forms = forms_.forms * forms_.mean;
   double all = 0.0;
   Eigen::MatrixXd apart(axes_.rows(), 2 * std::ssize(hypotheses));
   for (std::size_t h = 0; h < hypotheses.size(); ++h) {
@@ -273,9 +303,9 @@ void CurvePosterior::add_moments(std::span<const Hypothesis> hypotheses,
     sum += weights[h] * own;
     all += weights[h];
     auto pair = apart.middleCols(2 * static_cast<Eigen::Index>(h), 2);
-    pair.col(0) = bow + axes_ * own.cwiseProduct(products_) - centre;
+    pair.col(0) = of_forms + axes_ * own.cwiseProduct(products_) - centre;
     pair.col(1).setZero();
-    if (prior.kink) {
+    if (has_one_more(prior)) {
       const Kink kink = kink_of(prior);
       pair.col(0) += kink.height * kink.moves;
       pair.col(1) = std::sqrt(kink.variance) * kink.moves;
@@ -283,40 +313,18 @@ void CurvePosterior::add_moments(std::span<const Hypothesis> hypotheses,
     pair *= std::sqrt(weights[h]);
   }
   out += axes_ * sum.asDiagonal() * axes_.transpose() + apart * apart.transpose() +
-         all * bow_.variance * bow_.form * bow_.form.transpose();
+         all * forms_.forms * forms_.covariance * forms_.forms.transpose();
 }
-
-namespace {
-
-/// By likelihood; but curves without a kink keep half of all at least: that one kink explains more
-/// does not make it the only form that is there.
-std::vector<double> weights_of(const std::vector<Hypothesis>& hypotheses) {
-  constexpr double kLeastSmooth = 0.5;
-  struct Kind {
-    double best = -INFINITY, sum = 0.0;
-    [[nodiscard]] double log_sum() const { return best + std::log(sum); }
-  } smooth, kinked;
-  const auto kind_of = [&](const Hypothesis& each) -> Kind& {
-    return each.prior.kink ? kinked : smooth;
-  };
-  for (const Hypothesis& each : hypotheses)
-    kind_of(each).best = std::max(kind_of(each).best, each.log_likelihood);
-  std::vector<double> out;
-  for (const Hypothesis& each : hypotheses)
-    kind_of(each).sum += out.emplace_back(std::exp(each.log_likelihood - kind_of(each).best));
-  const double odds = kinked.sum > 0.0 ? std::exp(kinked.log_sum() - smooth.log_sum()) : 0.0;
-  const double share = std::max(1.0 / (1.0 + odds), kLeastSmooth);
-  for (std::size_t i = 0; i < out.size(); ++i)
-    out[i] *= (hypotheses[i].prior.kink ? 1.0 - share : share) / kind_of(hypotheses[i]).sum;
-  return out;
-}
-
-}  // namespace
 
 Eigen::MatrixXd second_moments(const CurveData& data, const std::vector<Hypothesis>& hypotheses,
                                const Eigen::VectorXd& centre) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(centre.size(), centre.size());
-  const std::vector<double> weights = weights_of(hypotheses);
+  std::vector<double> weights;
+  double sum = 0.0;
+  for (const Hypothesis& each : hypotheses)
+    sum +=
+        weights.emplace_back(std::exp(each.log_likelihood - likeliest(hypotheses)->log_likelihood));
+  for (double& weight : weights) weight /= sum;
   const std::span<const Hypothesis> all = hypotheses;
   for (std::size_t first = 0, next = 0; first < all.size(); first = next) {
     while (next < all.size() && all[next].prior.length_mm == all[first].prior.length_mm &&
@@ -327,6 +335,51 @@ Eigen::MatrixXd second_moments(const CurveData& data, const std::vector<Hypothes
                      std::span(weights).subspan(first, next - first), centre, out);
   }
   return out;
+}
+
+double CurveHypotheses::Kind::log_likelihood() const {
+  const Hypothesis* const best = likeliest(likely);
+  return data.log_likelihood() + (best ? std::max(best->log_likelihood, 0.0) : 0.0);
+}
+
+double CurveHypotheses::Kind::log_sum() const {
+  const Hypothesis* const best = likeliest(likely);
+  if (!best) return -INFINITY;
+  double sum = 0.0;
+  for (const Hypothesis& each : likely) sum += std::exp(each.log_likelihood - best->log_likelihood);
+  return data.log_likelihood() + best->log_likelihood + std::log(sum);
+}
+
+CurveHypotheses::CurveHypotheses(const Model& model, const Linearisation& linear,
+                                 const std::vector<Noise>& noise, const Estimate& estimate,
+                                 Kinks kinks)
+    : smooth{{*curve_term(model), linear, noise, estimate}, {}} {
+  smooth.likely = likely_priors(smooth.data, kinks);
+  const auto middle = std::ranges::stable_partition(
+      smooth.likely, [](const Hypothesis& each) { return each.prior.kinks.empty(); });
+  if (kinks == Kinks::none) return;
+  kinked = {smooth.data, {middle.begin(), middle.end()}};
+  smooth.likely.erase(middle.begin(), middle.end());
+  std::vector<CurveKink> all_but_last = estimate.curve->kinks;
+  if (all_but_last.size() < 2) return;
+  all_but_last.pop_back();
+  kinked->data = {*curve_term(model), linear, noise, estimate, std::move(all_but_last)};
+  kinked->likely = likely_priors(kinked->data);
+}
+
+double CurveHypotheses::log_likelihood() const {
+  return std::max(smooth.log_likelihood(), kinked ? kinked->log_likelihood() : -INFINITY);
+}
+
+Eigen::MatrixXd CurveHypotheses::second_moments(const Eigen::VectorXd& centre) const {
+  constexpr double kLeastSmooth = 0.5, kLeastKinked = 0.25;
+  const auto moments = [&](const Kind& kind) {
+    return slideway::second_moments(kind.data, kind.likely, centre);
+  };
+  if (!kinked || kinked->likely.empty()) return moments(smooth);
+  const double odds = std::exp(kinked->log_sum() - smooth.log_sum());
+  const double share = std::clamp(1.0 / (1.0 + odds), kLeastSmooth, 1.0 - kLeastKinked);
+  return share * moments(smooth) + (1.0 - share) * moments(*kinked);
 }
 
 }  // namespace slideway

@@ -17,16 +17,16 @@ constexpr double kValuesPerKnot = 2.0;           // fewer do not tell a curve fr
 constexpr int kHalvings = 6;                     // of the noise, to either side
 constexpr double kRuledOut = 9.0;                // difference in log likelihood: 1e-4
 constexpr double kAsLikely = 1.0;                // difference in log likelihood
+constexpr std::size_t kMostKinks = 6;            // more are a rough way, not kinks
 
 bool is_declared(const Observation* observation) {
   return observation->profile->standard_uncertainty.has_value();
 }
 
-/// A size of the noise, with the priors of the curve that the data do not rule out beside it.
+/// A size of the noise, with what the data do not rule out of the curve beside it.
 struct NoiseSize {
   double factor = 1.0;  // of its variances
-  std::vector<Hypothesis> likely;
-  CurveData data;
+  CurveHypotheses likely;
   double log_likelihood = 0.0;  // with the likeliest of them
 };
 
@@ -47,14 +47,21 @@ std::vector<NoiseSize> sizes_of(const Model& model, const Linearisation& linear,
     const double factor = std::pow(4.0, -halvings);
     std::vector<Noise> scaled;
     for (const Noise& each : noise) scaled.push_back(each.scaled(factor));
-    CurveData data(*curve_term(model), linear, scaled, estimate);
-    std::vector<Hypothesis> likely = likely_priors(data, kinks);
-    const Hypothesis* const best = likeliest(likely);
-    const double of_curve = best ? std::max(best->log_likelihood, 0.0) : 0.0;
-    const double log_likelihood = data.log_likelihood() + of_curve -
-                                  0.5 * static_cast<double>(data.freedom()) * std::log(factor);
-    out.push_back({factor, std::move(likely), std::move(data), log_likelihood});
+    CurveHypotheses likely(model, linear, scaled, estimate, kinks);
+    const double log_likelihood =
+        likely.log_likelihood() -
+        0.5 * static_cast<double>(likely.smooth.data.freedom()) * std::log(factor);
+    out.push_back({factor, std::move(likely), log_likelihood});
   }
+  return out;
+}
+
+/// The likeliest of more than so many kinks, or null.
+const Hypothesis* likeliest_kink(const std::vector<Hypothesis>& hypotheses, std::size_t kinks) {
+  const Hypothesis* out = nullptr;
+  for (const Hypothesis& each : hypotheses)
+    if (each.prior.kinks.size() > kinks && (!out || each.log_likelihood > out->log_likelihood))
+      out = &each;
   return out;
 }
 
@@ -103,23 +110,39 @@ Eigen::MatrixXd curve_prior_rows(const Knots& knots, const CurvePrior& prior) {
   Eigen::MatrixXd rows = root.triangularView<Eigen::Lower>().solve(
       Eigen::MatrixXd::Identity(root.rows(), root.cols()));
   add_form(prior.bow_mm, bow_form(knots), rows);
-  if (prior.kink)
-    add_form(prior.kink->height_mm, kink_forms(knots).col(prior.kink->knot - 1), rows);
+  const Eigen::MatrixXd kinks = prior.kinks.empty() ? Eigen::MatrixXd() : kink_forms(knots);
+  for (const CurveKink& kink : prior.kinks)
+    add_form(kink.height_mm, kinks.col(kink.knot - 1), rows);
   return rows;
 }
 
 CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,
                              const std::vector<Noise>& noise, const Estimate& estimate) {
-  const CurveData data(*curve_term(model), linear, noise, estimate);
-  const std::vector<Hypothesis> likely = likely_priors(data);
-  const Hypothesis* const best = likeliest(likely);
-  const CurvePrior prior = best ? best->prior : *estimate.curve;
   Eigen::Index values = 0, known = 0;  // known: of a declared noise
   for (const Observation* observation : linear.observations)
     (is_declared(observation) ? known : values) +=
         observation->values.size() - observation->nuisances.cols();
-  return {prior, CurvePosterior(data, prior.length_mm, prior.roughness)
-                     .determined(prior, known + values / kValuesPerDirection)};
+  CurveEstimate out{*estimate.curve, {}};
+  double most = -INFINITY;
+  std::vector<CurveKink> kinks;
+  for (std::size_t in_vain = 0; in_vain < 2;) {  // one of two kinks may explain nothing by itself
+    const CurveData data(*curve_term(model), linear, noise, estimate, kinks);
+    const std::vector<Hypothesis> likely = likely_priors(data);
+    const Hypothesis* const best = likeliest(likely);
+    const double log_likelihood = data.log_likelihood() + (best ? best->log_likelihood : 0.0);
+    ++in_vain;
+    if (log_likelihood > most) {
+      most = log_likelihood;
+      if (best) out.prior = best->prior;
+      out.determined = CurvePosterior(data, out.prior.length_mm, out.prior.roughness)
+                           .determined(out.prior, known + values / kValuesPerDirection);
+      in_vain = 0;
+    }
+    const Hypothesis* const next = likeliest_kink(likely, kinks.size());
+    if (!next || next->prior.kinks.size() > kMostKinks) break;
+    kinks = next->prior.kinks;
+  }
+  return out;
 }
 
 double noise_beside_curve(const Model& model, const Linearisation& linear,
@@ -142,31 +165,34 @@ std::optional<Eigen::VectorXd> curve_beside_least_noise(const Model& model,
   const auto size = std::find_if(sizes.rbegin(), sizes.rend(), [&](const NoiseSize& each) {
     return each.log_likelihood >= least;
   });
-  const Hypothesis* const best = size == sizes.rend() ? nullptr : likeliest(size->likely);
+  const Hypothesis* const best =
+      size == sizes.rend() ? nullptr : likeliest(size->likely.smooth.likely);
   if (!best) return std::nullopt;
-  return CurvePosterior(size->data, best->prior.length_mm, best->prior.roughness).mean(best->prior);
+  return CurvePosterior(size->likely.smooth.data, best->prior.length_mm, best->prior.roughness)
+      .mean(best->prior);
 }
 
 Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisation& linear,
                                           const std::vector<Noise>& noise,
                                           const Estimate& estimate) {
-  const CurveData data(*curve_term(model), linear, noise, estimate);
+  std::vector<NoiseSize> sizes;
+  CurveHypotheses likely(model, linear, noise, estimate, Kinks::allowed);
   const CurvePrior& prior = *estimate.curve;
+  const CurveData& data = prior.kinks.empty() ? likely.smooth.data : likely.kinked->data;
   const CurvePosterior own(data, prior.length_mm, prior.roughness);
   const Eigen::VectorXd centre = own.mean(prior);
   Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(centre.size(), centre.size());
-  std::vector<NoiseSize> sizes;
-  if (is_open(data, linear))
+  if (is_open(likely.smooth.data, linear))
     sizes = sizes_of(model, linear, noise, estimate, Kinks::allowed);
   else
-    sizes.push_back({1.0, likely_priors(data), data, 0.0});
+    sizes.push_back({1.0, likely, 0.0});
   const double most = largest_likelihood(sizes);
   double sum = 0.0;
   for (const NoiseSize& size : sizes) {
-    if (size.likely.empty()) continue;
+    if (size.likely.smooth.likely.empty()) continue;
     const double weight = std::exp(size.log_likelihood - most);
     sum += weight;
-    moments += weight * second_moments(size.data, size.likely, centre);
+    moments += weight * size.likely.second_moments(centre);
   }
   if (!(sum > 0.0)) return Eigen::MatrixXd::Zero(data.carried().rows(), data.carried().rows());
   moments = moments / sum - own.covariance(prior);

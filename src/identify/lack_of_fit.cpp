@@ -108,14 +108,16 @@ LackOfFit judged(double found, const std::vector<double>& shares,
                  const Gates& gates) {
   const auto pools = allowed_memories(shares, counts, noise, gates);
   std::vector<std::size_t> at(pools.size(), 0);
-  std::vector<double> until;
-  for (const auto& pool : pools) until.push_back(pool.front().probability);
+  std::vector<double> until(pools.size(), 0.0);
+  // The last memory of a pool holds to the end, however the probabilities have been rounded.
+  const auto extend = [&](std::size_t k) {
+    until[k] = at[k] + 1 < pools[k].size() ? until[k] + pools[k][at[k]].probability : 1.0;
+  };
+  for (std::size_t k = 0; k < pools.size(); ++k) extend(k);
   LackOfFit out{0.0, 0.0};
   double expected = 0.0;
   for (double done = 0.0; done < 1.0;) {
-    bool last = true;
-    for (std::size_t k = 0; k < pools.size(); ++k) last = last && at[k] + 1 == pools[k].size();
-    const double next = last ? 1.0 : std::ranges::min(until);
+    const double next = std::ranges::min(until);
     Moments sum;
     for (std::size_t k = 0; k < pools.size(); ++k) sum += pools[k][at[k]].square;
     const double scale = sum.mean / sum.variance;
@@ -124,8 +126,10 @@ LackOfFit judged(double found, const std::vector<double>& shares,
     expected += (next - done) * sum.mean;
     done = next;
     for (std::size_t k = 0; k < pools.size(); ++k)
-      if (until[k] <= done && at[k] + 1 < pools[k].size())
-        until[k] += pools[k][++at[k]].probability;
+      if (until[k] <= done && at[k] + 1 < pools[k].size()) {
+        ++at[k];
+        extend(k);
+      }
   }
   out.ratio = found / expected;
   return out;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <numeric>
+#include <utility>
 
 #include "slideway/base/error.hpp"
 #include "slideway/base/text.hpp"
@@ -80,25 +80,37 @@ Conversion conversion(const ProfileSource& source, const TracePart& part, const 
 }
 
 constexpr std::size_t kForResolution = 1024;  // readings that are looked at
-constexpr int kMostDecimals = 9;
-constexpr double kWhole = 1e-4;  // off a whole number: what conversion to our units and back leaves
+constexpr double kMostSteps = 1e8;            // that an instrument has in the range of its readings
+constexpr double kWhole = 1e-4;               // off a whole number: what changed units leave
 
-/// The step of a digital indication, in our unit: in the file's all values differ by whole
-/// multiples of it. 0 where they have more decimals than an instrument shows.
-double resolution_of(std::span<const double> values, const UnitScale& to_ours) {
+/// The step of a digital indication: all values differ by whole multiples of it, whatever the unit
+/// (their greatest common divisor by Euclid's algorithm, each remainder below kWhole taken as 0). 0
+/// where they have more digits than an instrument shows.
+double resolution_of(std::span<const double> values) {
   values = values.first(std::min(values.size(), kForResolution));
-  double last_decimal = 1.0;
-  for (int decimals = 0; decimals <= kMostDecimals; ++decimals, last_decimal /= 10.0) {
-    std::int64_t step = 0;
-    const bool whole = std::ranges::all_of(values, [&](double value) {
-      const double steps = (value - values[0]) * to_ours.divisor / to_ours.factor / last_decimal;
-      if (!(std::abs(steps - std::round(steps)) < kWhole && std::abs(steps) < 1e15)) return false;
-      step = std::gcd(step, std::llround(steps));
-      return true;
-    });
-    if (whole) return to_ours(static_cast<double>(step) * last_decimal);
+  if (values.empty()) return 0.0;
+  const auto [low, high] = std::ranges::minmax(values);
+  const double least = (high - low) / kMostSteps;
+  double step = 0.0, longest = 0.0;  // the difference that tells the step in the most digits
+  for (const double value : values) {
+    double larger = value - low;
+    if (step == 0.0) step = larger;
+    while (step > 0.0) {
+      const double multiples = std::round(larger / step);
+      const double left = std::abs(larger - multiples * step);
+      if (left <= kWhole * step) {
+        if (larger > longest) {
+          longest = larger;
+          step = larger / multiples;
+        }
+        break;
+      }
+      if (left < least) return 0.0;
+      larger = std::exchange(step, left);
+      longest = left;
+    }
   }
-  return 0.0;
+  return step;
 }
 
 }  // namespace
@@ -287,8 +299,7 @@ void Intake::finish() {
       std::ranges::reverse(*series);
     notes.emplace_back("trace runs backwards in the file: reversed");
   }
-  if (block_ == 1 && convert_)
-    profile_->resolution = resolution_of(profile_->values, convert_->value);
+  if (block_ == 1 && convert_) profile_->resolution = resolution_of(profile_->values);
   if (!times_.empty())
     profile_->setup.reading_times =
         std::make_shared<const ReadingTimes>(ReadingTimes{profile_->positions, std::move(times_)});

@@ -100,7 +100,7 @@ Html held_out(const Crosscheck& checks) {
   HtmlTable table("Profiles held out: measured against predicted",
                   {{"profile", HtmlColumn::text},
                    {"chi-square per value", HtmlColumn::number},
-                   {"correlated", HtmlColumn::text},
+                   {"p, sharpest of four tests", HtmlColumn::text},
                    {"largest difference", HtmlColumn::number},
                    {"at, mm", HtmlColumn::number},
                    {"verdict", HtmlColumn::text}});

@@ -281,8 +281,9 @@ std::string crosscheck(const Crosscheck& checks) {
              ? "; of effects taken together, the root of chi-square over its quantile"
              : ""));
   for (const HeldOutCheck& check : checks.held_out)
-    out += note(check.profile + ", held out: " + text(check.verdict) + " (chi-square " +
-                number(check.chi2, 3) + ", " + p_text(check.p_value) + "), off by up to " +
+    out += note(check.profile + ", held out: " + text(check.verdict) + " (chi-square per value " +
+                number(check.chi2, 3) + "; " + p_text(check.p_value) +
+                " by the sharpest of four tests), off by up to " +
                 size_text(check.largest_um, check.largest_urad) + " at " + number(check.at_mm, 4) +
                 " mm");
   for (const PureErrorCheck& check : checks.repeats)

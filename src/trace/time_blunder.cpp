@@ -61,17 +61,29 @@ std::vector<AcceptedEffect> shown_effects(const Problem& problem, const FittedMo
   return out;
 }
 
-Model with(const Model& model, const AcceptedEffect& effect) {
+/// @param effect  null: none
+Model with(const Model& model, const AcceptedEffect* effect) {
   Model out = model;
-  append_term(out, {effect.candidate->effect_name(), effect.candidate->options, {}}, out.range);
+  if (effect)
+    append_term(out, {effect->candidate->effect_name(), effect->candidate->options, {}}, out.range);
   return out;
 }
 
 /// The shapes of a model, those of an effect behind them.
-Eigen::VectorXd shapes_with(const Eigen::VectorXd& shapes, const std::vector<double>& more) {
+Eigen::VectorXd shapes_with(const Eigen::VectorXd& shapes, const AcceptedEffect* effect) {
+  if (!effect) return shapes;
+  const std::vector<double>& more = effect->shape;
   Eigen::VectorXd out(shapes.size() + std::ssize(more));
   out << shapes, Eigen::Map<const Eigen::VectorXd>(more.data(), std::ssize(more));
   return out;
+}
+
+/// Whether a time constant or the like is declared: all profiles together, one of them with a wrong
+/// clock, show another one than those that are right.
+bool declares_shape_in_time(const Model& model) {
+  return std::ranges::any_of(model.terms, [](const ModelTerm& term) {
+    return is_of_time(*term.effect) && !term.effect->shapes().empty();
+  });
 }
 
 /// Whether profiles hold no more than noise of what a model lacks.
@@ -86,11 +98,11 @@ bool profiles_agree(const FittedModel& fitted, const Gates& gates) {
   return disagreement(fitted, of_each).p_value >= gates.disagreement_p;
 }
 
-/// The model of all profiles with an effect as those but one show it.
+/// The model of all profiles, with an effect or none, as those but one show it.
 FittedModel as_the_others_show(const FittedModel& all, const FittedModel& others,
-                               const AcceptedEffect& effect) {
+                               const AcceptedEffect* effect) {
   const FittedModel shown =
-      fit_model(with(others.model, effect), shapes_with(others.fit.estimate.shapes, effect.shape));
+      fit_model(with(others.model, effect), shapes_with(others.fit.estimate.shapes, effect));
   FittedModel out(with(all.model, effect), all.fit);
   out.fit.estimate = shown.fit.estimate;
   out.fit.estimate.nuisances = all.fit.estimate.nuisances;
@@ -121,14 +133,16 @@ class TimeFinder {
   /// Those that are said by themselves. A wrong clock that does not explain more than one effect of
   /// the profiles as they are, or heat that tilts the slide and so shows in each cut in another
   /// way, by what noise of the size that it leaves gives, is none; nor is one of a profile beside
-  /// another one without which the rest lacks nothing.
+  /// another one without which the rest lacks nothing, unless a declared shape in time lets any
+  /// two agree.
   void keep_certain() {
-    std::erase_if(found_, [&](const TimeBlunder& each) {
+    const FittedModel& base = extender_.base();
+    const auto is_beside_odd = [&](const TimeBlunder& each) {
       return std::ranges::any_of(
           odd_, [&](const std::string& odd) { return odd != each.blunder.profile; });
-    });
+    };
+    if (!declares_shape_in_time(base.model)) std::erase_if(found_, is_beside_odd);
     if (found_.empty()) return;
-    const FittedModel& base = extender_.base();
     const Whitened data(base.fit.linear, noise_);
     const double square = data.residual().squaredNorm();
     double without = square - 2.0 * heat_lifts_and_tilts(base.model, data, base.fit.linear);
@@ -190,16 +204,20 @@ class TimeFinder {
     if (leaves_noise(others, gates) && profiles_agree(others, gates)) odd_.push_back(odd);
     const Dictionary dictionary =
         make_dictionary(others.model, problem_, others.fit.linear.prior_rows.rows());
-    for (const AcceptedEffect& effect : shown_effects(problem_, others, dictionary))
+    const auto try_with = [&](const AcceptedEffect* effect) {
       for (const CorrectedBlunder& each :
            find_blunders_in(as_the_others_show(extender_.base(), others, effect), odd))
         if (auto found = tested(each, effect)) found_.push_back(*std::move(found));
+    };
+    if (declares_shape_in_time(others.model)) try_with(nullptr);
+    for (const AcceptedEffect& effect : shown_effects(problem_, others, dictionary))
+      try_with(&effect);
   }
 
   /// Square of the white residual of all profiles, one of them corrected, with the effect and its
-  /// price; nothing where that is still more than noise.
+  /// price, if there is one; nothing where that is still more than noise.
   [[nodiscard]] std::optional<TimeBlunder> tested(const CorrectedBlunder& corrected,
-                                                  const AcceptedEffect& effect) const {
+                                                  const AcceptedEffect* effect) const {
     extender_.limit().check();
     std::vector<Profile> profiles = extender_.profiles();
     *std::ranges::find(profiles, corrected.meant.name, &Profile::name) = corrected.meant;
@@ -207,16 +225,17 @@ class TimeFinder {
                         corrected.blunder.what == BlunderKind::sign;
     const FittedModel declared = fitted_to(
         problem_, profiles, turned ? of_any_phase_in(shown_, corrected.meant.name) : shown_);
-    FittedModel fitted = fit_model(with(declared.model, effect),
-                                   shapes_with(declared.fit.estimate.shapes, effect.shape));
+    FittedModel fitted =
+        fit_model(with(declared.model, effect), shapes_with(declared.fit.estimate.shapes, effect));
     const Gates& gates = problem_.trace.gates;
     const std::vector<Noise> noise = noise_in_unit_of(corrected, fitted.fit.linear);
     if (lack_of_fit(fitted.fit.linear, noise, gates).significant(gates) ||
         !profiles_agree(fitted, gates))
       return std::nullopt;
     const Whitened data(fitted.fit.linear, noise);
-    const double cost = data.residual().squaredNorm() +
-                        penalty(data, *effect.candidate, effect.candidate->amplitudes());
+    const double price =
+        effect ? penalty(data, *effect->candidate, effect->candidate->amplitudes()) : 0.0;
+    const double cost = data.residual().squaredNorm() + price;
     fitted.model.observations.clear();  // they are of the profiles here
     fitted.fit.linear.observations.clear();
     return TimeBlunder{corrected.blunder, cost,
@@ -335,7 +354,13 @@ void add_as_rivals(const std::vector<TimeBlunder>& blunders, Selection& selectio
 std::vector<Blunder> held_against_time(std::vector<Blunder> found, const Problem& problem,
                                        ModelExtender& extender,
                                        const std::vector<ShownEffect>& shown) {
-  if (found.empty() || found.front().what != BlunderKind::sign || !can_tell(extender)) return found;
+  if (found.empty() || !can_tell(extender)) return found;
+  const BlunderKind what = found.front().what;
+  if (what != BlunderKind::sign) {
+    const bool is_of_clock = what == BlunderKind::clock || what == BlunderKind::cut_direction;
+    if (!is_of_clock || !declares_shape_in_time(extender.base().model)) return found;
+    return find_time_blunders(problem, extender, shown);
+  }
   const Gates& gates = problem.trace.gates;
   const bool is_sure = found.front().left <= gates.blunder_left * gates.blunder_left;
   const Turned turned = with_sign_turned(problem, extender, shown, found.front().profile);

@@ -3,6 +3,7 @@
 import functools
 import hashlib
 import http.server
+import socket
 import struct
 import subprocess
 import sys
@@ -81,6 +82,27 @@ class Fetch(unittest.TestCase):
         done = self.fetch(("a.dat", sha(b"a"), "copy", "http://127.0.0.1:9/a.dat"))
         self.assertEqual(done.returncode, 1)
         self.assertIn("could not be had: a.dat", done.stderr)
+
+    def test_answer_that_breaks_off_or_is_none_is_told_and_the_next_file_fetched(self):
+        (self.origin / "b.dat").write_bytes(b"b")
+        answers = [b"HTTP/1.0 200 OK\r\nContent-Length: 9\r\n\r\nhalf", b"\x00 what\r\n\r\n"]
+        with socket.create_server(("127.0.0.1", 0)) as server:
+            def answer():
+                for each in answers:
+                    connection, _ = server.accept()
+                    with connection:
+                        connection.recv(4096)
+                        connection.sendall(each)
+            threading.Thread(target=answer, daemon=True).start()
+            broken = f"http://127.0.0.1:{server.getsockname()[1]}/"
+            done = self.fetch(("a.dat", sha(b"a"), "copy", broken + "a.dat"),
+                              ("c.dat", sha(b"c"), "copy", broken + "c.dat"),
+                              ("b.dat", sha(b"b"), "copy", self.address + "b.dat"))
+        self.assertEqual(done.returncode, 1)
+        self.assertNotIn("Traceback", done.stderr)
+        self.assertIn("could not be had: a.dat: ", done.stderr)
+        self.assertIn("could not be had: c.dat: ", done.stderr)
+        self.assertTrue((self.folder / "b.dat").exists())
 
     def test_hand_made_table_is_right_whatever_its_comments_say_and_never_fetched(self):
         self.folder.mkdir()

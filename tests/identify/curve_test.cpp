@@ -254,6 +254,51 @@ TEST(Curve, UHoldsTheLargestDeviationOfAWayCutShort) {
   EXPECT_GE(held, 17);
 }
 
+/// Six readings of a slide whose slope changes by 30 µrad at 300 mm and by -50 µrad at 700 mm, its
+/// largest deviation 9.6 µm.
+std::vector<Profile> twice_kinked(std::uint64_t seed) {
+  std::vector<Profile> runs;
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
+    RandomStream noise(seed, name);
+    const std::vector<double> x = cases::spaced(0.0, 1000.0, 400);
+    std::vector<double> z;
+    for (const double each : x)
+      z.push_back(30e-6 * std::max(each - 300.0, 0.0) - 50e-6 * std::max(each - 700.0, 0.0) +
+                  300e-6 * noise.normal());
+    runs.push_back(cases::profile(name, Kind::slide, x, z));
+  }
+  return runs;
+}
+
+// One kink explains little without the other. Of six readings U of 95 % holds at least four with a
+// probability of 99.8 %; a piece of 20 mm has its knots where the kinks are.
+TEST(Curve, UHoldsTheLargestDeviationBesideTwoKinks) {
+  const Problem problem = cases::problem(Lever::paper, 0, {curve(20.0)});
+  int held = 0;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    const std::vector<Profile> runs = twice_kinked(seed);
+    const FittedModel fitted = fit_declared(problem, runs);
+    const ModelResult summary = summarise(fitted.model, fitted.fit);
+    const StraightnessError& error = summary.straightness->errors.front();
+    held += std::abs(*error.value - 9.6) <= *error.expanded_uncertainty ? 1 : 0;
+    EXPECT_LT(*error.expanded_uncertainty, 1.0);  // a tenth of what is there
+  }
+  EXPECT_GE(held, 4);
+}
+
+TEST(Curve, TellsWhatAPieceRoundsOff) {
+  const std::vector<Profile> runs = twice_kinked(1);
+  const auto told = [&](double piece_mm) {
+    const FittedModel fitted =
+        fit_declared(cases::problem(Lever::paper, 0, {curve(piece_mm)}), runs);
+    return std::ranges::any_of(summarise(fitted.model, fitted.fit).notes, [](const auto& note) {
+      return note.find("rounded off") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(told(40.0));   // 50 µrad * 40 mm / 4 = 0.5 µm
+  EXPECT_FALSE(told(10.0));  // 0.12 µm, less than U
+}
+
 // What a polynomial cannot make of it is in U; what a long curve shares with the polynomial is not,
 // however high the degree. U is of 95 %, and 11 degrees of the same readings are one draw.
 TEST(Curve, PolynomialOfAnyDegreeHoldsAWayCutShort) {

@@ -95,6 +95,25 @@ TEST(Degenerate, NoiseLiesBetweenRoundingAndRangeOfItsValues) {
             0.0);
 }
 
+TEST(Degenerate, ValuesThatAreTheModelsOwnAreToldAsSuch) {
+  const auto notes = [](std::vector<double> values, double resolution) {
+    Profile slide = profile("slide", Kind::slide, spaced(0, 400, 64), std::move(values));
+    slide.resolution = resolution;
+    return identify(problem(Lever::paper, 0, {effect("straightness", 2)}), {slide}, Scope::fit)
+        .declared->notes;
+  };
+  const auto tells = [](const std::vector<std::string>& notes) {
+    return std::ranges::any_of(notes, [](const std::string& note) {
+      return note.find("passes through its values") != std::string::npos;
+    });
+  };
+  std::vector<double> parabola;
+  for (const double x : spaced(0, 400, 64)) parabola.push_back(1e-8 * x * x);
+  EXPECT_TRUE(tells(notes(parabola, 0.0)));
+  EXPECT_FALSE(tells(notes(parabola, 1e-6)));  // coarse readings: U holds their rounding
+  EXPECT_FALSE(tells(notes(rough(64, 1e-4), 0.0)));
+}
+
 // Three values have no slow cosine of their own, and nothing may be known of the size of their
 // noise; the others are judged without them.
 TEST(Degenerate, LackOfFitPassesOverAProfileTooShortToJudge) {
@@ -108,6 +127,23 @@ TEST(Degenerate, LackOfFitPassesOverAProfileTooShortToJudge) {
   const LackOfFit left = lack_of_fit(fitted.fit.linear, noise, {});
   EXPECT_TRUE(left.p_value >= 0.0 && left.p_value <= 1.0) << left.p_value;
   EXPECT_TRUE(std::isfinite(left.ratio)) << left.ratio;
+}
+
+// Probabilities of a pool add up to 1 but for rounding.
+TEST(Degenerate, LackOfFitEndsWhereProbabilitiesAddUpToLessThanOne) {
+  const Profile a = face("a", 8.0, spaced(1, 40, 80), rough(80, 1e-4));
+  Profile b = profile("b", Kind::slide, spaced(0, 400, 80), rough(80, 1e-6));
+  b.setup.quantity = Quantity::slope;
+  const FittedModel fitted = fit_declared(problem(Lever::paper, 0, {effect("squareness")}), {a, b});
+  std::vector<Noise> noise = fitted.fit.noise;
+  ASSERT_NE(noise[0].pool, noise[1].pool);
+  for (Noise& each : noise)
+    each.alternatives = {{0.5, each.covariance()}, {0.5, each.covariance()}};
+  const LackOfFit exact = lack_of_fit(fitted.fit.linear, noise, {});
+  noise[0].alternatives.back().probability -= 2e-12;
+  noise[1].alternatives.back().probability -= 1e-12;
+  noise[1].alternatives.push_back({1e-12, noise[1].covariance()});
+  EXPECT_NEAR(lack_of_fit(fitted.fit.linear, noise, {}).p_value, exact.p_value, 1e-11);
 }
 
 // A wave of a period as near zero as one likes passes through values at any places. Two values a

@@ -71,6 +71,12 @@ TEST_F(ReadProfile, SeesTheResolutionOfTheReadings) {
   EXPECT_NEAR(resolution("10.2 10.7 11.2 9.7"), 5e-4, 1e-15);  // steps of half a micrometre
   EXPECT_EQ(resolution("0.123456789012 1.987654321098 3.1415926535897"), 0.0);
   EXPECT_EQ(resolution("2 2 2"), 0.0);
+  // Steps of 0.01 µm restated in inches, as far as a double goes; 1e-6: a step in 1e5 of
+  // them, each with sixteen digits.
+  const std::vector<int> steps{-31207, 15, 88210, -9};
+  std::string inches;
+  for (const int each : steps) inches += (inches.empty() ? "" : " ") + shortest(each / 2540.0);
+  EXPECT_NEAR(resolution(inches), 1e-3 / 2540.0, 1e-6 * 1e-3 / 2540.0);
 }
 
 TEST_F(ReadProfile, LeavesOutWhatIsMasked) {

@@ -95,27 +95,20 @@ std::string effect_of(const std::string& parameter) {
   return parameter.substr(0, parameter.find_first_of("[."));
 }
 
-/// Whether every profile has values to spare, and none is free of noise or unlike its sisters, and
-/// no curve beside the model has widened U (its likelihood loses its digits on such data): the
-/// noise of a profile that the model passes through is rounding, which has no proportion to its
-/// data, and a profile unlike its sisters has two sizes that are as probable.
+/// Whether every profile has values to spare and none is free of noise: the noise of a profile that
+/// the model passes through is rounding, which has no proportion to its data.
 bool has_noise(const Answer& answer) {
   constexpr double kSpare = 30.0;    // values, whatever the model takes of them
   constexpr double kOfRange = 1e-6;  // noise
   const Result& result = answer.analysis->result;
   const ModelResult& model = *result.declared;
-  const auto is_refuted = [](const std::string& note) {
-    return note.starts_with("the data refute degree");
-  };
-  if (std::ranges::any_of(model.notes, is_refuted)) return false;
   return std::ranges::all_of(model.noise, [&](const NoiseSummary& noise) {
     const auto input = std::ranges::find(result.inputs, noise.profile, &InputSummary::name);
     const double size =
         noise.standard_deviation_um.value_or(noise.standard_deviation_urad.value_or(0.0));
     const double range = input->pv_um.value_or(input->pv_urad.value_or(0.0));
     const auto band = std::ranges::find(result.low_band, noise.profile, &LowBandSummary::profile);
-    return !noise.unlike_sisters && static_cast<double>(band->values) > kSpare &&
-           size > kOfRange * range;
+    return static_cast<double>(band->values) > kSpare && size > kOfRange * range;
   });
 }
 

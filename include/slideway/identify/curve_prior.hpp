@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "slideway/effects/effect.hpp"
@@ -30,11 +29,11 @@ struct CurveKink {
 /// parabola over the travel, whose size is not estimated from the rest of the curve: readings that
 /// cannot tell it from a drift leave it open.
 struct CurvePrior {
-  double amplitude_mm = 0.0;  // a, the standard deviation about b_0 + b_1 x and the bow
-  double length_mm = 0.0;     // ℓ
-  double roughness = 1.5;     // ν
-  double bow_mm = 0.0;        // standard deviation of the height of the bow
-  std::optional<CurveKink> kink = std::nullopt;  // with a variance of its own
+  double amplitude_mm = 0.0;          // a, the standard deviation about b_0 + b_1 x and the bow
+  double length_mm = 0.0;             // ℓ
+  double roughness = 1.5;             // ν
+  double bow_mm = 0.0;                // standard deviation of the height of the bow
+  std::vector<CurveKink> kinks = {};  // each with a variance of its own
 
   bool operator==(const CurvePrior&) const = default;
 };
@@ -58,8 +57,8 @@ struct CurveEstimate {
 
 /// The restricted likelihood is evaluated on a grid: ν of 3/2 and 5/2, lengths from two
 /// distances of knots to twice the travel, every amplitude between nothing and a curve that is
-/// free; no kink, or as likely one at any knot, about as high as the readings. REQUIRES a
-/// curve_term().
+/// free; no kink, or as likely one at any knot, about as high as the readings; beside the likeliest
+/// kink a further one, until none makes the data likelier. REQUIRES a curve_term().
 /// @param linear  at the estimate
 /// @param noise   per fitted observation
 CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,
@@ -73,8 +72,9 @@ double noise_beside_curve(const Model& model, const Linearisation& linear,
                           const std::vector<Noise>& noise, const Estimate& estimate);
 
 /// What the uncertainty of the prior adds to the covariance of (amplitudes, shapes): the second
-/// moment about the estimate of all priors, each by its likelihood, and of the sizes of the noise
-/// where noise_beside_curve() looks for one, less the covariance under those of the estimate.
+/// moment about the estimate of all priors, each by its likelihood (of several kinks the last one
+/// at any knot), and of the sizes of the noise where noise_beside_curve() looks for one, less the
+/// covariance under those of the estimate.
 /// REQUIRES a curve_term().
 Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisation& linear,
                                           const std::vector<Noise>& noise,
