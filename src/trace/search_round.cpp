@@ -44,6 +44,12 @@ bool alike(const TestedCandidate& a, const TestedCandidate& b, const Gates& gate
   return std::abs(a.fitted.dot(b.fitted)) > gates.alike * a.fitted.norm() * b.fitted.norm();
 }
 
+/// By how much less one may lower the BIC than the chosen one does and still be as good.
+double tie(const TestedCandidate& each, const TestedCandidate& chosen, const Gates& gates) {
+  const double share = each.is_wave && chosen.is_wave ? gates.wave_share : gates.tie_share;
+  return std::max(gates.tie_bic, -share * chosen.refined.delta_bic);
+}
+
 /// White columns, orthonormal, of the best finding that is no wave, and of its neighbours on the
 /// grid; none where it would not be accepted.
 Eigen::MatrixXd columns_of_no_wave(const Model& model, const Whitened& data,
@@ -205,7 +211,7 @@ const TestedCandidate* SearchRound::simplest_law(const TestedCandidate& choice,
     if (each.name() == choice.name() &&
         each.refined.candidate->amplitudes() == choice.refined.candidate->amplitudes() &&
         each.refined.shape.size() < out->refined.shape.size() && each.refused(gates).empty() &&
-        each.refined.delta_bic <= choice.refined.delta_bic + gates.tie_bic)
+        each.refined.delta_bic <= choice.refined.delta_bic + tie(each, choice, gates))
       out = &each;
   return out;
 }
@@ -218,7 +224,7 @@ const TestedCandidate* SearchRound::better_known_than(
     return ((is_measured(*each.refined.candidate) && !is_measured(*choice.refined.candidate)) ||
             is_in_fewer_readings(choice, each)) &&
            each.refused(gates).empty() &&
-           each.refined.delta_bic <= choice.refined.delta_bic + gates.tie_bic &&
+           each.refined.delta_bic <= choice.refined.delta_bic + tie(each, choice, gates) &&
            std::ranges::count(excluded, each.name()) == 0 && alike(each, choice, gates);
   });
   return at == tested.end() ? nullptr : &*at;
@@ -245,10 +251,6 @@ std::vector<const TestedCandidate*> SearchRound::as_good_as(const TestedCandidat
   const auto are_of_place = [&](const TestedCandidate& each) {
     return is_of_place(*each.refined.candidate) && is_of_place(*chosen.refined.candidate);
   };
-  const auto tie = [&](const TestedCandidate& each) {
-    const double share = each.is_wave && chosen.is_wave ? gates.wave_share : gates.tie_share;
-    return std::max(gates.tie_bic, -share * chosen.refined.delta_bic);
-  };
   for (const TestedCandidate& each : tested) {
     const bool is_untold = !each.refined.candidate->takes.empty();
     const bool counts =
@@ -256,7 +258,7 @@ std::vector<const TestedCandidate*> SearchRound::as_good_as(const TestedCandidat
         (each.is_possible() && (unknowns(each) <= unknowns(chosen) || are_of_place(each) ||
                                 chosen.refined.candidate->term.effect->is_carriage()));
     if (counts && !is_known(each) &&
-        each.refined.delta_bic <= chosen.refined.delta_bic + tie(each) &&
+        each.refined.delta_bic <= chosen.refined.delta_bic + tie(each, chosen, gates) &&
         alike(each, chosen, gates))
       out.push_back(&each);
   }

@@ -214,9 +214,20 @@ TEST(Formula, RefusesUnitsThatDoNotFit) {
   EXPECT_THAT(refusal("a * t", {{"a", "um/"}}), HasSubstr("cannot be read"));
   EXPECT_THAT(refusal("a * cos(w * t)", {{"a", "um"}, {"w", "deg/s", 0.1, 9.0}}),
               AllOf(StartsWith("column 9: 'w' is in \"deg/s\""), HasSubstr("accepted: rad,")));
+  // A number may carry a unit: here s.
+  EXPECT_THAT(refusal("a * max(t - 30, 0)", {{"a", "um/min"}}), HasSubstr("accepted: um/s,"));
+  EXPECT_THAT(
+      refusal("a * (1 - exp(-max(t - 60, 0) / tau))", {{"a", "um"}, {"tau", "min", 0.1, 5.0}}),
+      HasSubstr("'tau' is in \"min\""));
+  EXPECT_THAT(refusal("a * sin(2 * pi * t / 37.5 + p)", {{"a", "um"}, {"p", "deg", 0.0, 360.0}}),
+              HasSubstr("accepted: rad,"));
   for (const auto& [text, parameters] :
        std::initializer_list<std::pair<const char*, std::vector<FormulaParameter>>>{
            {"a * t", {{"a", "um/s"}}},
+           {"a * max(t - 30, 0) / 60", {{"a", "um/min"}}},
+           {"a * (1 - exp(-t / 60 / tau))", {{"a", "um"}, {"tau", "min", 0.1, 5.0}}},
+           {"a * (t^3 + 5.5 * t^2 + 100 * t)", {{"a", "um/s^3"}}},
+           {"a * sqrt(x^2 + 6.25)", {{"a", "um/mm"}}},
            {"a * t / 60", {{"a", "um/min"}}},
            {"a * s", {{"a", "um/m"}}},
            {"a * r^2 * rpm / feed", {{"a", "um mm^-1"}}},
@@ -247,6 +258,10 @@ TEST(Formula, TellsTheUnitOfASizeInMicrometresAlone) {
               ElementsAre("µm/mm^2", "µm/s"));
   EXPECT_THAT(units("a * r / R", {{"a", "um"}}), ElementsAre("µm"));
   EXPECT_THAT(units("a * r / 10", {{"a", "um"}}), ElementsAre("µm"));
+  EXPECT_THAT(units("a * max(t - 30, 0)", {{"a", "um"}}), ElementsAre("µm/s"));
+  EXPECT_THAT(units("a * max(t - 30, 0) / 50", {{"a", "um"}}), ElementsAre("µm"));
+  EXPECT_THAT(units("a * t / 60", {{"a", "um/min"}}), ElementsAre("µm/min"));
+  EXPECT_THAT(units("a * 10^(t / 500)", {{"a", "um"}}), ElementsAre("µm"));
 }
 
 TEST(Formula, SaysWhereOnAProfileItIsNotFinite) {

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kFewestFinite = 20;    // of the places a formula is tried at
 constexpr double kLogarithmic = 10.0;        // upper over lower, from which a shape is searched so
 constexpr std::size_t kMostParameters = 12;  // of one formula
+constexpr std::size_t kMostNumbers = 3;      // whose units are looked for
 
 /// Of a trace on the workpiece, from the mark of azimuth_deg; the other half of a diameter lies
 /// half a turn further.
@@ -68,6 +69,37 @@ std::vector<double> exponents_of(const std::string& symbol, const std::vector<Un
     out.push_back(at == of_name.end() ? 0.0 : at->second);
   }
   return out;
+}
+
+/// The same formula, with a parameter of one value for each number that may carry a unit.
+Formula with_named_numbers(const Formula& formula) {
+  Formula out = formula;
+  std::vector<FormulaNumber> numbers = numbers_with_unit(formula.text);
+  for (auto number = numbers.rbegin(); number != numbers.rend(); ++number) {
+    const std::string name = "_" + std::to_string(number->first);  // as no parameter is called
+    out.text.replace(number->first, number->length, "(" + name + ")");
+    out.parameters.push_back({name, "1", number->value, number->value});
+  }
+  return out;
+}
+
+/// FormulaProbes::degree() with the powers of a unit in so many numbers, the last names, that bring
+/// it nearest to what is wanted.
+std::optional<double> nearest_degree(FormulaProbes& probes, std::vector<double> exponents,
+                                     std::size_t numbers, double wanted,
+                                     std::span<const std::size_t> sizes, std::size_t of) {
+  constexpr double kPowers[] = {0.0, 1.0, -1.0, 2.0, -2.0, 0.5, 3.0, 4.0};
+  const std::size_t first = exponents.size();
+  exponents.resize(first + numbers, 0.0);
+  std::vector<std::size_t> at(numbers, 0);
+  for (std::optional<double> out;;) {
+    for (std::size_t i = 0; i < numbers; ++i) exponents[first + i] = kPowers[at[i]];
+    const std::optional<double> degree = probes.degree(exponents, sizes, of);
+    if (degree && (!out || std::abs(*degree - wanted) < std::abs(*out - wanted))) out = degree;
+    std::size_t next = 0;
+    while (next < numbers && ++at[next] == std::size(kPowers)) at[next++] = 0;
+    if (next == numbers || (out && std::round(2.0 * *out) == 2.0 * wanted)) return out;
+  }
 }
 
 std::string symbol_of_unit(std::string unit) {
@@ -199,10 +231,13 @@ void FormulaParts::check_sizes() {
 }
 
 // Each unit is scaled alone: the formula has to follow as its sizes do, each of them beside no
-// other. A number in it may carry a unit, and a law that is no power of a unit shows none. A size
-// in um alone gets the unit that it has.
+// other. Its numbers may carry units: those with which it follows, if there are any. A law that is
+// no power of a unit shows none. A size in um alone gets the unit that it has.
 void FormulaParts::check_units() {
-  if (formula_.function || has_number_with_unit(formula_.text)) return;
+  if (formula_.function) return;
+  const Formula numbered = with_named_numbers(formula_);
+  const std::size_t numbers = numbered.parameters.size() - formula_.parameters.size();
+  if (numbers > kMostNumbers) return;
   const std::string of_size = quantity_ == Quantity::slope ? "urad" : "um";
   const std::size_t first = formula_variables().size();
   std::vector<UnitPowers> powers;
@@ -225,13 +260,19 @@ void FormulaParts::check_units() {
     refuse(parameter.name, "is in \"" + parameter.unit + "\": " + why + "; accepted: " + accepted +
                                ", or a number in the formula that converts it");
   };
-  FormulaProbes probes(formula_, expression_);
+  std::vector<std::string> names = names_of(formula_);
+  for (std::size_t i = formula_.parameters.size(); i < numbered.parameters.size(); ++i)
+    names.push_back(numbered.parameters[i].name);
+  const Expression expression(numbered.text, names);
+  FormulaProbes probes(numbered, expression);
   for (const std::size_t size : amplitudes_) {
     UnitPowers fitting = powers[size];
     for (const std::string& symbol : all) {
       const std::vector<double> exponents = exponents_of(symbol, powers);
-      if (const auto degree = probes.degree(exponents, amplitudes_, size)) {
-        const double more = std::round(2.0 * (*degree - (symbol == of_size ? 1.0 : 0.0))) / 2.0;
+      const double wanted = symbol == of_size ? 1.0 : 0.0;
+      if (const auto degree =
+              nearest_degree(probes, exponents, numbers, wanted, amplitudes_, size)) {
+        const double more = std::round(2.0 * (*degree - wanted)) / 2.0;
         if (more != 0.0) fitting[symbol] -= more;
       } else if (!known.contains(symbol)) {
         for (std::size_t name = first; name < powers.size(); ++name)

@@ -118,7 +118,8 @@ std::string spelled(const UnitPowers& powers) {
   return over + "/" + (below.size() == 1 ? below.front() : "(" + joined(below, " ") + ")");
 }
 
-bool has_number_with_unit(const std::string& text) {
+std::vector<FormulaNumber> numbers_with_unit(const std::string& text) {
+  std::vector<FormulaNumber> out;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (is_letter(text[i]) || text[i] == '_') {  // a name, digits and all
       while (i + 1 < text.size() &&
@@ -130,11 +131,12 @@ bool has_number_with_unit(const std::string& text) {
     double number = INFINITY;
     const char* const first = text.data() + i;
     const auto end = std::from_chars(first, text.data() + text.size(), number).ptr;
-    i += static_cast<std::size_t>(std::max<std::ptrdiff_t>(end - first, 1)) - 1;
+    const auto length = static_cast<std::size_t>(std::max<std::ptrdiff_t>(end - first, 1));
     const bool is_of_law = number == 0.5 || (number == std::floor(number) && number <= 4.0);
-    if (!is_of_law) return true;
+    if (!is_of_law) out.push_back({i, length, number});
+    i += length - 1;
   }
-  return false;
+  return out;
 }
 
 }  // namespace slideway

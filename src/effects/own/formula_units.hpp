@@ -16,8 +16,13 @@ UnitPowers powers_of(const std::string& unit);
 // "um/s".
 std::string spelled(const UnitPowers& powers);
 
-// Whether a number in a formula may carry a unit: every one but those that laws are made of, 0 to 4
-// and 0.5.
-bool has_number_with_unit(const std::string& text);
+// A number in a formula, and where it stands.
+struct FormulaNumber {
+  std::size_t first = 0, length = 0;
+  double value = 0.0;
+};
+
+// Those that may carry a unit: all but those that laws are made of, 0 to 4 and 0.5.
+std::vector<FormulaNumber> numbers_with_unit(const std::string& text);
 
 }  // namespace slideway

@@ -10,7 +10,7 @@
 namespace slideway {
 namespace {
 
-constexpr double kDiffuse = 1e8;  // variance of the start and of a jump, in those of a reading
+constexpr double kDiffuse = 1e8;  // variance of the start and of a shift, in those of a reading
 constexpr int kLevels[] = {-4, 4}, kSlopes[] = {-11, 3};  // decades of the ratios
 constexpr int kMostScans = 6;
 constexpr double kFalseJump = 0.01;     // chance of one in a log without any
@@ -27,23 +27,29 @@ struct State {
 
 Eigen::Matrix2d transition(double step) { return Eigen::Matrix2d{{1.0, step}, {0.0, 1.0}}; }
 
-/// What the jumps add to the level between two places.
-double jumped(const std::vector<LocalTrend::Jump>& jumps, double from, double to) {
+/// Variance that shifts add between two places.
+double shifted(const std::vector<LocalTrend::Jump>& shifts, double from, double to) {
   double out = 0.0;
-  for (auto jump = std::ranges::upper_bound(jumps, from, {}, &LocalTrend::Jump::to);
-       jump != jumps.end() && jump->from < to; ++jump)
-    out +=
-        kDiffuse * (std::min(to, jump->to) - std::max(from, jump->from)) / (jump->to - jump->from);
+  for (auto shift = std::ranges::upper_bound(shifts, from, {}, &LocalTrend::Jump::to);
+       shift != shifts.end() && shift->from < to; ++shift)
+    out += kDiffuse * (std::min(to, shift->to) - std::max(from, shift->from)) /
+           (shift->to - shift->from);
   return out;
 }
 
-/// What walks and jumps add between two places.
+/// Whether what comes behind says nothing of what was before.
+bool is_diffuse(const LocalTrend& trend, double from, double to) {
+  return shifted(trend.jumps, from, to) > 0.0 || shifted(trend.kinks, from, to) > 0.0;
+}
+
+/// What walks and shifts add between two places.
 Eigen::Matrix2d walked(const LocalTrend& trend, double from, double to) {
-  const double step = (to - from) / trend.spacing, cross = trend.slope * step * step / 2.0;
+  const double step = (to - from) / trend.spacing,
+               slope = trend.slope * step + shifted(trend.kinks, from, to);
   return Eigen::Matrix2d{
-      {trend.level * step + trend.slope * step * step * step / 3.0 + jumped(trend.jumps, from, to),
-       cross},
-      {cross, trend.slope * step}};
+      {trend.level * step + slope * step * step / 3.0 + shifted(trend.jumps, from, to),
+       slope * step / 2.0},
+      {slope * step / 2.0, slope}};
 }
 
 State predicted(const LocalTrend& trend, const State& before, double from, double to) {
@@ -77,7 +83,7 @@ Deviance deviance_of(const LocalTrend& trend, std::span<const double> at,
   for (std::size_t i = 0; i < at.size(); ++i) {
     if (i > 0) state = predicted(trend, state, at[i - 1], at[i]);
     const Innovation innovation = update(state, readings[i]);
-    if (i < 2 || jumped(trend.jumps, at[i - 1], at[i]) > 0.0) continue;  // diffuse
+    if (i < 2 || is_diffuse(trend, at[i - 1], at[i])) continue;
     ++freedom;
     squares += innovation.error * innovation.error / innovation.variance;
     logs += std::log(innovation.variance);
@@ -162,25 +168,38 @@ class Search {
     return best_;
   }
 
-  /// Whether there were any to add.
-  bool adds_jumps() {
+  /// Jumps and kinks; whether there were any to add.
+  bool adds_shifts() {
     if (!(best_.noise > 0.0)) return false;
     const std::vector<Shift> shifts = shifts_of(best_, at_, readings_);
-    const double large =
-        std::sqrt(chi_squared_quantile(1.0, 1.0 - kFalseJump / static_cast<double>(at_.size())));
-    const std::size_t before = best_.jumps.size();
-    const auto size = [&](std::size_t i) {
-      return i < shifts.size() ? std::abs(shifts[i].level) : 0.0;
-    };
-    for (std::size_t i = 1; i < shifts.size() && best_.jumps.size() < kMostJumps; ++i)
-      if (size(i) > std::max(large, std::abs(shifts[i].slope)) && size(i) > size(i - 1) &&
-          size(i) >= size(i + 1) && !(jumped(best_.jumps, at_[i - 1], at_[i]) > 0.0))
-        best_.jumps.push_back({at_[i - 1], at_[i]});
-    std::ranges::sort(best_.jumps, {}, &LocalTrend::Jump::from);
-    return best_.jumps.size() > before;
+    return add(best_.jumps, shifts, &Shift::level, &Shift::slope) |
+           add(best_.kinks, shifts, &Shift::slope, &Shift::level);
   }
 
  private:
+  /// Where one is too large and larger than the other, the largest of neighbours that are.
+  bool add(std::vector<LocalTrend::Jump>& to, const std::vector<Shift>& shifts, double Shift::*of,
+           double Shift::*other) const {
+    const double large =
+        std::sqrt(chi_squared_quantile(1.0, 1.0 - kFalseJump / static_cast<double>(at_.size())));
+    const std::size_t before = to.size();
+    const auto size = [&](std::size_t i) {
+      const bool counts = i < shifts.size() && std::abs(shifts[i].*of) > large &&
+                          std::abs(shifts[i].*of) > std::abs(shifts[i].*other) &&
+                          !is_diffuse(best_, at_[i - 1], at_[i]);
+      return counts ? std::abs(shifts[i].*of) : 0.0;
+    };
+    for (std::size_t i = 1; i < shifts.size() && to.size() < kMostJumps;) {
+      std::size_t largest = i, next = i;
+      for (; size(next) > 0.0; ++next)
+        if (size(next) > size(largest)) largest = next;
+      if (next > i) to.push_back({at_[largest - 1], at_[largest]});
+      i = std::max(next, i + 1);
+    }
+    std::ranges::sort(to, {}, &LocalTrend::Jump::from);
+    return to.size() > before;
+  }
+
   void try_out(double level, double slope) {
     LocalTrend tried = best_;
     tried.level = level;
@@ -220,7 +239,7 @@ std::vector<LocalTrend::Jump> plain_jumps(std::span<const double> at,
 LocalTrend LocalTrend::of(std::span<const double> at, std::span<const double> readings) {
   Search search(at, readings);
   LocalTrend out = search.best();
-  for (int i = 0; i < kJumpScans && search.adds_jumps(); ++i) out = search.best();
+  for (int i = 0; i < kJumpScans && search.adds_shifts(); ++i) out = search.best();
   return out;
 }
 

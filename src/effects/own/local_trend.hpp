@@ -10,9 +10,10 @@ namespace slideway {
 /// A quantity whose level and slope are random walks in continuous time, read with white noise: the
 /// local linear trend (Harvey 1989, Forecasting, structural time series models and the Kalman
 /// filter, sections 2.3.2 and 9.2). Without a walk of the level its mean is the cubic smoothing
-/// spline. Beside the walks the level may jump: a valve opens, a load comes on.
+/// spline. Beside the walks the level may jump, as where a valve opens, and the slope, as where a
+/// load comes on that heats.
 struct LocalTrend {
-  /// Between two readings: the level after it says nothing of that before it.
+  /// Between two readings: the level (the slope) after it says nothing of that before it.
   struct Jump {
     double from = 0.0, to = 0.0;
   };
@@ -21,12 +22,13 @@ struct LocalTrend {
   double spacing = 1.0;  // mean one of the readings
   double level = 0.0;    // variance of the level's walk over a spacing, in those of a reading
   double slope = 0.0;    // the same of the slope (per spacing)
-  std::vector<Jump> jumps = {};  // rising
+  std::vector<Jump> jumps = {}, kinks = {};  // of the level, of the slope; rising
 
   /// By restricted likelihood: level and slope of the start are diffuse, the noise is concentrated
   /// out. Jumps are where the shift of the level that the readings ask for is too large for the
   /// walks (the auxiliary residuals of de Jong and Penzer 1998, Diagnosing shocks in time series),
-  /// and the shift of the slope is less so. REQUIRES three readings at rising places.
+  /// and the shift of the slope is less so; kinks where it is the other way round. REQUIRES three
+  /// readings at rising places.
   static LocalTrend of(std::span<const double> at, std::span<const double> readings);
 
   /// Mean of the quantity at each place, given all readings (Kalman filter and fixed interval
