@@ -288,6 +288,16 @@ TEST(Formula, FindsAPoleBetweenTwoStations) {
               HasSubstr("w = 5"));
 }
 
+// Beside the largest value, and where each shape by itself is harmless.
+TEST(Formula, FindsASmallPoleAndACornerOfTwoShapes) {
+  const Case face = all_cases()[0];
+  EXPECT_THAT(fault("a * (100 * r^2 + 1 / (r - 3.2123))", {{"a", "um"}}, face),
+              HasSubstr("r = 3.2123"));
+  EXPECT_THAT(fault("a * log(r - p + q)",
+                    {{"a", "um"}, {"p", "mm", 0.0, 10.0}, {"q", "mm", 6.0, 20.0}}, face),
+              AllOf(HasSubstr("is not finite"), HasSubstr("p = 10, q = 6")));
+}
+
 TEST(Formula, TakesWhatIsSteepButFinite) {
   const Case face = all_cases()[0], diameter = all_cases()[2];
   for (const char* text : {"a / (r + 0.01)", "a * exp((r - R) / 0.05)",

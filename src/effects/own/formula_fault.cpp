@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
+#include <optional>
 
 #include "formula_parts.hpp"
 #include "slideway/base/error.hpp"
@@ -11,7 +14,11 @@ namespace {
 constexpr double kPole = 1e6;                 // times what it is at the next station
 constexpr int kHalvings = 64;                 // of the gap in which a pole is looked for
 constexpr Eigen::Index kMostStations = 2048;  // at shapes other than the middle
+constexpr int kUntilAPoleShows = 12;          // halvings, in which it is larger by 1.5^12 = 130
+constexpr double kGrowth = 2.0;               // what is no pole grows by less
 constexpr int kShapesOnAxis = 17;
+constexpr std::size_t kMostCornered = 6;  // shapes of which all corners are tried
+constexpr std::size_t kSharpest = 8;      // stations beside which a pole is looked for
 constexpr int kDigits = 6;
 
 using Values = std::vector<double>;
@@ -21,29 +28,45 @@ class Along {
  public:
   explicit Along(Expression::Evaluation& evaluation) : evaluation_(&evaluation) {}
 
-  double operator()(const Values& values) {
-    std::ranges::copy(values, evaluation_->values().begin());
-    return std::abs(evaluation_->result());
-  }
+  double operator()(const Values& values) { return std::abs(signed_at(values)); }
 
-  /// Where it is largest between a and b, of one hump, by thirds.
-  Values largest(Values a, Values b) {
+  /// What is farthest from zero, or from a straight line between the two: a small pole on a slope.
+  enum class From { zero, chord };
+
+  /// Where it is so between two places, of one hump, by thirds.
+  Values farthest(From from, const Values& first, const Values& last) {
+    const bool is_chord = from == From::chord;
+    const double at_first = is_chord ? signed_at(first) : 0.0,
+                 rise = is_chord ? signed_at(last) - at_first : 0.0;
     const auto mix = [&](double share) {
-      Values out = a;
-      for (std::size_t i = 0; i < out.size(); ++i) out[i] += share * (b[i] - a[i]);
+      Values out = first;
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] += share * (last[i] - first[i]);
       return out;
     };
+    const auto off = [&](double value, double share) {
+      return std::abs(value - at_first - share * rise);
+    };
+    double low = 0.0, high = 1.0, begun = 0.0;
     for (int i = 0; i < kHalvings; ++i) {
-      Values left = mix(1.0 / 3.0), right = mix(2.0 / 3.0);
-      const double of_left = (*this)(left), of_right = (*this)(right);
-      if (!std::isfinite(of_left)) return left;
-      if (!std::isfinite(of_right)) return right;
-      (of_left < of_right ? a : b) = std::move(of_left < of_right ? left : right);
+      const double left = low + (high - low) / 3.0, right = high - (high - low) / 3.0;
+      const double of_left = signed_at(mix(left)), of_right = signed_at(mix(right));
+      if (!std::isfinite(of_left)) return mix(left);
+      if (!std::isfinite(of_right)) return mix(right);
+      const double off_left = off(of_left, left), off_right = off(of_right, right);
+      (off_left < off_right ? low : high) = off_left < off_right ? left : right;
+      const double most = std::max(off_left, off_right);
+      if (i == 0) begun = most;
+      if (i == kUntilAPoleShows && most < kGrowth * begun) break;
     }
-    return mix(0.5);
+    return mix(0.5 * (low + high));
   }
 
  private:
+  double signed_at(const Values& values) {
+    std::ranges::copy(values, evaluation_->values().begin());
+    return evaluation_->result();
+  }
+
   Expression::Evaluation* evaluation_;
 };
 
@@ -99,6 +122,14 @@ class FaultFinder {
       }
     for (std::size_t s = 0; s < parts_.shapes() && found.empty(); ++s)
       found = between_shapes(s, middle);
+    const std::size_t cornered = std::min(parts_.shapes(), kMostCornered);
+    for (std::size_t corner = 0; cornered > 1 && corner >> cornered == 0 && found.empty();
+         ++corner) {
+      std::vector<double> shape = middle;
+      for (std::size_t s = 0; s < cornered; ++s)
+        shape[s] = on_axis(s, (corner >> s & 1U) ? 1.0 : 0.0);
+      found = at_shape(shape, kMostStations);
+    }
     return found;
   }
 
@@ -117,29 +148,55 @@ class FaultFinder {
     return values;
   }
 
+  /// Where it is far larger than `largest`.
+  std::optional<Values> pole_between(const Values& first, const Values& last, double largest) {
+    for (const Along::From from : {Along::From::zero, Along::From::chord}) {
+      Values place = along_.farthest(from, first, last);
+      if (!(along_(place) <= kPole * std::max(largest, 1e-300))) return place;
+    }
+    return std::nullopt;
+  }
+
   std::string at_shape(const std::vector<double>& shape, Eigen::Index most) {
     const Eigen::Index stride = std::max<Eigen::Index>(1, stations_.size() / most);
     std::vector<Eigen::Index> looked_at{nearest_to_axis_, stations_.size() - 1};
     for (Eigen::Index i = 0; i < stations_.size(); i += stride) looked_at.push_back(i);
+    std::ranges::sort(looked_at);
     for (std::size_t j = 0; j < parts_.amplitudes(); ++j) {
-      Eigen::Index peak = 0;
-      double largest = -1.0;
+      std::vector<double> sizes;
       for (const Eigen::Index i : looked_at) {
         const Values values = values_at(i, j, shape);
-        const double size = along_(values);
-        if (!std::isfinite(size)) return told(values, values, i, "is not finite at ");
-        if (size > largest) largest = size, peak = i;
+        sizes.push_back(along_(values));
+        if (!std::isfinite(sizes.back())) return told(values, values, i, "is not finite at ");
       }
-      const Eigen::Index before = std::max<Eigen::Index>(0, peak - stride);
-      const Eigen::Index after = std::min(stations_.size() - 1, peak + stride);
-      const Values here = values_at(peak, j, shape);
-      for (const Eigen::Index beside : {before, after}) {
-        const Values pole = along_.largest(here, values_at(beside, j, shape));
-        if (!(along_(pole) <= kPole * std::max(largest, 1e-300)))
-          return told(pole, here, peak, "has a pole near ");
+      const double largest = std::ranges::max(sizes);
+      for (const std::size_t at : sharpest(sizes)) {
+        const Values here = values_at(looked_at[at], j, shape);
+        for (const std::size_t beside :
+             {at - std::min<std::size_t>(at, 1), std::min(at + 1, looked_at.size() - 1)}) {
+          if (const auto pole = pole_between(here, values_at(looked_at[beside], j, shape), largest))
+            return told(*pole, here, looked_at[at], "has a pole near ");
+        }
       }
     }
     return "";
+  }
+
+  /// Where the largest is, and where these bend most.
+  static std::vector<std::size_t> sharpest(const std::vector<double>& sizes) {
+    const std::size_t peak =
+        static_cast<std::size_t>(std::ranges::max_element(sizes) - sizes.begin());
+    std::vector<double> bends(sizes.size(), 0.0);
+    for (std::size_t i = 1; i + 1 < sizes.size(); ++i)
+      bends[i] = std::abs(sizes[i - 1] - 2.0 * sizes[i] + sizes[i + 1]);
+    bends[peak] = INFINITY;
+    std::vector<std::size_t> out(sizes.size());
+    std::iota(out.begin(), out.end(), 0);
+    const std::size_t count = std::min(kSharpest, out.size());
+    std::ranges::partial_sort(out, out.begin() + static_cast<std::ptrdiff_t>(count),
+                              std::greater<>{}, [&](std::size_t i) { return bends[i]; });
+    out.resize(count);
+    return out;
   }
 
   /// A pole that lies between two of the shapes that were tried, at the station in the middle.
@@ -153,9 +210,8 @@ class FaultFinder {
       }
       for (std::size_t i = 1; i < tried.size(); ++i) {
         const double largest = std::max(along_(tried[i - 1]), along_(tried[i]));
-        const Values pole = along_.largest(tried[i - 1], tried[i]);
-        if (!(along_(pole) <= kPole * std::max(largest, 1e-300)))
-          return told(pole, tried[i], station, "has a pole near ");
+        if (const auto pole = pole_between(tried[i - 1], tried[i], largest))
+          return told(*pole, tried[i], station, "has a pole near ");
       }
     }
     return "";
