@@ -355,11 +355,12 @@ CurveHypotheses::CurveHypotheses(const Model& model, const Linearisation& linear
                                  Kinks kinks)
     : smooth{{*curve_term(model), linear, noise, estimate}, {}} {
   smooth.likely = likely_priors(smooth.data, kinks);
-  const auto middle = std::ranges::stable_partition(
-      smooth.likely, [](const Hypothesis& each) { return each.prior.kinks.empty(); });
   if (kinks == Kinks::none) return;
-  kinked = {smooth.data, {middle.begin(), middle.end()}};
-  smooth.likely.erase(middle.begin(), middle.end());
+  const auto first =
+      std::stable_partition(smooth.likely.begin(), smooth.likely.end(),
+                            [](const Hypothesis& each) { return each.prior.kinks.empty(); });
+  kinked = {smooth.data, {first, smooth.likely.end()}};
+  smooth.likely.erase(first, smooth.likely.end());
   std::vector<CurveKink> all_but_last = estimate.curve->kinks;
   if (all_but_last.size() < 2) return;
   all_but_last.pop_back();

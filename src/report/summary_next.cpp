@@ -8,6 +8,7 @@
 #include "slideway/effects/channel.hpp"
 #include "slideway/identify/agreement.hpp"
 #include "slideway/report/number.hpp"
+#include "slideway/trace/plan.hpp"
 #include "slideway/trace/unseen.hpp"
 #include "summary.hpp"
 #include "text_parts.hpp"
@@ -42,6 +43,12 @@ std::string most_unseen(const TraceResult& trace) {
 std::string planned(const Analysis& analysis) {
   return analysis.trace && analysis.trace->next_cut ? cut_to_make(*analysis.trace->next_cut)
                                                     : "slideway plan tries further cuts on paper";
+}
+
+/// Whether that cut determines what these data do not.
+bool cut_determines(const Analysis& analysis) {
+  return analysis.trace && analysis.trace->next_cut &&
+         analysis.trace->next_cut->reason.starts_with(kDetermines);
 }
 
 /// What to do about checks that failed; "": none has. A wrong profile among the fitted ones comes
@@ -192,8 +199,11 @@ std::string next_step(const Analysis& analysis) {
       if (!next.empty()) return next;
   if (std::string next = reconciled(result.crosscheck); !next.empty()) return next;
   for (const UndeterminedDirection* direction : open_directions(*result.final))
-    if (!direction->advice.empty())
-      return with_titles(direction->advice) + "; " + planned(analysis);
+    if (!direction->advice.empty()) {
+      const std::string advice = with_titles(direction->advice);
+      return cut_determines(analysis) ? planned(analysis) + "; or " + advice
+                                      : advice + "; " + planned(analysis);
+    }
   if (!analysis.trace) return "slideway identify, which looks for what the model lacks";
   if (std::string next = next_of_loop(analysis); !next.empty()) return next;
   if (is_lone_curve(result))

@@ -85,7 +85,7 @@ std::string reason_of(const PlannedDesign& design) {
   const auto say = [&](const std::string& before, const std::vector<std::string>& what) {
     if (!what.empty()) out.push_back(before + listed(what));
   };
-  say("determines ", determined(design));
+  say(std::string(kDetermines), determined(design));
   say("tells ", told_apart(design));
   say("shows ", shown(design));
   say("makes testable: ", design.testable);

@@ -207,7 +207,8 @@ TEST(OwnEffect, OfALogThatJumpsIsNoStepAndHasNoLag) {
 /// first is small.
 TEST(OwnEffect, OfTwoThatWereMeasuredBothAreNamed) {
   const auto pressure = [](double t) { return std::sin(2.0 * 3.141592653589793 * t / 57.0); };
-  for (const auto& [per_degree, per_bar] : {std::pair{0.2, 0.15}, std::pair{0.03, 0.15}}) {
+  for (const auto& sizes : {std::pair{0.2, 0.15}, std::pair{0.03, 0.15}}) {
+    const double per_degree = sizes.first, per_bar = sizes.second;
     Channel heat{.name = "spindle_temperature", .unit = "degC"},
         air{.name = "air_pressure", .unit = "bar"};
     RandomStream random(5, "sensors");

@@ -13,6 +13,8 @@
 namespace slideway {
 
 inline constexpr std::string_view kPlanSchema = "slideway.plan/1";
+/// How the reason begins of a design that determines what is not: NextCut::reason.
+inline constexpr std::string_view kDetermines = "determines ";
 
 /// A cut or trace that can be made.
 struct CutToCome {

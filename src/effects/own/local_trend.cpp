@@ -172,8 +172,9 @@ class Search {
   bool adds_shifts() {
     if (!(best_.noise > 0.0)) return false;
     const std::vector<Shift> shifts = shifts_of(best_, at_, readings_);
-    return add(best_.jumps, shifts, &Shift::level, &Shift::slope) |
-           add(best_.kinks, shifts, &Shift::slope, &Shift::level);
+    const bool jumps = add(best_.jumps, shifts, &Shift::level, &Shift::slope);
+    const bool kinks = add(best_.kinks, shifts, &Shift::slope, &Shift::level);
+    return jumps || kinks;
   }
 
  private:
