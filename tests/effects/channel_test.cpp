@@ -164,8 +164,8 @@ TEST(LocalTrend, IsTheSmoothingSpline) {
 // A load that comes on at 200 s: 3 degC in the end, 0.02 degC/s at first, read with 0.03 degC every
 // 2 s. Without a kink the trend is off by two standard deviations of a reading there (0.06 degC);
 // what is left with one is to be less than one. A slope that is known from ten readings to either
-// side has 0.005 degC/s: a log shows the kink to one reading in 19 of 20, and 18 of 20 logs or more do
-// with a probability of 0.92.
+// side has 0.005 degC/s: a log shows the kink to one reading in 19 of 20, and 18 of 20 logs or more
+// do with a probability of 0.92.
 TEST(LocalTrend, DoesNotSmoothAKink) {
   std::vector<double> at;
   for (double t = 0.0; t <= 600.0; t += 2.0) at.push_back(t);

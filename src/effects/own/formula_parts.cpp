@@ -75,10 +75,11 @@ std::vector<double> exponents_of(const std::string& symbol, const std::vector<Un
 Formula with_named_numbers(const Formula& formula) {
   Formula out = formula;
   std::vector<FormulaNumber> numbers = numbers_with_unit(formula.text);
-  for (auto number = numbers.rbegin(); number != numbers.rend(); ++number) {
-    const std::string name = "_" + std::to_string(number->first);  // as no parameter is called
-    out.text.replace(number->first, number->length, "(" + name + ")");
-    out.parameters.push_back({name, "1", number->value, number->value});
+  std::ranges::reverse(numbers);  // those to the left stay where they are
+  for (const FormulaNumber& number : numbers) {
+    const std::string name = "_" + std::to_string(number.first);  // as no parameter is called
+    out.text.replace(number.first, number.length, "(" + name + ")");
+    out.parameters.push_back({name, "1", number.value, number.value});
   }
   return out;
 }
