@@ -14,11 +14,11 @@ namespace {
 constexpr double kPole = 1e6;                 // times what it is at the next station
 constexpr int kHalvings = 64;                 // of the gap in which a pole is looked for
 constexpr Eigen::Index kMostStations = 2048;  // at shapes other than the middle
-constexpr int kUntilAPoleShows = 12;          // halvings, in which it is larger by 1.5^12 = 130
+constexpr int kUntilAPoleShows = 8;           // halvings, in which it is larger by 1.5^8 = 26
 constexpr double kGrowth = 2.0;               // what is no pole grows by less
 constexpr int kShapesOnAxis = 17;
 constexpr std::size_t kMostCornered = 6;  // shapes of which all corners are tried
-constexpr std::size_t kSharpest = 8;      // stations beside which a pole is looked for
+constexpr std::size_t kSharpest = 4;      // stations beside which a pole is looked for
 constexpr int kDigits = 6;
 
 using Values = std::vector<double>;

@@ -261,10 +261,13 @@ void FormulaParts::check_units() {
     refuse(parameter.name, "is in \"" + parameter.unit + "\": " + why + "; accepted: " + accepted +
                                ", or a number in the formula that converts it");
   };
-  std::vector<std::string> names = names_of(formula_);
-  for (std::size_t i = formula_.parameters.size(); i < numbered.parameters.size(); ++i)
-    names.push_back(numbered.parameters[i].name);
-  const Expression expression(numbered.text, names);
+  Expression expression = expression_;
+  if (numbers > 0) {
+    std::vector<std::string> names = names_of(formula_);
+    for (std::size_t i = formula_.parameters.size(); i < numbered.parameters.size(); ++i)
+      names.push_back(numbered.parameters[i].name);
+    expression = Expression(numbered.text, names);
+  }
   FormulaProbes probes(numbered, expression);
   for (const std::size_t size : amplitudes_) {
     UnitPowers fitting = powers[size];
