@@ -131,7 +131,7 @@ CurveEstimate estimate_curve(const Model& model, const Linearisation& linear,
     const Hypothesis* const best = likeliest(likely);
     const double log_likelihood = data.log_likelihood() + (best ? best->log_likelihood : 0.0);
     ++in_vain;
-    if (log_likelihood > most) {
+    if (log_likelihood > most || kinks.empty()) {  // whatever it is
       most = log_likelihood;
       if (best) out.prior = best->prior;
       out.determined = CurvePosterior(data, out.prior.length_mm, out.prior.roughness)
