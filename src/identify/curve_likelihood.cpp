@@ -354,6 +354,14 @@ CurveHypotheses::CurveHypotheses(const Model& model, const Linearisation& linear
                                  const std::vector<Noise>& noise, const Estimate& estimate,
                                  Kinks kinks)
     : smooth{{*curve_term(model), linear, noise, estimate}, {}} {
+  std::vector<CurveKink> all_but_last = estimate.curve->kinks;
+  if (kinks == Kinks::allowed && all_but_last.size() > 1) {
+    all_but_last.pop_back();
+    smooth.likely = likely_priors(smooth.data, Kinks::none);
+    kinked = {{*curve_term(model), linear, noise, estimate, std::move(all_but_last)}, {}};
+    kinked->likely = likely_priors(kinked->data);
+    return;
+  }
   smooth.likely = likely_priors(smooth.data, kinks);
   if (kinks == Kinks::none) return;
   const auto first =
@@ -361,11 +369,6 @@ CurveHypotheses::CurveHypotheses(const Model& model, const Linearisation& linear
                             [](const Hypothesis& each) { return each.prior.kinks.empty(); });
   kinked = {smooth.data, {first, smooth.likely.end()}};
   smooth.likely.erase(first, smooth.likely.end());
-  std::vector<CurveKink> all_but_last = estimate.curve->kinks;
-  if (all_but_last.size() < 2) return;
-  all_but_last.pop_back();
-  kinked->data = {*curve_term(model), linear, noise, estimate, std::move(all_but_last)};
-  kinked->likely = likely_priors(kinked->data);
 }
 
 double CurveHypotheses::log_likelihood() const {

@@ -176,16 +176,16 @@ Eigen::MatrixXd covariance_of_curve_prior(const Model& model, const Linearisatio
                                           const std::vector<Noise>& noise,
                                           const Estimate& estimate) {
   std::vector<NoiseSize> sizes;
-  CurveHypotheses likely(model, linear, noise, estimate, Kinks::allowed);
+  if (is_open({*curve_term(model), linear, noise, estimate}, linear))
+    sizes = sizes_of(model, linear, noise, estimate, Kinks::allowed);
+  else
+    sizes.push_back({1.0, {model, linear, noise, estimate, Kinks::allowed}, 0.0});
+  const CurveHypotheses& as_it_is = std::ranges::find(sizes, 1.0, &NoiseSize::factor)->likely;
   const CurvePrior& prior = *estimate.curve;
-  const CurveData& data = prior.kinks.empty() ? likely.smooth.data : likely.kinked->data;
+  const CurveData& data = prior.kinks.empty() ? as_it_is.smooth.data : as_it_is.kinked->data;
   const CurvePosterior own(data, prior.length_mm, prior.roughness);
   const Eigen::VectorXd centre = own.mean(prior);
   Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(centre.size(), centre.size());
-  if (is_open(likely.smooth.data, linear))
-    sizes = sizes_of(model, linear, noise, estimate, Kinks::allowed);
-  else
-    sizes.push_back({1.0, likely, 0.0});
   const double most = largest_likelihood(sizes);
   double sum = 0.0;
   for (const NoiseSize& size : sizes) {

@@ -270,7 +270,7 @@ std::vector<Profile> twice_kinked(std::uint64_t seed) {
   return runs;
 }
 
-// One kink explains little without the other. Of six readings U of 95 % holds at least four with a
+// One kink explains little without the other. Of six draws U of 95 % holds at least four with a
 // probability of 99.8 %; a piece of 20 mm has its knots where the kinks are.
 TEST(Curve, UHoldsTheLargestDeviationBesideTwoKinks) {
   const Problem problem = cases::problem(Lever::paper, 0, {curve(20.0)});

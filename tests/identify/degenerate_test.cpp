@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "identify/cases.hpp"
 #include "noise_bounds.hpp"
@@ -114,36 +115,45 @@ TEST(Degenerate, ValuesThatAreTheModelsOwnAreToldAsSuch) {
   EXPECT_FALSE(tells(notes(rough(64, 1e-4), 0.0)));
 }
 
+/// A face, and slopes along a slide of so many stations, each with a noise of its own.
+struct FaceBesideSlopes {
+  explicit FaceBesideSlopes(int stations)
+      : profiles{face("a", 8.0, spaced(1, 40, 80), rough(80, 1e-4)),
+                 profile("b", Kind::slide, spaced(0, 400, stations), rough(stations, 1e-6))} {
+    profiles[1].setup.quantity = Quantity::slope;
+    fitted = fit_declared(problem(Lever::paper, 0, {effect("squareness")}), profiles);
+  }
+
+  std::vector<Profile> profiles;
+  std::optional<FittedModel> fitted;
+};
+
 // Three values have no slow cosine of their own, and nothing may be known of the size of their
 // noise; the others are judged without them.
 TEST(Degenerate, LackOfFitPassesOverAProfileTooShortToJudge) {
-  const Profile a = face("a", 8.0, spaced(1, 40, 80), rough(80, 1e-4));
-  Profile b = profile("b", Kind::slide, spaced(0, 400, 3), rough(3, 1e-6));
-  b.setup.quantity = Quantity::slope;
-  const FittedModel fitted = fit_declared(problem(Lever::paper, 0, {effect("squareness")}), {a, b});
-  std::vector<Noise> noise = fitted.fit.noise;
+  const FaceBesideSlopes cut(3);
+  const Solution& fit = cut.fitted->fit;
+  std::vector<Noise> noise = fit.noise;
   ASSERT_TRUE(noise[1].is_estimated());
   noise[1].freedom = 0.0;
-  const LackOfFit left = lack_of_fit(fitted.fit.linear, noise, {});
+  const LackOfFit left = lack_of_fit(fit.linear, noise, {});
   EXPECT_TRUE(left.p_value >= 0.0 && left.p_value <= 1.0) << left.p_value;
   EXPECT_TRUE(std::isfinite(left.ratio)) << left.ratio;
 }
 
 // Probabilities of a pool add up to 1 but for rounding.
 TEST(Degenerate, LackOfFitEndsWhereProbabilitiesAddUpToLessThanOne) {
-  const Profile a = face("a", 8.0, spaced(1, 40, 80), rough(80, 1e-4));
-  Profile b = profile("b", Kind::slide, spaced(0, 400, 80), rough(80, 1e-6));
-  b.setup.quantity = Quantity::slope;
-  const FittedModel fitted = fit_declared(problem(Lever::paper, 0, {effect("squareness")}), {a, b});
-  std::vector<Noise> noise = fitted.fit.noise;
+  const FaceBesideSlopes cut(80);
+  const Solution& fit = cut.fitted->fit;
+  std::vector<Noise> noise = fit.noise;
   ASSERT_NE(noise[0].pool, noise[1].pool);
   for (Noise& each : noise)
     each.alternatives = {{0.5, each.covariance()}, {0.5, each.covariance()}};
-  const LackOfFit exact = lack_of_fit(fitted.fit.linear, noise, {});
+  const LackOfFit exact = lack_of_fit(fit.linear, noise, {});
   noise[0].alternatives.back().probability -= 2e-12;
   noise[1].alternatives.back().probability -= 1e-12;
   noise[1].alternatives.push_back({1e-12, noise[1].covariance()});
-  EXPECT_NEAR(lack_of_fit(fitted.fit.linear, noise, {}).p_value, exact.p_value, 1e-11);
+  EXPECT_NEAR(lack_of_fit(fit.linear, noise, {}).p_value, exact.p_value, 1e-11);
 }
 
 // A wave of a period as near zero as one likes passes through values at any places. Two values a
