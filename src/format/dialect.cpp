@@ -267,13 +267,20 @@ char Head::decimal_of(const Dialect& dialect) const {
 // "1,5,2,5" under two names: nobody can tell which comma is which.
 void Head::refuse_commas_for_both(const Line& row, const Dialect& dialect,
                                   std::size_t named_columns) const {
-  const std::size_t fields = split(row.text, dialect.delimiter).size();
-  if (dialect.delimiter == ',' && request_->decimal.empty() && named_columns > 1 &&
-      fields == 2 * named_columns)
-    throw DataError("line " + std::to_string(row.number) + ": " + std::to_string(fields) +
-                    " fields under " + std::to_string(named_columns) +
-                    " names; decimal commas between commas are ambiguous (if they are "
-                    "none, say decimal = \".\")");
+  if (dialect.delimiter != ',' || named_columns < 2) return;
+  auto fields = split(row.text, dialect.delimiter);
+  while (!fields.empty() && fields.back().empty()) fields.pop_back();
+  const std::string place = "line " + std::to_string(row.number) + ": " +
+                            std::to_string(fields.size()) + " fields under " +
+                            std::to_string(named_columns) + " names; ";
+  if (request_->decimal.empty() && fields.size() == 2 * named_columns)
+    throw DataError(place +
+                    "decimal commas between commas are ambiguous (if they are none, say decimal = "
+                    "\".\")");
+  if (!words_.empty() && request_->decimal.empty() && fields.size() > named_columns)
+    throw DataError(place +
+                    "a comma within a number is ambiguous (if each is a column, name all, or ask "
+                    "for columns by their numbers)");
 }
 
 /// How many columns have a name; where none has, all. Separators at the end of a row make none.

@@ -142,6 +142,13 @@ bool is_zone(std::string_view text) {
 
 }  // namespace
 
+ClockForm clock_form(std::string_view field) {
+  const std::size_t date_end = field.find_first_of("T ");
+  const bool has_date = date_end != std::string_view::npos;
+  if (has_date) field.remove_prefix(date_end + 1);
+  return {has_date, std::string(field.substr(std::min(field.size(), field.find_first_of("Z+-"))))};
+}
+
 std::optional<double> clock_time(std::string_view field) {
   double days = 0.0;
   if (const std::size_t end = field.find_first_of("T "); end != std::string_view::npos) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -34,9 +35,17 @@ bool is_missing(std::string_view field);
 bool has_thousands(std::string_view field);
 
 // "08:29", "08:29:40.5", both also after a date, "2026-03-12T" or "12.03.2026 ": s from midnight,
-// with a date from 1970. What stands behind them of a time zone is the same for all, and left
-// aside.
+// with a date from 1970. What stands behind them of a time zone is left aside.
 std::optional<double> clock_time(std::string_view field);
+
+// What all times of one column must have in common. REQUIRES a clock_time().
+struct ClockForm {
+  bool has_date = false;
+  std::string zone;  // "", "Z", "+01:00"
+
+  bool operator==(const ClockForm&) const = default;
+};
+ClockForm clock_form(std::string_view field);
 
 // Whether the field is a number in any notation.
 bool is_numeric(std::string_view field);

@@ -14,6 +14,7 @@
 #include "dialect.hpp"
 #include "encoding.hpp"
 #include "fields.hpp"
+#include "midnight.hpp"
 #include "number_at.hpp"
 #include "slideway/base/error.hpp"
 #include "slideway/base/file.hpp"
@@ -42,26 +43,6 @@ struct Rows {
   }
 };
 
-// Times of a clock, one part of a column after the other, from the midnight before the first on.
-class Midnight {
- public:
-  void count_on(std::span<double> times, std::size_t of_clock) {
-    for (double& time : times) {
-      if (std::isnan(time)) continue;
-      if (of_clock-- == 0) throw DataError("has clock times and numbers in one column of times");
-      if (!first_) first_ = kDay * std::floor(time / kDay);
-      time -= *first_;
-      if (*first_ == 0.0) time += kDay * std::max(0.0, std::round((last_ - time) / kDay));
-      last_ = time;
-    }
-  }
-
- private:
-  static constexpr double kDay = 86400.0;  // s
-  std::optional<double> first_;            // midnight; 0 without a date
-  double last_ = 0.0;
-};
-
 class Reader {
  public:
   Reader(std::string_view text, const std::string& encoding, const TableRequest& request);
@@ -75,6 +56,7 @@ class Reader {
     double value;        // in the current row
     bool may_be_clock = false;
     std::size_t clocks = 0;  // times of a clock that were read
+    std::optional<ClockForm> form = {};
   };
 
   [[nodiscard]] std::string_view rest_of_line(const char* at) const;
@@ -230,9 +212,11 @@ void Reader::read_irregular_row() {
       continue;
     }
     auto value = parse_number(field, dialect_.decimal);
-    if (!value && target.may_be_clock) {
-      value = clock_time(field);
-      target.clocks += value ? 1 : 0;
+    if (!value && target.may_be_clock && (value = clock_time(field))) {
+      ++target.clocks;
+      if (target.form.value_or(clock_form(field)) != clock_form(field))
+        refuse(": " + std::string(Midnight::kOneForm));
+      target.form = clock_form(field);
     }
     if (!value || !std::isfinite(*value)) refuse_field(field, target.column);
     target.value = *value;
@@ -327,7 +311,8 @@ Table Reader::read(const TakeRows& take) {
       for (const Target& target : part.targets_)
         if (target.clocks > 0) {
           const std::span values(taken.rows[i].columns[target.slot]);
-          midnights[target.slot].count_on(values.first(taken.rows[i].count), target.clocks);
+          midnights[target.slot].count_on(values.first(taken.rows[i].count), target.clocks,
+                                          *target.form);
           table.units[target.slot] = "s";
         }
       take({table, columns_of(taken.rows[i]),

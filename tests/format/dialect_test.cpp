@@ -130,6 +130,15 @@ TEST(Dialect, RefusesWhatCanBeReadInTwoWaysUntilAsked) {
   EXPECT_THAT(parse(doubled, {.decimal = "."}).columns[1], ElementsAre(25.0, 5.0));
 }
 
+TEST(Dialect, RefusesAFirstRowThatIsLongerThanTheNames) {
+  const auto by_name = [](const std::string& text) {
+    return parse_table(text, {.columns = {"x", "z"}});
+  };
+  EXPECT_THAT([&] { by_name("x,z\n0.4,3,759.1\n0.5,4\n"); },
+              testing::ThrowsMessage<DataError>(HasSubstr("line 2: 3 fields under 2 names")));
+  EXPECT_THAT(by_name("x,z\n0.4,3,\n0.5,4,\n").columns[1], ElementsAre(3.0, 4.0));
+}
+
 TEST(Dialect, RefusesASecondDecimalMark) {
   EXPECT_EQ(complaint("0,5;1\n1,5;2.25\n"),
             "line 2, column 2: '2.25' is no number with a decimal comma, as the numbers before it "

@@ -18,6 +18,7 @@ namespace slideway::table_test {
 namespace {
 
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::ThrowsMessage;
@@ -249,6 +250,15 @@ TEST(ClockTimes, GoOnOverMidnights) {
               around);
   EXPECT_THAT(times_of("23:59:50,1\n06:00:00,2\n05:59:50,3\n"),
               ElementsAre(86390.0, 108000.0, 107990.0));  // backwards, by less than half a day
+}
+
+TEST(ClockTimes, OfTwoFormsInOneColumnAreRefused) {
+  for (const char* text :
+       {"08:29:40,1\n2026-03-12T08:29:41,2\n", "2026-03-12T08:29:40,1\n08:29:41,2\n",
+        "08:29:40Z,1\n09:29:41+01:00,2\n", "2026-03-12T08:29:40Z,1\n2026-03-12T08:29:41,2\n"})
+    EXPECT_THAT([&] { times_of(text); },
+                ThrowsMessage<DataError>(HasSubstr("line 2: clock times of two forms")))
+        << text;
 }
 
 TEST(ClockTimes, ThatAreNoneAreRefused) {
