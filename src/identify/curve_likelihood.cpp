@@ -320,10 +320,10 @@ Eigen::MatrixXd second_moments(const CurveData& data, const std::vector<Hypothes
                                const Eigen::VectorXd& centre) {
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(centre.size(), centre.size());
   std::vector<double> weights;
+  const Hypothesis* const best = likeliest(hypotheses);
   double sum = 0.0;
   for (const Hypothesis& each : hypotheses)
-    sum +=
-        weights.emplace_back(std::exp(each.log_likelihood - likeliest(hypotheses)->log_likelihood));
+    sum += weights.emplace_back(std::exp(each.log_likelihood - best->log_likelihood));
   for (double& weight : weights) weight /= sum;
   const std::span<const Hypothesis> all = hypotheses;
   for (std::size_t first = 0, next = 0; first < all.size(); first = next) {

@@ -17,7 +17,8 @@
 namespace slideway {
 namespace {
 
-constexpr double kSettled = 1e-4;  // relative change of the noise: no estimate moves visibly
+constexpr double kSettled = 1e-4;    // relative change of the noise: no estimate moves visibly
+constexpr double kSameMemory = 0.1;  // of white residuals: moves -2 ln L by a few tenths at most
 constexpr int kMostRounds = 6;
 constexpr double kNear = 0.01;  // standard deviations of the noise: where solvers end
 
@@ -172,23 +173,30 @@ Eigen::MatrixXd covariance_of(const Uncertainty& uncertainty) {
          uncertainty.basis.transpose();
 }
 
-/// Whether a solution has changed the residuals by what the columns of the model make, and by no
-/// more than has_settled() passes over. The restricted likelihood that the noise was found by does
-/// not see the former, unless there are priors.
+/// Whether a solution has changed the residuals by what the columns of the model make, and by so
+/// little more that the noise would be found to be the same: its size as has_settled() has it, and
+/// its memory. The restricted likelihood that it was found by does not see the former, unless there
+/// are priors.
 /// @param before     the estimate at the residuals the noise was found from
-bool is_changed_by_model_alone(const Linearisation& linear, const Estimate& after,
-                               const Estimate& before,
+bool is_changed_by_model_alone(const Solution& fit, const Estimate& after, const Estimate& before,
                                const std::vector<Eigen::VectorXd>& residuals) {
+  const Linearisation& linear = fit.linear;
   if (linear.prior_rows.rows() > 0) return false;
   Eigen::VectorXd change(after.amplitudes.size() + after.shapes.size());
   change << after.amplitudes - before.amplitudes, after.shapes - before.shapes;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
-    Eigen::VectorXd other = linear.residuals[i] - residuals[i];
-    other.noalias() += linear.columns[i] * change;
+    Eigen::MatrixXd white(residuals[i].size(), 3);  // before, after, what the model did not make
+    white << residuals[i], linear.residuals[i], linear.residuals[i] - residuals[i];
+    white.col(2).noalias() += linear.columns[i] * change;
     if (after.nuisances[i].size() > 0)
-      other.noalias() +=
+      white.col(2).noalias() +=
           linear.observations[i]->nuisances * (after.nuisances[i] - before.nuisances[i]);
-    if (!(other.norm() <= kSettled * linear.residuals[i].norm())) return false;
+    fit.noise[i].whiten(white);
+    const Eigen::RowVectorXd squares = white.colwise().squaredNorm();
+    const double rise = 2.0 * white.col(0).dot(white.col(2)) + squares[2];
+    if (!(std::sqrt(squares[2]) <= kSameMemory) ||
+        !(std::abs(rise) <= 2.0 * kSettled * squares.head(2).minCoeff()))
+      return false;
   }
   return true;
 }
@@ -269,7 +277,7 @@ Solution fit(const Model& model, const std::optional<Eigen::VectorXd>& shapes) {
     const std::vector<Eigen::VectorXd> residuals = out.linear.residuals;
     const Estimate before = std::move(found.estimate);
     found = solved(model, before, out);
-    if (is_changed_by_model_alone(out.linear, found.estimate, before, residuals)) break;
+    if (is_changed_by_model_alone(out, found.estimate, before, residuals)) break;
   }
   out.estimate = found.estimate;
   out.converged = found.converged;
@@ -298,7 +306,7 @@ Solution with_profiles(const Model& model, const Solution& fit,
   out.rank = analyse_rank(compressed.triangle, compressed.scale, model.gates.rank_tolerance);
   find_null_directions(model, compressed, out);
   find_uncertainty(model, compressed, out);
-  if ((fit.other_form || !fit.other_shapes.empty()) && !more.empty()) {
+  if ((!fit.other_forms.empty() || !fit.other_shapes.empty()) && !more.empty()) {
     const Solution without = with_profiles(model, fit, {});
     out.uncertainty.add(covariance_of(fit.uncertainty) - covariance_of(without.uncertainty),
                         compressed);

@@ -11,15 +11,16 @@ namespace slideway {
 namespace {
 
 void explain_other_form(const Model& model, const Solution& fit, ModelResult& out) {
-  if (!fit.other_form) return;
-  const ModelTerm& form = *model.find_term(MotionError::straightness);
-  const std::string degree = form.effect->parameters().back().name.substr(1);
-  out.notes.push_back(
-      "the data refute degree " + degree + " of the " + form.name +
-      ": a curve beside it is likelier by a factor of e^" +
-      significant(fit.other_form->log_likelihood_ratio, 2) +
-      "; every uncertainty is widened by that curve, and the coefficients are those of the nearest "
-      "polynomial, not the slide's. Declare form = \"curve\", or a higher degree");
+  for (const OtherForm& each : fit.other_forms) {
+    const ModelTerm& form = *std::ranges::find(model.terms, each.of, &ModelTerm::name);
+    const std::string degree = form.effect->parameters().back().name.substr(1);
+    out.notes.push_back("the data refute degree " + degree + " of the " + form.name +
+                        ": a curve beside it is likelier by a factor of e^" +
+                        significant(each.log_likelihood_ratio, 2) +
+                        "; every uncertainty is widened by that curve, and the coefficients are "
+                        "those of the nearest polynomial, not the slide's. Declare form = "
+                        "\"curve\", or a higher degree");
+  }
 }
 
 void explain_few_stations(const Model& model, ModelResult& out) {

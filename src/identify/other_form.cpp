@@ -11,19 +11,22 @@
 namespace slideway {
 namespace {
 
-/// The declared polynomial form of a slide, or null where the model has none, or a curve.
-const DeclaredEffect* declared_polynomial(const Problem& problem, const Model& model) {
-  if (curve_term(model)) return nullptr;
-  const auto found = std::ranges::find_if(problem.effects, [](const DeclaredEffect& each) {
-    return motion_error_of(each.name) == MotionError::straightness;
-  });
-  return found == problem.effects.end() ? nullptr : &*found;
+/// The declared polynomial forms of the slide that the model has: one, or one for each profile.
+std::vector<const DeclaredEffect*> declared_polynomials(const Problem& problem) {
+  std::vector<const DeclaredEffect*> out;
+  for (const DeclaredEffect& each : problem.effects)
+    if (motion_error_of(each.name) == MotionError::straightness &&
+        std::ranges::none_of(out, [&](const DeclaredEffect* other) {
+          return other->options.profiles == each.options.profiles;
+        }))
+      out.push_back(&each);
+  return out;
 }
 
 /// With pieces short enough to tell slow structure, and no shorter than from station to station.
-DeclaredEffect as_curve(const DeclaredEffect& polynomial, const Model& model) {
+DeclaredEffect as_curve(const DeclaredEffect& polynomial, const ModelTerm& term,
+                        const Model& model) {
   constexpr double kPieces = 24.0, kFewest = 4.0;
-  const ModelTerm& term = *model.find_term(MotionError::straightness);
   double pieces = kPieces;
   if (is_of_slides(model, term))
     pieces = std::clamp(static_cast<double>(station_positions(model, term).size() - 1), kFewest,
@@ -58,15 +61,12 @@ Eigen::MatrixXd nearest_polynomials(const Model& model, const ModelTerm& polynom
   return unit.asDiagonal() * least_squares(powers, forms).values;
 }
 
-}  // namespace
-
-void allow_for_other_form(const Problem& problem, FittedModel& fitted) {
+void allow_for_other(const DeclaredEffect& declared, const ModelTerm& polynomial,
+                     FittedModel& fitted) {
   Solution& fit = fitted.fit;
   const Model& model = fitted.model;
-  const DeclaredEffect* const declared = declared_polynomial(problem, model);
-  if (!declared) return;
   Model with = model;
-  append_term(with, as_curve(*declared, model), model.range);
+  append_term(with, as_curve(declared, polynomial, model), model.range);
   const ModelTerm& curve = with.terms.back();
   const Knots knots = *curve.effect->knots();
   Estimate estimate = fit.estimate;
@@ -85,8 +85,8 @@ void allow_for_other_form(const Problem& problem, FittedModel& fitted) {
   std::erase_if(likely, [&](const Hypothesis& each) { return each.prior.amplitude_mm > most; });
   const Hypothesis* const best = likeliest(likely);
   if (!best || best->log_likelihood < -std::log(model.gates.lack_of_fit_p)) return;
-  const ModelTerm& polynomial = *model.find_term(MotionError::straightness);
-  OtherForm& form = fit.other_form.emplace();
+  OtherForm& form = fit.other_forms.emplace_back();
+  form.of = polynomial.name;
   form.log_likelihood_ratio = best->log_likelihood;
   form.curve = curve;
   form.moments = second_moments(data, likely, Eigen::VectorXd::Zero(knots.positions_mm.size()));
@@ -97,6 +97,17 @@ void allow_for_other_form(const Problem& problem, FittedModel& fitted) {
   form.moved.middleRows(polynomial.first_amplitude, form.nearest.rows()) += form.nearest;
   fit.uncertainty.add(form.moved * form.moments * form.moved.transpose(),
                       compress(fit.linear, fit.noise));
+}
+
+}  // namespace
+
+void allow_for_other_form(const Problem& problem, FittedModel& fitted) {
+  if (curve_term(fitted.model)) return;
+  for (const DeclaredEffect* const each : declared_polynomials(problem)) {
+    const auto term = std::ranges::find(
+        fitted.model.terms, term_name(each->name, each->options.profiles), &ModelTerm::name);
+    if (term != fitted.model.terms.end()) allow_for_other(*each, *term, fitted);
+  }
 }
 
 }  // namespace slideway

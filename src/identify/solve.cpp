@@ -11,6 +11,7 @@
 #include <map>
 
 #include "residual.hpp"
+#include "slideway/identify/identifiability.hpp"
 #include "slideway/identify/shape_grid.hpp"
 
 namespace slideway {
@@ -140,10 +141,16 @@ ceres::Solver::Summary solve_within_bounds(const ceres::Solver::Options& options
   return summary;
 }
 
-/// Shapes of the best fit near `start`, the amplitudes eliminated; Ceres then has few steps left.
-Eigen::VectorXd eliminated_optimum(const Model& model, const Linearisation& linear,
-                                   const std::vector<Noise>& noise, const Eigen::VectorXd& start) {
-  Eigen::VectorXd inner(start.size()), out(start.size());
+struct Optimum {
+  Eigen::VectorXd shapes;
+  double cost = 0.0;  // half the sum of squares
+};
+
+/// The best fit near `start`, the amplitudes eliminated; Ceres then has few steps left.
+Optimum eliminated_optimum(const Model& model, const Linearisation& linear,
+                           const std::vector<Noise>& noise, const Eigen::VectorXd& start) {
+  Eigen::VectorXd inner(start.size());
+  Optimum out{Eigen::VectorXd(start.size())};
   ceres::Problem problem;
   problem.AddResidualBlock(new EliminatedResidual(model, linear, noise), nullptr, inner.data());
   for (const ModelTerm& term : model.terms) {
@@ -154,10 +161,10 @@ Eigen::VectorXd eliminated_optimum(const Model& model, const Linearisation& line
   }
   ceres::Solver::Options options = solver_options();
   options.initial_trust_region_radius = 1e4;
-  solve_within_bounds(options, problem);
+  out.cost = solve_within_bounds(options, problem).final_cost;
   for (const ModelTerm& term : model.terms) {
     const std::vector<double> own = outer_shapes(term, inner.data() + term.first_shape);
-    std::copy(own.begin(), own.end(), out.data() + term.first_shape);
+    std::copy(own.begin(), own.end(), out.shapes.data() + term.first_shape);
   }
   return out;
 }
@@ -242,15 +249,49 @@ void settle_residuals(const Model& model, Estimate& estimate, Linearisation& lin
 
 namespace {
 
+/// The best amplitudes and levelling at the shapes of `start`, without losses, where the directions
+/// that the data determine come near the cost that is possible there: else `start`.
+/// @param linear  left at the result
+Estimate best_at_shapes(const Model& model, const Estimate& start, double possible,
+                        Linearisation& linear, const std::vector<Noise>& noise) {
+  constexpr double kAsGood = 10.0;  // times what is possible: a few steps make up for it
+  Estimate out = start;
+  out.amplitudes.setZero();
+  for (Eigen::VectorXd& each : out.nuisances) each.setZero();
+  relinearise(model, out, linear);
+  const Compressed compressed = compress(linear, noise);
+  const Eigen::Index count = model.amplitudes();
+  const Eigen::MatrixXd triangle = compressed.triangle.topLeftCorner(count, count);
+  const Rank rank =
+      analyse_rank(triangle, compressed.scale.head(count), model.gates.rank_tolerance);
+  out.amplitudes = rank.basis * (rank.basis.transpose() *
+                                 (triangle.transpose() * compressed.target.head(count)));
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(count + model.shapes());
+  change.head(count) = out.amplitudes;
+  for (std::size_t i = 0; i < compressed.profiles.size(); ++i)
+    out.nuisances[i].head(compressed.profiles[i].levelling()) =
+        compressed.profiles[i].levelled(change);
+  settle_residuals(model, out, linear);
+  double cost = 0.0;
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    Eigen::VectorXd white = linear.residuals[i];
+    noise[i].whiten(white);
+    cost += 0.5 * white.squaredNorm();
+  }
+  return cost <= kAsGood * possible ? out : start;
+}
+
 /// Pseudo-values (Huber 1981): the residual of a profile with a loss as a quadratic loss would have
-/// it for the same estimate and covariance, ψ(w) / mean ψ' for each white value w. One value counts
-/// whole, though all may lie where ψ does not rise.
+/// it for the same estimate and covariance, ψ(w) / mean ψ' for each white value w. Where most
+/// values lie beyond what ψ rises over, they are no outliers but a profile that disagrees: they
+/// count as they are.
 void count_by_loss(Linearisation& linear, const std::vector<Noise>& noise) {
+  constexpr double kBreakdown = 0.5;  // of the values: of any loss (Huber 1981)
   for (std::size_t i = 0; i < linear.observations.size(); ++i) {
     const std::unique_ptr<ceres::LossFunction> loss =
         make_loss(linear.observations[i]->profile->loss);
     if (!loss) continue;
-    Eigen::VectorXd& white = linear.residuals[i];
+    Eigen::VectorXd white = linear.residuals[i];
     noise[i].whiten(white);
     double slope = 0.0;
     for (double& w : white) {
@@ -259,8 +300,11 @@ void count_by_loss(Linearisation& linear, const std::vector<Noise>& noise) {
       slope += rho[1] + 2.0 * w * w * rho[2];
       w *= rho[1];
     }
-    white *= static_cast<double>(white.size()) / std::max(slope, 1.0);
+    const auto count = static_cast<double>(white.size());
+    if (slope < kBreakdown * count) continue;
+    white *= count / slope;
     noise[i].colour(white);
+    linear.residuals[i] = std::move(white);
   }
 }
 
@@ -311,8 +355,7 @@ void scan_shapes(const Model& model, const std::vector<Noise>& noise, Estimate& 
   };
   descend(estimate.shapes);
   if (axes.size() < kManyShapes) return;
-  estimate.shapes = eliminated_optimum(model, linear, noise, estimate.shapes);
-  double least = eliminated.cost(estimate.shapes);
+  Optimum best = eliminated_optimum(model, linear, noise, estimate.shapes);
   boost::random::sobol places(axes.size());
   const auto last = static_cast<double>(places.max());
   for (int start = 0; start < kStarts; ++start) {
@@ -321,18 +364,21 @@ void scan_shapes(const Model& model, const std::vector<Noise>& noise, Estimate& 
       shapes[s] = axes[s][static_cast<std::size_t>(static_cast<double>(places()) / last *
                                                    static_cast<double>(axes[s].size() - 1))];
     descend(shapes);
-    shapes = eliminated_optimum(model, linear, noise, shapes);
-    const double cost = eliminated.cost(shapes);
-    if (cost < least) least = cost, estimate.shapes = shapes;
+    Optimum found = eliminated_optimum(model, linear, noise, shapes);
+    if (found.cost < best.cost) best = std::move(found);
   }
+  estimate.shapes = std::move(best.shapes);
 }
 
 SolveSummary solve(const Model& model, Linearisation& linear, const std::vector<Noise>& noise,
                    const Estimate& start) {
   SolveSummary out;
   out.estimate = start;
-  if (model.shapes() > 0)
-    out.estimate.shapes = eliminated_optimum(model, linear, noise, start.shapes);
+  if (model.shapes() > 0) {
+    const Optimum optimum = eliminated_optimum(model, linear, noise, start.shapes);
+    out.estimate.shapes = optimum.shapes;
+    out.estimate = best_at_shapes(model, out.estimate, optimum.cost, linear, noise);
+  }
   FitProblem problem(model, linear, noise, out.estimate);
   const ceres::Solver::Summary summary = problem.solve();
   out.converged = summary.termination_type == ceres::CONVERGENCE;

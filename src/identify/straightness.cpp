@@ -55,7 +55,7 @@ class Locus {
   /// What the nearest polynomials leave of a curve beside them (OtherForm), per knot; no columns
   /// where there is none.
   [[nodiscard]] Eigen::MatrixXd left_of_curve(const Eigen::VectorXd& x) const {
-    const auto& form = fit_.other_form;
+    const OtherForm* const form = other_form();
     if (!form) return Eigen::MatrixXd::Zero(x.size(), 0);
     return form_columns(model_, form->curve, {}, setup_, x)
                .middleCols(form->curve.effect->knots()->first, form->nearest.cols()) -
@@ -68,7 +68,7 @@ class Locus {
     const Eigen::RowVectorXd row = weighted.head(weighted.size() - 1);
     Spread out = reported_.spread(row);
     if (left.size() == 0) return out;
-    const OtherForm& form = *fit_.other_form;
+    const OtherForm& form = *other_form();
     const double more = (left * form.moments * (left + 2.0 * row * form.moved).transpose()).value();
     out.standard_uncertainty =
         std::sqrt(std::max(out.standard_uncertainty * out.standard_uncertainty + more, 0.0));
@@ -108,6 +108,11 @@ class Locus {
   }
 
  private:
+  [[nodiscard]] const OtherForm* other_form() const {
+    const auto own = std::ranges::find(fit_.other_forms, parts_.front()->name, &OtherForm::of);
+    return own == fit_.other_forms.end() ? nullptr : &*own;
+  }
+
   const Model& model_;
   Parts parts_;
   const Solution& fit_;

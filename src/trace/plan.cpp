@@ -58,7 +58,7 @@ struct Wanted {
 /// A fit whose noise is taken as known: what is quick to compare sets by.
 Solution with_known_noise(Solution fit) {
   for (Noise& noise : fit.noise) noise.alternatives.clear();
-  fit.other_form.reset();
+  fit.other_forms.clear();
   fit.other_shapes.clear();
   return fit;
 }
@@ -328,7 +328,7 @@ class Planner {
       out.notes.emplace_back(
           "structure without a name is left in the profiles, which widens every U, planned ones "
           "too");
-    if (fitted_.fit.other_form)
+    if (!fitted_.fit.other_forms.empty())
       out.notes.emplace_back(
           "a curve beside the polynomial form of the slide is likelier than none; what it adds to "
           "U is taken to stay");

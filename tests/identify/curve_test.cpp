@@ -3,8 +3,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
 
 #include "identify/cases.hpp"
@@ -205,7 +207,7 @@ TEST(Curve, StraightnessOfAKinkHasItsSizeAndPlaceWithinU) {
   EXPECT_NEAR(*error.value, 0.96, *error.expanded_uncertainty + 0.0125);
   EXPECT_LT(*error.expanded_uncertainty, 0.05);  // 20 nm, 800 readings
   EXPECT_NEAR(error.lowest_at_mm, 120.0, 5.0);   // two pieces
-  EXPECT_FALSE(fitted.fit.other_form);
+  EXPECT_TRUE(fitted.fit.other_forms.empty());
 }
 
 /// Three readings of a slide that bows by 0.8 µm about its middle and is cut short at `at`, where
@@ -330,10 +332,43 @@ TEST(Curve, RefutesAPolynomialOfTooLowADegreeAndNoOther) {
                         runs);
   };
   const FittedModel line = fitted(1), parabola = fitted(2);
-  EXPECT_TRUE(line.fit.other_form);
-  EXPECT_FALSE(parabola.fit.other_form);
+  EXPECT_FALSE(line.fit.other_forms.empty());
+  EXPECT_TRUE(parabola.fit.other_forms.empty());
   EXPECT_THAT(summarise(line.model, line.fit).notes,
               testing::Contains(testing::HasSubstr("refute degree 1 of the straightness")));
+}
+
+// Each profile has a form of its own: whichever comes first, the degree of both is refuted.
+TEST(Curve, RefutesEachOfSeveralFormsInAnyOrder) {
+  std::vector<Profile> runs;
+  for (const char* name : {"first", "second"}) {
+    RandomStream noise(5, name);
+    const double cubic = std::string(name) == "first" ? 5e-10 : -1e-9;
+    const std::vector<double> x = cases::spaced(0.0, 200.0, 401);
+    std::vector<double> z;
+    for (const double each : x) z.push_back(cubic * each * each * each + 20e-6 * noise.normal());
+    runs.push_back(cases::profile(name, Kind::slide, x, z));
+    runs.back().surface = name;
+  }
+  const auto uncertainties = [&] {
+    std::vector<DeclaredEffect> forms;
+    for (const Profile& run : runs) {
+      forms.push_back(cases::effect("straightness", 2));
+      forms.back().options.profiles = {run.name};
+    }
+    const FittedModel fitted = fit_declared(cases::problem(Lever::paper, 0, forms), runs);
+    std::map<std::string, double> out;
+    for (const FittedParameter& each : summarise(fitted.model, fitted.fit).parameters)
+      if (each.expanded_uncertainty) out[each.name] = *each.expanded_uncertainty;
+    EXPECT_EQ(fitted.fit.other_forms.size(), 2U);
+    return out;
+  };
+  const std::map<std::string, double> forwards = uncertainties();
+  std::ranges::reverse(runs);
+  const std::map<std::string, double> backwards = uncertainties();
+  ASSERT_EQ(forwards.size(), backwards.size());
+  ASSERT_FALSE(forwards.empty());
+  for (const auto& [name, u] : forwards) EXPECT_NEAR(backwards.at(name), u, 1e-6 * u) << name;
 }
 
 }  // namespace

@@ -162,5 +162,25 @@ TEST(Covariance, IsTheOneOfCeres) {
   EXPECT_LT((ours - expected).norm(), 1e-10 * expected.norm());
 }
 
+// Two readings that disagree by far more than noise in all values: none of these is an outlier.
+// Their white noise is known to 5 % of 200 values each; three of those are allowed.
+TEST(Loss, OfAReadingThatDisagreesAsAWholeLeavesItsNoiseWhatItIs) {
+  std::vector<Profile> readings;
+  for (const char* name : {"rough", "fine"}) {
+    RandomStream random(3, name);
+    std::vector<double> x = cases::spaced(0.0, 200.0, 200), z;
+    for (const double at : x)
+      z.push_back(kNoise * random.normal() +
+                  (readings.empty() ? 50.0 * kNoise * std::sin(2.0 * kPi * at / 150.0) : 0.0));
+    readings.push_back(cases::profile(name, Kind::slide, x, z));
+    readings.back().free_offset = readings.back().free_tilt = false;
+  }
+  readings.front().loss = Loss::huber;
+  readings.back().standard_uncertainty = kNoise;
+  const Model model =
+      build_model(cases::problem(Lever::paper, 0, {cases::effect("straightness", 2)}), readings);
+  EXPECT_GT(fit(model).noise[0].standard_deviation(), 0.85 * kNoise);
+}
+
 }  // namespace
 }  // namespace slideway::loss_test

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@ namespace slideway {
 /// coefficients are then those of the polynomial nearest to the form over the travel, equal to it
 /// at both ends.
 struct OtherForm {
+  std::string of;                     // the term of the polynomial
   double log_likelihood_ratio = 0.0;  // over no curve
   ModelTerm curve;                    // its knots are the columns below
   Eigen::MatrixXd moments;            // second moments of the knots, the prior integrated out
@@ -44,7 +46,7 @@ struct Solution {
   Rank rank;
   NullDirections null;
   Uncertainty uncertainty;
-  std::optional<OtherForm> other_form;   // allow_for_other_form()
+  std::vector<OtherForm> other_forms;    // allow_for_other_form()
   std::vector<OtherShape> other_shapes;  // allow_for_other_shapes()
 };
 

@@ -129,7 +129,8 @@ void scan_shapes(const Model& model, const std::vector<Noise>& noise, Estimate& 
 ///
 /// with the whitening W_i of each profile's noise and its loss ρ_i, shapes inside their bounds.
 /// The solver is Ceres; where shapes move, it begins at the optimum of the problem with the
-/// amplitudes eliminated (variable projection: Golub and Pereyra 1973, Kaufman 1975).
+/// amplitudes eliminated (variable projection: Golub and Pereyra 1973, Kaufman 1975), priors and
+/// losses left aside, with the best amplitudes there.
 ///
 /// @param linear  linearise() at any estimate; left at the solution
 /// @param noise   per fitted observation
