@@ -85,9 +85,9 @@ class BatchCommand : public ReportCommand {
     if (given.count("jobs") != 0 && (jobs_ < 1 || jobs_ > 4096)) fail("--jobs: from 1 to 4096");
     const auto above_zero = [](double value) { return std::isfinite(value) && value > 0.0; };
     if (given.count("timeout") != 0 && !(above_zero(timeout_) && timeout_ < 1e7))
-      fail("--timeout: a number of seconds above 0");
+      fail("--timeout: a number of seconds above 0 and below 1e7");
     if (given.count("memory") != 0 && !above_zero(memory_))
-      fail("--memory: a number of megabytes above 0");
+      fail("--memory: a finite number of megabytes above 0");
     if (!pool_.empty() && pool_ != "machine")
       fail("--pool: '" + printable(pool_) + "' is not accepted; accepted: machine");
     if (!shard_.empty()) checked_shard_ = parsed_shard();

@@ -22,7 +22,7 @@ class IdentifyCommand : public ProblemCommand {
     if (given.count("time-limit") == 0) return;
     time_limit_s_ = given["time-limit"].as<double>();
     if (!(*time_limit_s_ > 0.0 && *time_limit_s_ < 1e9))
-      fail("--time-limit: accepted: seconds above 0");
+      fail("--time-limit: accepted: seconds above 0 and below 1e9");
   }
   int run() override { return run_problem(Scope::identify, !no_trace_, time_limit_s_); }
 

@@ -8,13 +8,9 @@
 #include "slideway/identify/noise_model.hpp"
 
 namespace slideway {
-namespace {
 
-constexpr std::size_t kLeastRepeats = 3;  // of two, either may be the odd one
-
-/// Slow cosines of the residuals of a group, levelled, at the stations all have: a column each.
-Eigen::MatrixXd slow_parts(const Linearisation& linear, const std::vector<std::size_t>& group,
-                           const Gates& gates) {
+Eigen::MatrixXd slow_parts(const Linearisation& linear, const std::vector<Eigen::VectorXd>& of_each,
+                           const std::vector<std::size_t>& group, const Gates& gates) {
   const Observation& first = *linear.observations[group.front()];
   std::vector<std::vector<Eigen::Index>> matches;
   for (const std::size_t i : group)
@@ -23,27 +19,29 @@ Eigen::MatrixXd slow_parts(const Linearisation& linear, const std::vector<std::s
   for (Eigen::Index row = 0; row < first.values.size(); ++row)
     if (std::ranges::all_of(matches, [&](const auto& match) { return match[row] >= 0; }))
       rows.push_back(row);
-  Eigen::MatrixXd residuals(std::ssize(rows), std::ssize(group));
+  Eigen::MatrixXd parts(std::ssize(rows), std::ssize(group));
   for (std::size_t k = 0; k < group.size(); ++k)
     for (std::size_t r = 0; r < rows.size(); ++r)
-      residuals(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(k)) =
-          linear.residuals[group[k]][matches[k][rows[r]]];
+      parts(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(k)) =
+          of_each[group[k]][matches[k][rows[r]]];
   const Eigen::MatrixXd levelling = orthonormal(first.nuisances(rows, Eigen::all));
   Gates finer = gates;
   finer.values_per_cosine = gates.values_per_repeated_cosine;
   Eigen::MatrixXd cosines =
       slow_cosines(std::ssize(rows), slow_cosine_count(std::ssize(rows), finer));
   project_out(levelling, cosines);
-  return orthonormal(std::move(cosines)).transpose() * residuals;
+  return orthonormal(std::move(cosines)).transpose() * parts;
 }
 
-/// Means over octaves of frequency, in place.
-void smooth(Eigen::VectorXd& spectrum) {
+Eigen::VectorXd smoothed(Eigen::VectorXd spectrum) {
   for (Eigen::Index first = 0, count = 1; first < spectrum.size(); first += count, count *= 2) {
     auto octave = spectrum.segment(first, std::min(count, spectrum.size() - first));
     octave.setConstant(octave.mean());
   }
+  return spectrum;
 }
+
+namespace {
 
 /// Probability that noise makes one of m repeats differ as much from the others. Both mean squares
 /// have the spectrum of the noise: their degrees of freedom are those of a sum of unequal squares
@@ -57,8 +55,8 @@ double probability_beside(const Eigen::MatrixXd& parts, Eigen::Index which) {
   others.col(which).setZero();
   const double expected = others.squaredNorm() / (count - 2.0);
   if (!(expected > 0.0)) return square > 0.0 ? 0.0 : 1.0;
-  Eigen::VectorXd spectrum = (parts.colwise() - parts.rowwise().mean()).rowwise().squaredNorm();
-  smooth(spectrum);
+  const Eigen::VectorXd spectrum =
+      smoothed((parts.colwise() - parts.rowwise().mean()).rowwise().squaredNorm());
   const double freedom = std::pow(spectrum.sum(), 2) / spectrum.squaredNorm();
   const double rest = (count - 2.0) * freedom;
   return beta_share(0.5 * rest, 0.5 * freedom, rest / (rest + freedom * square / expected));
@@ -73,7 +71,7 @@ double probability_beside_repeats(const Linearisation& linear, std::size_t profi
     if (i != profile && are_repeats(*linear.observations[profile], *linear.observations[i], gates))
       group.push_back(i);
   if (group.size() < kLeastRepeats) return 1.0;
-  const Eigen::MatrixXd parts = slow_parts(linear, group, gates);
+  const Eigen::MatrixXd parts = slow_parts(linear, linear.residuals, group, gates);
   return parts.rows() == 0 ? 1.0 : probability_beside(parts, 0);
 }
 
@@ -81,7 +79,7 @@ std::vector<OddRepeat> odd_repeats(const Linearisation& linear, const Gates& gat
   std::vector<OddRepeat> out;
   for (std::vector<std::size_t> group : repeat_groups(linear, gates)) {
     while (group.size() >= kLeastRepeats) {
-      const Eigen::MatrixXd parts = slow_parts(linear, group, gates);
+      const Eigen::MatrixXd parts = slow_parts(linear, linear.residuals, group, gates);
       if (parts.rows() == 0) break;
       OddRepeat odd;
       Eigen::Index which = 0;

@@ -47,6 +47,16 @@ std::vector<std::vector<std::size_t>> grouped(const Linearisation& linear, Toget
 std::vector<std::vector<std::size_t>> repeat_groups(const Linearisation& linear,
                                                     const Gates& gates);
 
+inline constexpr std::size_t kLeastRepeats = 3;  // of two, either may be the odd one
+
+/// Slow cosines of a vector of each profile, levelled, at the stations all of a group have: a
+/// column for each of the group.
+Eigen::MatrixXd slow_parts(const Linearisation& linear, const std::vector<Eigen::VectorXd>& of_each,
+                           const std::vector<std::size_t>& group, const Gates& gates);
+
+/// Means over octaves of frequency.
+Eigen::VectorXd smoothed(Eigen::VectorXd spectrum);
+
 /// Residual of a profile less the mean of its repeats at the same stations, of the size its noise
 /// has; nothing where no other profile repeats it, or where it is odd. Stations that a repeat lacks
 /// are left free, and what the columns of `suspect` make, profile by profile.

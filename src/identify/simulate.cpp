@@ -204,7 +204,13 @@ std::vector<Profile> simulate(const Problem& problem) {
   follow_face(model);
   for (std::size_t i = 0; i < inner.size(); ++i)
     add_effect(model, model.terms[i], inner[i], profiles);
-  for (Profile& profile : profiles) add_noise(*problem.truth, profile);
+  for (Profile& profile : profiles) {
+    add_noise(*problem.truth, profile);
+    if (std::ranges::any_of(profile.values, [](double each) { return !std::isfinite(each); }))
+      throw UsageError(problem.path.string() + ": [truth] makes values of profile '" +
+                       profile.name +
+                       "' that are no finite numbers; accepted: smaller parameters and noise_um");
+  }
   return profiles;
 }
 

@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "blunder_hypotheses.hpp"
 #include "prediction.hpp"
-#include "rescaled.hpp"
 #include "slideway/base/parallel.hpp"
 #include "slideway/base/text.hpp"
+#include "slideway/base/units.hpp"
+#include "slideway/identify/agreement.hpp"
 #include "slideway/identify/left_out.hpp"
 #include "slideway/identify/linear_algebra.hpp"
 #include "slideway/identify/noise_model.hpp"
@@ -17,72 +19,36 @@
 namespace slideway {
 namespace {
 
-/// How a profile may have been meant.
-struct Hypothesis {
-  BlunderKind kind = BlunderKind::sign;
-  double factor = 1.0;             // of the values
-  std::optional<Profile> profile;  // with other positions or another setup; none: as it is
-};
-
-constexpr std::array<std::pair<BlunderKind, double>, 5> kFactors{{{BlunderKind::sign, -1.0},
-                                                                  {BlunderKind::inch, 25.4},
-                                                                  {BlunderKind::per_inch, 1 / 25.4},
-                                                                  {BlunderKind::metre, 1000.0},
-                                                                  {BlunderKind::per_metre, 1e-3}}};
-constexpr std::array<std::pair<BlunderKind, double>, 4> kPositionFactors{
-    {{BlunderKind::position_inch, 25.4},
-     {BlunderKind::position_per_inch, 1 / 25.4},
-     {BlunderKind::position_metre, 1000.0},
-     {BlunderKind::position_per_metre, 1e-3}}};
-// Of the time of the cut: a start that was forgotten, or is one of another cut.
-constexpr std::array<double, 12> kShifts{-2.0,   -1.0,  -0.5, -0.25, -0.125, -0.0625,
-                                         0.0625, 0.125, 0.25, 0.5,   1.0,    2.0};
-constexpr int kHalvings = 6;  // of the step in which the best of these is moved
-
-double length_of(const Profile& profile) { return profile.setup.last_mm - profile.setup.first_mm; }
+constexpr int kHalvings = 6;  // of the step in which the best start of a cut is moved
 
 Profile multiplied(Profile profile, double factor) {
   for (double& value : profile.values) value *= factor;
   return profile;
 }
 
-/// Another unit of the positions that makes a trace about as long as one of the others, where it is
-/// as long as none.
-std::optional<Hypothesis> other_position_unit(const Profile& profile,
-                                              const std::vector<double>& other_lengths) {
-  const auto is_as_long = [&](double factor) {
-    return std::ranges::any_of(other_lengths, [&](double length) {
-      return std::abs(std::log(length / (factor * length_of(profile)))) < 0.5 * std::log(25.4);
-    });
-  };
-  if (is_as_long(1.0)) return std::nullopt;
-  for (const auto& [kind, factor] : kPositionFactors)
-    if (is_as_long(factor)) return Hypothesis{kind, 1.0, rescaled(profile, factor)};
-  return std::nullopt;
+/// Most likely first, those within Gates::tie_bic of it.
+std::vector<Blunder> likeliest(std::vector<Blunder> found, const Gates& gates) {
+  std::ranges::stable_sort(found, {}, &Blunder::delta_bic);
+  std::erase_if(found, [&](const Blunder& each) {
+    return each.delta_bic > found.front().delta_bic + gates.tie_bic;
+  });
+  return found;
 }
 
-/// @param is_reversal  others were read the other way round: with the other sign what is the
-///                     slide's and what is the artefact's would change places, and both fit
-std::vector<Hypothesis> hypotheses(const Profile& profile, const std::vector<double>& other_lengths,
-                                   bool is_reversal) {
-  const Setup& setup = profile.setup;
-  std::vector<Hypothesis> out;
-  for (const auto& [kind, factor] : kFactors)
-    if (kind != BlunderKind::sign || !is_reversal) out.push_back({kind, factor, {}});
-  if (auto other = other_position_unit(profile, other_lengths)) out.push_back(*std::move(other));
-  if (!setup.cut_direction || !setup.feed_mm_per_min) return out;
-  Profile other = profile;
-  other.setup.cut_direction =
-      *setup.cut_direction == CutDirection::inward ? CutDirection::outward : CutDirection::inward;
-  out.push_back({BlunderKind::cut_direction, 1.0, other});
-  other.setup.cut_direction = setup.cut_direction;
-  const double length = setup.cut_radius_mm.value_or(length_of(profile));
-  const double duration = kMinute * length / *setup.feed_mm_per_min;
-  for (const double share : kShifts) {
-    other.setup.start_s = setup.start_s + share * duration;
-    out.push_back({BlunderKind::clock, 1.0, other});
+/// Repeats say by themselves which of them is wrong, whatever the model makes of it: a curve
+/// follows the one that was recorded in too large a unit, and takes the others for noise.
+std::vector<Blunder> among_repeats(const Linearisation& linear, const Gates& gates) {
+  std::vector<double> factors;
+  for (const auto& [kind, factor] : kFactors) factors.push_back(factor);
+  std::vector<Blunder> out;
+  for (const ScaledRepeat& each : scaled_repeats(linear, factors, gates)) {
+    const Profile& profile = *linear.observations[each.profile]->profile;
+    const auto own =
+        std::ranges::find(kFactors, each.factor, &decltype(kFactors)::value_type::second);
+    if (is_possible(own->first, profile.setup))
+      out.push_back({profile.name, own->first, each.delta_bic, each.left});
   }
-  return out;
+  return likeliest(std::move(out), gates);
 }
 
 class Finder {
@@ -97,19 +63,16 @@ class Finder {
   [[nodiscard]] std::vector<Blunder> find() const {
     std::vector<std::vector<Blunder>> of_each(noise_.size());
     parallel_for(noise_.size(), [&](std::size_t i) {
-      try_profile(i, hypotheses_of(i), [&](const Blunder& each, const Hypothesis&) {
+      try_profile(i, hypotheses_of(i), [&](const Blunder& each, const BlunderHypothesis&) {
         if (each.left <= model_.gates.blunder_left) of_each[i].push_back(each);
       });
     });
     std::vector<Blunder> out;
     for (const std::vector<Blunder>& each : of_each)
       out.insert(out.end(), each.begin(), each.end());
+    if (noise_.size() > 2) return likeliest(std::move(out), model_.gates);
     std::ranges::stable_sort(out, {}, &Blunder::delta_bic);
-    if (noise_.size() > 2)  // two that disagree do not say which of them is wrong
-      std::erase_if(out, [&](const Blunder& each) {
-        return each.delta_bic > out.front().delta_bic + model_.gates.tie_bic;
-      });
-    return out;
+    return out;  // two that disagree do not say which of them is wrong
   }
 
   [[nodiscard]] std::vector<CorrectedBlunder> find_in(const std::string& profile) const {
@@ -117,10 +80,10 @@ class Finder {
     for (std::size_t i = 0; i < noise_.size(); ++i) {
       const Profile& own = *fit_.linear.observations[i]->profile;
       if (own.name != profile) continue;
-      std::vector<Hypothesis> list = hypotheses_of(i);
-      std::erase_if(list, [](const Hypothesis& each) { return is_of_positions(each.kind); });
+      std::vector<BlunderHypothesis> list = hypotheses_of(i);
+      std::erase_if(list, [](const BlunderHypothesis& each) { return is_of_positions(each.kind); });
       std::optional<CorrectedBlunder> start;
-      const auto tell = [&](const Blunder& each, const Hypothesis& by) {
+      const auto tell = [&](const Blunder& each, const BlunderHypothesis& by) {
         if (each.what == BlunderKind::clock) {  // it may come nearer once it is moved
           if (!start || each.delta_bic < start->blunder.delta_bic) start = {each, *by.profile};
         } else if (each.left <= model_.gates.blunder_left) {
@@ -153,7 +116,7 @@ class Finder {
     std::erase_if(found, [&](const CorrectedBlunder& each) { return cost(each) > most; });
   }
 
-  [[nodiscard]] std::vector<Hypothesis> hypotheses_of(std::size_t i) const {
+  [[nodiscard]] std::vector<BlunderHypothesis> hypotheses_of(std::size_t i) const {
     const Profile& profile = *fit_.linear.observations[i]->profile;
     const bool is_reversal =
         std::ranges::any_of(fit_.linear.observations, [&](const Observation* each) {
@@ -205,10 +168,11 @@ class Finder {
 
   /// A profile's values as all its hypotheses are held against: where another unit is one of them,
   /// what lies at the spindle axis is left out by the positions in that unit.
-  [[nodiscard]] Observation recorded(std::size_t i, const std::vector<Hypothesis>& list) const {
+  [[nodiscard]] Observation recorded(std::size_t i,
+                                     const std::vector<BlunderHypothesis>& list) const {
     Observation out = *fit_.linear.observations[i];
     const Profile& own = *out.profile;
-    const auto rescaled = std::ranges::find_if(list, [&](const Hypothesis& each) {
+    const auto rescaled = std::ranges::find_if(list, [&](const BlunderHypothesis& each) {
       return each.profile && each.profile->positions != own.positions;
     });
     if (rescaled == list.end()) return out;
@@ -284,7 +248,8 @@ class Finder {
   /// sisters', or half as unlike, in ln, as it was recorded; that of its own fine band is enough.
   /// Where that was like its sisters' as recorded, the unit is right.
   template <typename Told>
-  void try_profile(std::size_t i, const std::vector<Hypothesis>& list, const Told& tell) const {
+  void try_profile(std::size_t i, const std::vector<BlunderHypothesis>& list,
+                   const Told& tell) const {
     const Gates& gates = model_.gates;
     const std::optional<std::size_t> of_sister = sister(i);
     const Noise& noise = noise_[of_sister.value_or(i)];
@@ -309,7 +274,7 @@ class Finder {
     };
     const AsItIs in_another_unit = shows_own ? AsItIs(in(1.0)) : in_another_setup;
     const double own = in_long_run_[i] / in_long_run_[of_sister.value_or(i)];
-    for (const Hypothesis& each : list) {
+    for (const BlunderHypothesis& each : list) {
       observation.profile = each.profile ? &*each.profile : &profile;
       const AsItIs& as_it_is = each.profile ? in_another_setup : in_another_unit;
       const Prediction meant = each.profile
@@ -359,9 +324,10 @@ class Finder {
 }  // namespace
 
 std::vector<Blunder> find_blunders(const FittedModel& fitted) {
-  if (fitted.fit.linear.observations.size() < 2 || fitted.fit.linear.prior_rows.cols() == 0)
-    return {};
-  return Finder(fitted).find();
+  const Linearisation& linear = fitted.fit.linear;
+  if (linear.observations.size() < 2 || linear.prior_rows.cols() == 0) return {};
+  std::vector<Blunder> out = among_repeats(linear, fitted.model.gates);
+  return out.empty() ? Finder(fitted).find() : out;
 }
 
 std::vector<CorrectedBlunder> find_blunders_in(const FittedModel& fitted,

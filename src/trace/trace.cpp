@@ -5,9 +5,11 @@
 
 #include "advice.hpp"
 #include "blunder.hpp"
+#include "blunder_rival.hpp"
 #include "cross_validation.hpp"
 #include "detection.hpp"
 #include "disagreement.hpp"
+#include "fine_line.hpp"
 #include "fit_numbers.hpp"
 #include "forms.hpp"
 #include "instrument.hpp"
@@ -61,7 +63,7 @@ class Loop {
   Selection selected(TraceResult& out) {
     const Gates& gates = problem_.trace.gates;
     std::vector<Blunder> blunders = find_blunders(extender_.base());
-    if (!blunders.empty() && explained_by_an_effect(blunders)) blunders.clear();
+    if (!blunders.empty() && explained_by_an_effect(blunders, extender_)) blunders.clear();
     blunders = held_against_time(std::move(blunders), problem_, extender_, shown_);
     Selection selection = blunders.empty() ? select_effects(problem_, statistics_, gates, progress_)
                                            : nothing_selected(extender_, gates);
@@ -167,36 +169,6 @@ class Loop {
     say_why_refused(otherwise, out);
   }
 
-  /// Whether an effect of all profiles leaves less of the residual than the blunder that leaves
-  /// least, or leaves no profile that disagrees: the sign of a drift, too, turns with the direction
-  /// of the cut. None outweighs a trace that is as long as no other, and as some in another unit.
-  bool explained_by_an_effect(const std::vector<Blunder>& blunders) {
-    if (is_of_positions(blunders.front().what)) return false;
-    const SearchRound& round = extender_.search({});
-    const double square = round.data.residual().squaredNorm();
-    const auto noise = static_cast<double>(round.data.values());
-    const double least = std::ranges::min(blunders, {}, &Blunder::left).left;
-    const TestedCandidate* best = nullptr;
-    for (const TestedCandidate& each : round.tested) {
-      const Candidate& candidate = *each.refined.candidate;
-      if (!candidate.term.profiles.empty() || candidate.term.effect->is_carriage() ||
-          !each.refused(problem_.trace.gates).empty())
-        continue;
-      const double rest = std::max(square - each.refined.projection.gain - noise, 0.0);
-      if (rest < problem_.trace.gates.blunder_rival * least * (square - noise)) return true;
-      if (!best || each.refined.projection.gain > best->refined.projection.gain) best = &each;
-    }
-    return best && all_agree_beside(*best);
-  }
-
-  bool all_agree_beside(const TestedCandidate& effect) {
-    const FittedModel& fitted =
-        extender_.extended({{effect.refined.candidate, effect.refined.shape, {}}});
-    return !lack_of_fit(fitted.fit.linear, fitted.fit.noise, problem_.trace.gates)
-                .significant(problem_.trace.gates) &&
-           find_blunders(fitted).empty();
-  }
-
   /// The residuals of the rounds as if the effects had been added one after the other.
   void tell_rounds(std::vector<AcceptedEffect>& effects) {
     std::vector<AcceptedEffect> so_far;
@@ -285,6 +257,11 @@ class Loop {
       const double evidence = shared_evidence(fitted);
       found_p = std::min(found_p, std::exp(-evidence));
       is_wrong = evidence > gates.shared_evidence;
+    }
+    if (const auto line = fine_line(fitted.fit.linear, last.data.noise(), gates)) {
+      found_p = std::min(found_p, line->p_value);
+      is_wrong = true;
+      out.advice.push_back(fine_line_advice(*line));
     }
     const TestedCandidate* const wave = folded_wave(last, gates);
     if (wave) {

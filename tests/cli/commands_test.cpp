@@ -98,7 +98,7 @@ const BadUsage kBadUsages[] = {
      {"rank: unknown option '--strict'", "accepted:"}},
     {"TimeLimitThatIsNoTime",
      {"identify", "problem.toml", "--time-limit", "-1"},
-     {"identify: --time-limit: accepted: seconds above 0"}},
+     {"identify: --time-limit: accepted: seconds above 0 and below 1e9"}},
     {"MissingOptionValue",
      {"identify", "problem.toml", "--json"},
      {"identify:", "'--json' is missing", "usage: slideway identify PROBLEM"}},

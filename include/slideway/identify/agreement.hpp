@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,19 @@ std::vector<OddRepeat> odd_repeats(const Linearisation& linear, const Gates& gat
 /// odd_repeats(); 1 where fewer than two do.
 double probability_beside_repeats(const Linearisation& linear, std::size_t profile,
                                   const Gates& gates);
+
+/// One of three repeats or more that agrees with the others where its values are multiplied.
+struct ScaledRepeat {
+  std::size_t profile = 0;  // index of the fitted one
+  double factor = 1.0;
+  double delta_bic = 0.0;  // against a noise of its own size
+  double left = 0.0;       // of the square of its difference from the others
+};
+
+/// Those that pass Gates::blunder_bic and Gates::blunder_left. No model is asked: the others show
+/// what each should read.
+std::vector<ScaledRepeat> scaled_repeats(const Linearisation& linear,
+                                         std::span<const double> factors, const Gates& gates);
 
 /// What the repeats of each group have in common and the model lacks; not the odd ones.
 ///

@@ -62,6 +62,8 @@ enum class BlunderKind {
   per_inch,
   metre,
   per_metre,
+  arcsecond,
+  per_arcsecond,
   position_inch,
   position_per_inch,
   position_metre,
@@ -70,12 +72,14 @@ enum class BlunderKind {
   clock
 };
 template <>
-inline constexpr std::array<std::string_view, 11> kTexts<BlunderKind>{
+inline constexpr std::array<std::string_view, 13> kTexts<BlunderKind>{
     "wrong sign",
     "values 25.4 times too small",
     "values 25.4 times too large",
     "values 1000 times too small",
     "values 1000 times too large",
+    "values 4.85 times too small",
+    "values 4.85 times too large",
     "positions 25.4 times too small",
     "positions 25.4 times too large",
     "positions 1000 times too small",

@@ -701,7 +701,7 @@ class Blunder:
 
     profile: str
     what: Literal[
-        "wrong sign", "values 25.4 times too small", "values 25.4 times too large", "values 1000 times too small", "values 1000 times too large", "positions 25.4 times too small", "positions 25.4 times too large", "positions 1000 times too small", "positions 1000 times too large", "wrong cut_direction", "wrong start_s"
+        "wrong sign", "values 25.4 times too small", "values 25.4 times too large", "values 1000 times too small", "values 1000 times too large", "values 4.85 times too small", "values 4.85 times too large", "positions 25.4 times too small", "positions 25.4 times too large", "positions 1000 times too small", "positions 1000 times too large", "wrong cut_direction", "wrong start_s"
     ]
     delta_bic: float
     """against the profile as it is"""
