@@ -77,8 +77,8 @@ class Head {
   [[nodiscard]] std::size_t find_column(const std::string& request,
                                         const std::vector<std::string>& names) const;
   [[nodiscard]] char decimal_of(const Dialect& dialect) const;
-  void refuse_commas_for_both(const Line& row, const Dialect& dialect,
-                              std::size_t named_columns) const;
+  void refuse_ambiguous_commas(const Line& row, const Dialect& dialect,
+                               std::size_t named_columns) const;
 
   std::string_view text_;
   const TableRequest* request_;
@@ -264,20 +264,20 @@ char Head::decimal_of(const Dialect& dialect) const {
   return '.';
 }
 
-// "1,5,2,5" under two names: nobody can tell which comma is which.
-void Head::refuse_commas_for_both(const Line& row, const Dialect& dialect,
-                                  std::size_t named_columns) const {
-  if (dialect.delimiter != ',' || named_columns < 2) return;
+// "1,5,2,5" or "3,759.1,2" under two names: nobody can tell which comma is which.
+void Head::refuse_ambiguous_commas(const Line& row, const Dialect& dialect,
+                                   std::size_t named_columns) const {
+  if (dialect.delimiter != ',' || !request_->decimal.empty() || named_columns < 2) return;
   auto fields = split(row.text, dialect.delimiter);
   while (!fields.empty() && fields.back().empty()) fields.pop_back();
   const std::string place = "line " + std::to_string(row.number) + ": " +
                             std::to_string(fields.size()) + " fields under " +
                             std::to_string(named_columns) + " names; ";
-  if (request_->decimal.empty() && fields.size() == 2 * named_columns)
+  if (fields.size() == 2 * named_columns)
     throw DataError(place +
                     "decimal commas between commas are ambiguous (if they are none, say decimal = "
                     "\".\")");
-  if (!words_.empty() && request_->decimal.empty() && fields.size() > named_columns)
+  if (!words_.empty() && fields.size() > named_columns)
     throw DataError(place +
                     "a comma within a number is ambiguous (if each is a column, name all, or ask "
                     "for columns by their numbers)");
@@ -331,7 +331,7 @@ Dialect Head::dialect() {
     dialect.units.push_back(dialect.header_units[dialect.columns.back()]);
   }
   if (!dialect.columns.empty()) {
-    refuse_commas_for_both(row, dialect, named);
+    refuse_ambiguous_commas(row, dialect, named);
     dialect.decimal = request_->decimal.empty() ? decimal_of(dialect) : request_->decimal[0];
   }
   dialect.decision = in_words(dialect, encoding_, first);

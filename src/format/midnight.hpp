@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "fields.hpp"
 #include "slideway/base/error.hpp"
@@ -19,7 +21,7 @@ class Midnight {
       "zone";
 
   void count_on(std::span<double> times, std::size_t of_clock, const ClockForm& form) {
-    if (form_.value_or(form) != form) throw DataError("has " + std::string(kOneForm));
+    if (form_ && *form_ != form) throw DataError("has " + std::string(kOneForm));
     form_ = form;
     for (double& time : times) {
       if (std::isnan(time)) continue;
@@ -32,9 +34,9 @@ class Midnight {
   }
 
  private:
-  std::optional<ClockForm> form_;
   static constexpr double kDay = 86400.0;  // s
-  std::optional<double> first_;            // midnight; 0 without a date
+  std::optional<ClockForm> form_;
+  std::optional<double> first_;  // midnight; 0 without a date
   double last_ = 0.0;
 };
 

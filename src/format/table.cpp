@@ -214,9 +214,9 @@ void Reader::read_irregular_row() {
     auto value = parse_number(field, dialect_.decimal);
     if (!value && target.may_be_clock && (value = clock_time(field))) {
       ++target.clocks;
-      if (target.form.value_or(clock_form(field)) != clock_form(field))
-        refuse(": " + std::string(Midnight::kOneForm));
-      target.form = clock_form(field);
+      const ClockForm form = clock_form(field);
+      if (target.form && *target.form != form) refuse(": " + std::string(Midnight::kOneForm));
+      target.form = form;
     }
     if (!value || !std::isfinite(*value)) refuse_field(field, target.column);
     target.value = *value;

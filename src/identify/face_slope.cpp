@@ -66,6 +66,8 @@ Eigen::RowVectorXd rms_slope_by_amplitude(const Model& model, const Estimate& es
   const std::optional<LinearSlope> linear = linear_slope(model, estimate);
   if (!linear) return Eigen::RowVectorXd::Zero(model.amplitudes());
   const FaceSlope slope = slope_of(*linear, estimate);
+  // Of a flat face the root grows alike in every direction.
+  if (!(slope.rms() > 0.0)) return Eigen::RowVectorXd::Zero(model.amplitudes());
   const Eigen::Map<const Eigen::RowVectorXd> values(slope.values.data(), std::ssize(slope.values));
   return values * linear->by_amplitude / (slope.rms() * static_cast<double>(values.size()));
 }

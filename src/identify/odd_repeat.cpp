@@ -33,33 +33,37 @@ Eigen::MatrixXd slow_parts(const Linearisation& linear, const std::vector<Eigen:
   return orthonormal(std::move(cosines)).transpose() * parts;
 }
 
-Eigen::VectorXd smoothed(Eigen::VectorXd spectrum) {
+RepeatBeside::RepeatBeside(const Eigen::MatrixXd& parts, Eigen::Index which, double factor)
+    : off(parts.rows(), parts.cols()) {
+  const auto count = static_cast<double>(parts.cols());
+  const Eigen::VectorXd mean = (parts.rowwise().sum() - parts.col(which)) / (count - 1.0);
+  off.col(0) = std::sqrt((count - 1.0) / count) * (factor * parts.col(which) - mean);
+  for (Eigen::Index k = 0, next = 1; k < parts.cols(); ++k)
+    if (k != which) off.col(next++) = parts.col(k) - mean;
+}
+
+double freedom_of(const Eigen::MatrixXd& deviations) {
+  Eigen::VectorXd spectrum = deviations.rowwise().squaredNorm();
   for (Eigen::Index first = 0, count = 1; first < spectrum.size(); first += count, count *= 2) {
     auto octave = spectrum.segment(first, std::min(count, spectrum.size() - first));
     octave.setConstant(octave.mean());
   }
-  return spectrum;
+  return std::pow(spectrum.sum(), 2) / spectrum.squaredNorm();
 }
 
 namespace {
 
 /// Probability that noise makes one of m repeats differ as much from the others. Both mean squares
-/// have the spectrum of the noise: their degrees of freedom are those of a sum of unequal squares
-/// (Satterthwaite 1946). All repeats show it, this one too: two others alone would now and then
-/// show less of a slow noise than there is.
+/// have the spectrum of the noise. All repeats show it, this one too: two others alone would now
+/// and then show less of a slow noise than there is.
 double probability_beside(const Eigen::MatrixXd& parts, Eigen::Index which) {
-  const auto count = static_cast<double>(parts.cols());
-  const Eigen::VectorXd mean = (parts.rowwise().sum() - parts.col(which)) / (count - 1.0);
-  const double square = (count - 1.0) / count * (parts.col(which) - mean).squaredNorm();
-  Eigen::MatrixXd others = parts.colwise() - mean;
-  others.col(which).setZero();
-  const double expected = others.squaredNorm() / (count - 2.0);
-  if (!(expected > 0.0)) return square > 0.0 ? 0.0 : 1.0;
-  const Eigen::VectorXd spectrum =
-      smoothed((parts.colwise() - parts.rowwise().mean()).rowwise().squaredNorm());
-  const double freedom = std::pow(spectrum.sum(), 2) / spectrum.squaredNorm();
-  const double rest = (count - 2.0) * freedom;
-  return beta_share(0.5 * rest, 0.5 * freedom, rest / (rest + freedom * square / expected));
+  const RepeatBeside beside(parts, which);
+  const auto others = static_cast<double>(parts.cols() - 2);
+  const double expected = beside.others() / others;
+  if (!(expected > 0.0)) return beside.own() > 0.0 ? 0.0 : 1.0;
+  const double freedom = freedom_of(parts.colwise() - parts.rowwise().mean());
+  const double rest = others * freedom;
+  return beta_share(0.5 * rest, 0.5 * freedom, rest / (rest + freedom * beside.own() / expected));
 }
 
 }  // namespace

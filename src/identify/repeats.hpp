@@ -54,8 +54,21 @@ inline constexpr std::size_t kLeastRepeats = 3;  // of two, either may be the od
 Eigen::MatrixXd slow_parts(const Linearisation& linear, const std::vector<Eigen::VectorXd>& of_each,
                            const std::vector<std::size_t>& group, const Gates& gates);
 
-/// Means over octaves of frequency.
-Eigen::VectorXd smoothed(Eigen::VectorXd spectrum);
+/// One repeat of a group, its slow parts multiplied by a factor, beside the others.
+struct RepeatBeside {
+  /// What it is off the mean of the others, of the variance that one reading has; then what each of
+  /// these is off that mean.
+  Eigen::MatrixXd off;
+
+  RepeatBeside(const Eigen::MatrixXd& parts, Eigen::Index which, double factor = 1.0);
+
+  [[nodiscard]] double own() const { return off.col(0).squaredNorm(); }
+  [[nodiscard]] double others() const { return off.rightCols(off.cols() - 1).squaredNorm(); }
+};
+
+/// Degrees of freedom in each column of deviations, means over octaves of frequency taken for their
+/// spectrum: those of a sum of unequal squares (Satterthwaite 1946).
+double freedom_of(const Eigen::MatrixXd& deviations);
 
 /// Residual of a profile less the mean of its repeats at the same stations, of the size its noise
 /// has; nothing where no other profile repeats it, or where it is odd. Stations that a repeat lacks

@@ -43,10 +43,9 @@ std::vector<Blunder> among_repeats(const Linearisation& linear, const Gates& gat
   std::vector<Blunder> out;
   for (const ScaledRepeat& each : scaled_repeats(linear, factors, gates)) {
     const Profile& profile = *linear.observations[each.profile]->profile;
-    const auto own =
-        std::ranges::find(kFactors, each.factor, &decltype(kFactors)::value_type::second);
-    if (is_possible(own->first, profile.setup))
-      out.push_back({profile.name, own->first, each.delta_bic, each.left});
+    const BlunderKind kind = kFactors[each.factor].first;
+    if (is_possible(kind, profile.setup))
+      out.push_back({profile.name, kind, each.delta_bic, each.left});
   }
   return likeliest(std::move(out), gates);
 }

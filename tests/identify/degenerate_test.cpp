@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "face_slope.hpp"
 #include "identify/cases.hpp"
 #include "noise_bounds.hpp"
 #include "slideway/base/random.hpp"
@@ -203,6 +204,14 @@ TEST(Degenerate, ALossThatLeavesNoValueWholeHasAFiniteResidual) {
       identify(problem(Lever::paper, 0, {effect("squareness")}), profiles, Scope::fit);
   EXPECT_TRUE(std::isfinite(result.declared->chi_square));
   EXPECT_TRUE(result.declared->rms_um && std::isfinite(*result.declared->rms_um));
+}
+
+// The root of the mean square of nothing has no derivative: U of a height off centre was no number.
+TEST(Degenerate, TheSlopeOfAFlatFaceGrowsAlikeInEveryDirection) {
+  const std::vector<Profile> profiles{face("a", 8.0, spaced(-40, 40, 80), rough(80, 1e-4))};
+  const Model model =
+      build_model(problem(Lever::paper, 0, {effect("squareness"), effect("centring")}), profiles);
+  EXPECT_TRUE(rms_slope_by_amplitude(model, initial_estimate(model)).isZero());
 }
 
 }  // namespace

@@ -53,9 +53,9 @@ double probability_beside_repeats(const Linearisation& linear, std::size_t profi
 /// One of three repeats or more that agrees with the others where its values are multiplied.
 struct ScaledRepeat {
   std::size_t profile = 0;  // index of the fitted one
-  double factor = 1.0;
-  double delta_bic = 0.0;  // against a noise of its own size
-  double left = 0.0;       // of the square of its difference from the others
+  std::size_t factor = 0;   // index
+  double delta_bic = 0.0;   // against a noise of its own size
+  double left = 0.0;        // of the square of its difference from the others
 };
 
 /// Those that pass Gates::blunder_bic and Gates::blunder_left. No model is asked: the others show
