@@ -81,13 +81,16 @@ Eigen::VectorXd fitted_nuisances(const Observation& observation, const Eigen::Ve
 
 Eigen::MatrixXd linear_columns(const Model& model, const Estimate& estimate,
                                const Observation& observation) {
+  constexpr double kLeastColumn = 1e-100;  // a smaller one has no square: nothing shows the effect
   const Eigen::Index a = model.amplitudes();
   Eigen::MatrixXd columns(observation.values.size(), a + model.shapes());
   for (const ModelTerm& term : model.terms) {
     const auto shape = shapes_of(term, estimate.shapes);
     const Eigen::Index count = term.effect->amplitudes();
-    columns.middleCols(term.first_amplitude, count) =
-        low_band_columns(model, term, observation, shape);
+    auto own = columns.middleCols(term.first_amplitude, count);
+    own = low_band_columns(model, term, observation, shape);
+    for (auto column : own.colwise())
+      if (column.lpNorm<Eigen::Infinity>() < kLeastColumn) column.setZero();
     if (shape.empty()) continue;
     columns.middleCols(a + term.first_shape, std::ssize(shape)) = low_band_slopes(
         model, term, observation, shape, estimate.amplitudes.segment(term.first_amplitude, count));

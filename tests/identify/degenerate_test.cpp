@@ -214,5 +214,18 @@ TEST(Degenerate, TheSlopeOfAFlatFaceGrowsAlikeInEveryDirection) {
   EXPECT_TRUE(rms_slope_by_amplitude(model, initial_estimate(model)).isZero());
 }
 
+// A roll-off of a rim that the trace does not reach falls by e for each of its widths: it is there
+// to 1e-160, whose square is no number. It had an amplitude of 1e165 µm, and U was no number.
+TEST(Degenerate, AnEffectThatIsFarBelowWhatASquareHoldsIsNotDetermined) {
+  Profile face_a = face("a", 8.0, spaced(0, 200, 60), rough(60, 1e-4));
+  face_a.setup.cut_radius_mm = 600.0;
+  const std::vector<Profile> profiles{face_a};
+  const Model model = build_model(problem(Lever::paper, 0, {effect("edge_roll_off")}), profiles);
+  Estimate estimate = initial_estimate(model);
+  estimate.shapes[0] = 1.0;
+  const Eigen::MatrixXd columns = linear_columns(model, estimate, model.observations[0]);
+  EXPECT_TRUE(columns.leftCols(model.amplitudes()).isZero(0.0));
+}
+
 }  // namespace
 }  // namespace slideway::degenerate_test
