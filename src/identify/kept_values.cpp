@@ -10,7 +10,9 @@
 namespace slideway {
 namespace {
 
-constexpr double kEven = 0.1;     // relative: no step between values is longer than this
+constexpr double kEven = 0.1;  // relative: no step between values is longer than this
+constexpr double kMostOutside =
+    0.5;                          // of an orthonormal basis: it stays one of independent columns
 constexpr double kGrid = 1024.0;  // places of a station in a step: more is jitter
 
 /// Stations of the low-band values in their median step, for the noise between two of them; empty
@@ -50,7 +52,12 @@ LinearProfile kept(LinearProfile profile, const Observation& observation) {
     std::ranges::transform(rows, profile.stations.begin(),
                            [&](Eigen::Index row) { return profile.trace[row]; });
   profile.stations.resize(rows.size());
-  profile.nuisances = orthonormal(profile.nuisances(rows, Eigen::all));
+  const bool are_independent =
+      (profile.nuisances(left_out, Eigen::all).colwise().squaredNorm().array() /
+       profile.nuisances.colwise().squaredNorm().array())
+          .sum() < kMostOutside;
+  profile.nuisances = profile.nuisances(rows, Eigen::all).eval();
+  if (!are_independent) profile.nuisances = orthonormal(std::move(profile.nuisances));
   profile.columns = profile.columns(rows, Eigen::all).eval();
   if (profile.bounded.cols() > 0) profile.bounded = profile.bounded(rows, Eigen::all).eval();
   profile.residual = profile.residual(rows).eval();

@@ -105,12 +105,12 @@ ExponentialMixture memory_at(const MemoryPlace& place, double n, double traces) 
   return memory;
 }
 
-PoolMemory::PoolMemory(std::vector<const LinearProfile*> profiles, const Eigen::MatrixXd& rest,
+PoolMemory::PoolMemory(std::vector<const ProfileLikelihood*> profiles, const Eigen::MatrixXd& rest,
                        const Gates& gates)
     : profiles_(std::move(profiles)), rest_(rest), gates_(gates) {
   Eigen::VectorXd start(std::ssize(profiles_));
   for (std::size_t i = 0; i < profiles_.size(); ++i) {
-    const LinearProfile& profile = *profiles_[i];
+    const LinearProfile& profile = profiles_[i]->profile();
     values_ = std::max(values_, profile.extent());
     const auto own = static_cast<double>(profile.residual.size() - profile.nuisances.cols());
     start[static_cast<Eigen::Index>(i)] =
@@ -134,7 +134,8 @@ PoolMemory::PoolMemory(std::vector<const LinearProfile*> profiles, const Eigen::
 FittedSizes PoolMemory::evaluate(const MemoryPlace& place, const Eigen::VectorXd& from) const {
   const ExponentialMixture covariance = memory_at(place, values_, gates_.longest_memory);
   std::vector<ProfileInformation> information;
-  for (const LinearProfile* profile : profiles_) information.emplace_back(*profile, covariance);
+  for (const ProfileLikelihood* profile : profiles_)
+    information.push_back(profile->under(covariance));
   FittedSizes out = fit_sizes(information, rest_, gates_.noise_likeness, from);
   out.cost += prior_cost(place, gates_.memory_odds);
   if (std::isnan(out.cost)) out.cost = INFINITY;  // more digits than the information has

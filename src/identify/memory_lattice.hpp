@@ -29,7 +29,7 @@ ExponentialMixture memory_at(const MemoryPlace& place, double n, double traces);
 class PoolMemory {
  public:
   /// @param rest  r + 1 by r + 1: information of other pools and of priors
-  PoolMemory(std::vector<const LinearProfile*> profiles, const Eigen::MatrixXd& rest,
+  PoolMemory(std::vector<const ProfileLikelihood*> profiles, const Eigen::MatrixXd& rest,
              const Gates& gates);
 
   /// A memory the data allow.
@@ -53,7 +53,7 @@ class PoolMemory {
   void refine();
   void search();
 
-  std::vector<const LinearProfile*> profiles_;
+  std::vector<const ProfileLikelihood*> profiles_;
   const Eigen::MatrixXd& rest_;
   const Gates& gates_;
   double values_ = 0.0;  // of the longest trace

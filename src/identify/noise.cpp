@@ -37,10 +37,10 @@ class Estimator {
       pools_.resize(std::max(pools_.size(), profiles[i].pool + 1));
       pools_[profiles[i].pool].push_back(i);
       const double n = static_cast<double>(std::max<Eigen::Index>(profiles[i].residual.size(), 1));
-      information_[i] =
-          ProfileInformation(profiles[i],
-                             white_covariance(profiles[i].residual.norm() / std::sqrt(n)))
-              .of_shared(0.0);
+      likelihoods_.emplace_back(profiles[i]);
+      information_[i] = likelihoods_[i]
+                            .under(white_covariance(profiles[i].residual.norm() / std::sqrt(n)))
+                            .of_shared(0.0);
     }
     std::erase_if(pools_, [](const auto& pool) { return pool.empty(); });
   }
@@ -64,8 +64,8 @@ class Estimator {
   }
 
   void refine(const std::vector<std::size_t>& pool) {
-    std::vector<const LinearProfile*> members;
-    for (const std::size_t i : pool) members.push_back(&profiles_[i]);
+    std::vector<const ProfileLikelihood*> members;
+    for (const std::size_t i : pool) members.push_back(&likelihoods_[i]);
     const Eigen::MatrixXd rest = others(pool);
     const PoolMemory memory(members, rest, gates_);
     for (std::size_t k = 0; k < pool.size(); ++k) {
@@ -82,7 +82,7 @@ class Estimator {
       noise.pool = profile.pool;
       noise.freedom = memory.best().sizes.freedom[own];
       noise.unlike_sisters = unlike(memory.best().sizes.log_sizes, own);
-      information_[pool[k]] = ProfileInformation(profile, noise.covariance()).of_shared(0.0);
+      information_[pool[k]] = likelihoods_[pool[k]].under(noise.covariance()).of_shared(0.0);
     }
   }
 
@@ -102,7 +102,7 @@ class Estimator {
     Noise& noise = noise_[i];
     const Eigen::MatrixXd rest = others({i});
     const auto cost = [&](const ExponentialMixture& covariance) {
-      const ProfileInformation own(profile, covariance);
+      const ProfileInformation own = likelihoods_[i].under(covariance);
       return restricted_cost({&own, 1}, rest, Eigen::VectorXd::Zero(1));
     };
     const double gain = cost(white_covariance(*profile.declared)) - cost(noise.covariance());
@@ -117,6 +117,7 @@ class Estimator {
   }
 
   std::span<const LinearProfile> profiles_;
+  std::vector<ProfileLikelihood> likelihoods_;
   const Gates& gates_;
   Eigen::MatrixXd prior_;
   std::vector<std::vector<std::size_t>> pools_;
@@ -163,6 +164,7 @@ Noise Noise::scaled(double factor) const {
 }
 
 Noise Noise::repeated(const Weight& weight) const {
+  if (weight.memory == 1.0 && weight.white == 1.0) return *this;
   Noise out = *this;
   const auto multiply = [&](ExponentialMixture& covariance) {
     covariance.variances *= weight.memory;

@@ -92,12 +92,13 @@ std::optional<LinearProfile> fine_band(const Linearisation& linear, std::size_t 
                                        const std::vector<Eigen::MatrixXd>& suspect) {
   const Observation& observation = *linear.observations[i];
   const Eigen::Index n = observation.values.size();
-  Eigen::MatrixXd free = observation.nuisances, columns = linear.columns[i];
-  append_columns(free, slow_cosines(n, slow_cosine_count(n, gates)));
+  const Eigen::MatrixXd none(n, 0);
+  Eigen::MatrixXd basis = slow_cosines(n, slow_cosine_count(n, gates)), columns = linear.columns[i];
+  basis.colwise().normalize();  // orthogonal as they are
+  append_columns(basis, beyond(basis, none, observation.nuisances));
   if (!suspect.empty()) append_columns(columns, suspect[i]);
-  const auto [slow, lines] = parted(orthonormal(free), columns);
-  append_columns(free, slow);
-  Eigen::MatrixXd basis = orthonormal(std::move(free));
+  const auto [slow, lines] = parted(basis, columns);
+  append_columns(basis, beyond(basis, none, slow));
   if (n - basis.cols() < kLeastSpare) return std::nullopt;
   Eigen::VectorXd rest =
       without_lines(linear.residuals[i], basis, lines, near_half(observation), gates);
@@ -214,10 +215,18 @@ Eigen::Index slow_cosine_count(Eigen::Index n, const Gates& gates) {
 
 Eigen::MatrixXd slow_cosines(Eigen::Index n, Eigen::Index count) {
   Eigen::MatrixXd out(n, count);
-  for (Eigen::Index j = 0; j < count; ++j)
-    for (Eigen::Index i = 0; i < n; ++i)
-      out(i, j) = std::cos(kPi * static_cast<double>(j + 1) * (static_cast<double>(i) + 0.5) /
-                           static_cast<double>(n));
+  if (count == 0) return out;
+  const Eigen::ArrayXd angles = kPi / static_cast<double>(n) *
+                                Eigen::ArrayXd::LinSpaced(n, 0.5, static_cast<double>(n) - 0.5);
+  out.col(0) = angles.cos();
+  const Eigen::ArrayXd twice = 2.0 * out.col(0).array();
+  for (Eigen::Index j = 1; j < count; ++j) {  // cos((j + 1) φ) = 2 cos φ cos(j φ) - cos((j - 1) φ)
+    out.col(j) = twice * out.col(j - 1).array();
+    if (j > 1)
+      out.col(j) -= out.col(j - 2);
+    else
+      out.col(j).array() -= 1.0;
+  }
   return out;
 }
 

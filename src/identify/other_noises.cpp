@@ -18,10 +18,12 @@ class WholeCosts {
              const std::vector<Eigen::MatrixXd>& suspect, const std::vector<Noise>& noise)
       : gates_(gates) {
     const WholeResiduals whole(linear, noise, gates);
-    for (std::size_t i = 0; i < noise.size(); ++i) {
+    for (std::size_t i = 0; i < noise.size(); ++i)
       profiles_.push_back(kept(whole.of(i, suspect.empty() ? Eigen::MatrixXd() : suspect[i]),
                                *linear.observations[i]));
-      shared_.push_back(ProfileInformation(profiles_.back(), noise[i].covariance()).of_shared(0.0));
+    for (std::size_t i = 0; i < noise.size(); ++i) {
+      likelihoods_.emplace_back(profiles_[i]);
+      shared_.push_back(likelihoods_[i].under(noise[i].covariance()).of_shared(0.0));
     }
     const Eigen::MatrixXd priors = whole.priors();
     priors_ = Eigen::MatrixXd::Zero(priors.rows() + 1, priors.cols() + 1);
@@ -36,7 +38,7 @@ class WholeCosts {
       if (std::ranges::find(pool, i) == pool.end()) rest += shared_[i];
     std::vector<ProfileInformation> information;
     for (std::size_t k = 0; k < pool.size(); ++k)
-      information.emplace_back(profiles_[pool[k]], covariances[k]);
+      information.push_back(likelihoods_[pool[k]].under(covariances[k]));
     return fit_sizes(information, rest, gates_.noise_likeness,
                      Eigen::VectorXd::Zero(std::ssize(pool)))
         .cost;
@@ -45,6 +47,7 @@ class WholeCosts {
  private:
   const Gates& gates_;
   std::vector<LinearProfile> profiles_;
+  std::vector<ProfileLikelihood> likelihoods_;  // of these
   std::vector<Eigen::MatrixXd> shared_;
   Eigen::MatrixXd priors_;
 };

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "slideway/identify/linear_algebra.hpp"
@@ -34,6 +35,49 @@ Eigen::MatrixXd joint_information(std::span<const ProfileInformation> profiles,
   for (std::size_t i = 0; i < profiles.size(); ++i)
     joint += profiles[i].of_shared(log_sizes[static_cast<Eigen::Index>(i)]);
   return joint;
+}
+
+/// Neighbours among the values of a profile.
+std::vector<Run> runs_of(const LinearProfile& profile) {
+  const Eigen::Index n = profile.residual.size();
+  if (profile.stations.empty()) return {{0, n}};
+  std::vector<Run> out{{0, 1}};
+  for (Eigen::Index i = 1; i < n; ++i)
+    if (profile.stations[i] - profile.stations[i - 1] == 1.0)
+      ++out.back().second;
+    else
+      out.emplace_back(i, 1);
+  return out;
+}
+
+/// Whether means of 2^octaves neighbours hold nearly all values, and nearly all of every column.
+bool are_slow(const LinearProfile& profile, const std::vector<Run>& runs, int octaves) {
+  constexpr double kHeld = 0.9;    // of a column's square: what it says of a noise hardly changes
+  constexpr double kWhole = 0.99;  // of the values
+  const double block = std::exp2(octaves);
+  double whole = 0.0;
+  for (const auto& [first, count] : runs) whole += block * static_cast<double>(count >> octaves);
+  if (whole < kWhole * static_cast<double>(profile.residual.size())) return false;
+  const auto hold = [&](const Eigen::MatrixXd& columns) {
+    const Eigen::MatrixXd means = block_means(columns, runs, octaves);
+    return (block * means.colwise().squaredNorm().array() >=
+            kHeld * columns.colwise().squaredNorm().array())
+        .all();
+  };
+  return hold(profile.columns) && hold(profile.bounded);
+}
+
+LinearProfile in_means(const LinearProfile& profile, const std::vector<Run>& runs, int octaves) {
+  LinearProfile out;
+  out.nuisances = orthonormal(block_means(profile.nuisances, runs, octaves));
+  out.columns = block_means(profile.columns, runs, octaves);
+  out.bounded = block_means(profile.bounded, runs, octaves);
+  out.residual = block_means(profile.residual, runs, octaves);
+  for (const auto& [first, count] : runs)
+    for (Eigen::Index i = 0; runs.size() > 1 && i < count >> octaves; ++i)
+      out.stations.push_back(std::ldexp(profile.stations[first], -octaves) +
+                             static_cast<double>(i));
+  return out;
 }
 
 }  // namespace
@@ -67,6 +111,13 @@ ProfileInformation::ProfileInformation(const LinearProfile& profile,
   between_ = turned.eigenvectors().transpose() * own.topRightCorner(q, r + 1);
 }
 
+void ProfileInformation::add(const OctavePowers& faster, const ExponentialMixture& covariance) {
+  const OctavePowers::Fit fit = faster.under(covariance);
+  freedom += faster.count();
+  log_determinants += fit.log_determinant;
+  gram_(gram_.rows() - 1, gram_.cols() - 1) += fit.square;
+}
+
 Eigen::MatrixXd ProfileInformation::of_shared(double log_size) const {
   const double square = std::exp(2.0 * log_size);
   Eigen::MatrixXd out = gram_ / square;
@@ -92,6 +143,28 @@ double ProfileInformation::taken_by_bounded(double log_size) const {
 
 double ProfileInformation::log_determinant_of_bounded(double log_size) const {
   return (bounded_ * std::exp(-2.0 * log_size)).log1p().sum();
+}
+
+ProfileLikelihood::ProfileLikelihood(const LinearProfile& profile) : profile_(&profile) {
+  constexpr double kLong = 8192.0;   // values: fewer are quick enough
+  constexpr double kFewest = 512.0;  // means: of noise slower than 256 cycles, all is kept
+  const auto n = static_cast<double>(profile.residual.size());
+  const auto free = static_cast<double>(profile.nuisances.cols() + profile.columns.cols() +
+                                        profile.bounded.cols());
+  if (n < kLong) return;
+  const std::vector<Run> runs = runs_of(profile);
+  auto octaves = static_cast<int>(std::log2(n / std::max(kFewest, 4.0 * free)));
+  while (octaves > 0 && !are_slow(profile, runs, octaves)) --octaves;
+  if (octaves > 0)
+    thinned_ = Thinned{in_means(profile, runs, octaves),
+                       OctavePowers(profile.residual, runs, octaves), std::exp2(octaves)};
+}
+
+ProfileInformation ProfileLikelihood::under(const ExponentialMixture& covariance) const {
+  if (!thinned_) return {*profile_, covariance};
+  ProfileInformation out(thinned_->means, covariance.of_means(thinned_->block));
+  out.add(thinned_->faster, covariance);
+  return out;
 }
 
 double restricted_cost(std::span<const ProfileInformation> profiles, const Eigen::MatrixXd& rest,

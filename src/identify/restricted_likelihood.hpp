@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "slideway/identify/noise.hpp"
+#include "slideway/signal/octave_powers.hpp"
 
 namespace slideway {
 
@@ -17,6 +19,9 @@ struct ProfileInformation {
   double freedom = 0.0;  // values without nuisances
 
   ProfileInformation(const LinearProfile& profile, const ExponentialMixture& covariance);
+
+  /// Of values that say nothing of (v, w), only of the covariance.
+  void add(const OctavePowers& faster, const ExponentialMixture& covariance);
 
   /// C / σ² - b' diag(1 / (σ² (σ² + a))) b. r + 1 by r + 1
   [[nodiscard]] Eigen::MatrixXd of_shared(double log_size) const;
@@ -32,6 +37,28 @@ struct ProfileInformation {
   Eigen::MatrixXd gram_;     // C
   Eigen::MatrixXd between_;  // b
   Eigen::ArrayXd bounded_;   // a
+};
+
+/// A profile that is asked for its information under one covariance after another.
+///
+/// Of a long one whose columns are slow, block means take its place, and the octaves beside them
+/// (OctavePowers): the cost of an answer no longer grows with the profile.
+class ProfileLikelihood {
+ public:
+  explicit ProfileLikelihood(const LinearProfile& profile);
+
+  [[nodiscard]] const LinearProfile& profile() const { return *profile_; }
+  [[nodiscard]] bool is_thinned() const { return thinned_.has_value(); }
+  [[nodiscard]] ProfileInformation under(const ExponentialMixture& covariance) const;
+
+ private:
+  struct Thinned {
+    LinearProfile means;
+    OctavePowers faster;
+    double block = 1.0;  // values in a mean
+  };
+  const LinearProfile* profile_;
+  std::optional<Thinned> thinned_;
 };
 
 /// Sizes σ_i of profiles whose covariances are known but for them, and -2 ln of their restricted

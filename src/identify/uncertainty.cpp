@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "restricted_likelihood.hpp"
 #include "slideway/base/distribution.hpp"
 #include "slideway/base/parallel.hpp"
 
@@ -16,12 +17,11 @@ constexpr double kLeastShare =
     0.05;                          // of the most probable noise: others move a variance by chance
 constexpr double kInfinite = 1e6;  // degrees of freedom: above it k is 2, and they are rounding
 
-/// Information of one profile on w under another noise, its nuisances eliminated.
-Eigen::MatrixXd information_under(const MixtureFactor& noise, const Observation& observation,
-                                  const Eigen::MatrixXd& columns) {
-  const Eigen::Index m = observation.nuisances.cols(), r = columns.cols();
-  Eigen::MatrixXd rows(columns.rows(), m + r);
-  rows << observation.nuisances, columns;
+/// Information of one profile on w under a noise, its nuisances eliminated.
+Eigen::MatrixXd information_under(const MixtureFactor& noise, const LinearProfile& profile) {
+  const Eigen::Index m = profile.nuisances.cols(), r = profile.columns.cols();
+  Eigen::MatrixXd rows(profile.columns.rows(), m + r);
+  rows << profile.nuisances, profile.columns;
   noise.whiten(rows);
   Eigen::MatrixXd gram = rows.transpose() * rows;
   if (m == 0) return gram;
@@ -29,6 +29,16 @@ Eigen::MatrixXd information_under(const MixtureFactor& noise, const Observation&
   return gram.bottomRightCorner(r, r) -
          cross.transpose() *
              gram.topLeftCorner(m, m).completeOrthogonalDecomposition().solve(cross);
+}
+
+/// What another noise adds to the information of one profile. Where block means may stand for it,
+/// both are of these.
+Eigen::MatrixXd more_information(const ProfileLikelihood& of, const Noise& noise,
+                                 const ExponentialMixture& other, const Eigen::MatrixXd& known) {
+  if (!of.is_thinned()) return information_under(noise.factored(other), of.profile()) - known;
+  const Eigen::Index r = known.rows();
+  return (of.under(other).of_shared(0.0) - of.under(noise.covariance()).of_shared(0.0))
+      .topLeftCorner(r, r);
 }
 
 /// What the mean over the noises that the residuals of one pool allow adds to the covariance of w
@@ -43,14 +53,22 @@ Eigen::MatrixXd spread_of_noises(const std::vector<std::size_t>& members,
   const std::size_t count = allowed.size();
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(r, r);
   if (count < 2 || r == 0) return out;
+  std::vector<LinearProfile> profiles;
+  for (const std::size_t i : members) {
+    const Observation& observation = *linear.observations[i];
+    profiles.push_back({observation.nuisances, linear.columns[i] * at_best.basis,
+                        Eigen::VectorXd::Zero(observation.values.size())});
+  }
+  const std::vector<ProfileLikelihood> of(profiles.begin(), profiles.end());
   std::vector<Eigen::MatrixXd> under(count);
   parallel_for(count, [&](std::size_t g) {
     if (allowed[g].probability < least) return;
     Eigen::MatrixXd total = Eigen::MatrixXd::Identity(r, r);
-    for (const std::size_t i : members)
-      total += information_under(noise[i].factored(noise[i].alternatives[g].covariance),
-                                 *linear.observations[i], linear.columns[i] * at_best.basis) -
-               at_best.information[i];
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      const std::size_t i = members[k];
+      total += more_information(of[k], noise[i], noise[i].alternatives[g].covariance,
+                                at_best.information[i]);
+    }
     under[g] = total.completeOrthogonalDecomposition().pseudoInverse();
   });
   double sum = 0.0;

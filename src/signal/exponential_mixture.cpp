@@ -15,11 +15,6 @@ using Terms = ExponentialMixture::Terms;
 constexpr int kTerms = ExponentialMixture::kTerms;
 constexpr int kLong = kTerms - 1;  // terms of a long memory alone
 
-/// Covariance of block means, continued to the distance 0.
-Terms continued(const ExponentialMixture& noise) {
-  return noise.variances * (2.0 * noise.lengths * (0.5 / noise.lengths).sinh()).square();
-}
-
 /// Variance of the mean over a length, of noise with unit variance; 1 - x/3 for small x.
 Terms mean_over(const Terms& length) {
   return (length < 1e-4)
@@ -39,15 +34,28 @@ double ExponentialMixture::variance() const {
 }
 
 double ExponentialMixture::covariance(double distance) const {
-  return (continued(*this) * (-distance / lengths).exp()).sum();
+  return (continued() * (-distance / lengths).exp()).sum();
 }
 
 double ExponentialMixture::variance_of_mean(double n) const {
   return white / n + (variances * mean_over(n / lengths)).sum();
 }
 
+ExponentialMixture ExponentialMixture::of_means(double neighbours) const {
+  ExponentialMixture out = *this;
+  out.white /= neighbours;
+  out.lengths /= neighbours;
+  return out;
+}
+
+Terms ExponentialMixture::continued() const {
+  constexpr double kShortest = 0.005;  // neighbours of shorter ones share L / 2 of their variance
+  const Terms felt = (lengths < kShortest).select(0.0, variances);
+  return felt * (2.0 * lengths * (0.5 / lengths.max(kShortest)).sinh()).square();
+}
+
 double ExponentialMixture::spectrum(double cycles_per_value) const {
-  const Terms alone = continued(*this), rho = (-1.0 / lengths).exp();
+  const Terms alone = continued(), rho = (-1.0 / lengths).exp();
   const double cosine = std::cos(2.0 * kPi * cycles_per_value);
   const Terms sums = (1.0 - rho) * (1.0 + rho) / (1.0 - 2.0 * cosine * rho + rho.square());
   return variance() + (alone * (sums - 1.0)).sum();
@@ -67,7 +75,7 @@ MixtureFactor::MixtureFactor(const ExponentialMixture& noise, std::span<const do
 }
 
 void MixtureFactor::factorise(const ExponentialMixture& noise, const std::vector<double>& steps) {
-  Terms rates = noise.lengths.inverse(), amplitudes = continued(noise);
+  Terms rates = noise.lengths.inverse(), amplitudes = noise.continued();
   const double variance = noise.variance();
   const Eigen::Index terms = (noise.variances != 0.0).count();
   if (terms == 0) {

@@ -272,5 +272,30 @@ TEST(CoverageFactor, IsTheOneOfTheGuide) {
   EXPECT_EQ(coverage_factor(std::nullopt), 2.0);
 }
 
+// A column that is as fast as the values keeps a long profile from being asked by its block means:
+// both ways see the same residual. What cosines of neighbouring segments have in common is
+// neglected by the quick one; a hundredth of the long-run deviation is a hundredth of U.
+TEST(Noise, OfALongProfileIsThatOfItsBlockMeansAndOctaves) {
+  constexpr Eigen::Index kValues = 20000;
+  const Eigen::MatrixXd slow = cosines(kValues, 6);
+  Eigen::MatrixXd with_fast(kValues, 7);
+  for (Eigen::Index t = 0; t < kValues; ++t) with_fast(t, 6) = t % 2 == 0 ? 1.0 : -1.0;
+  with_fast.leftCols(6) = slow;
+  RandomStream white(40, "white");
+  for (const double length : {1.0, 5.0, 40.0, 4000.0}) {
+    Eigen::VectorXd values = ar1(kValues, std::exp(-1.0 / length), 1.0, 41);
+    for (double& value : values) value += 2.0 * white.normal();
+    LinearProfile exact = fitted(values, with_fast), quick = exact;
+    quick.columns = slow;
+    const Noise of_all = estimated(exact), of_means = estimated(quick);
+    EXPECT_NEAR(of_means.long_run_deviation(), of_all.long_run_deviation(),
+                0.01 * of_all.long_run_deviation())
+        << length;
+    EXPECT_NEAR(of_means.standard_deviation(), of_all.standard_deviation(),
+                0.01 * of_all.standard_deviation())
+        << length;
+  }
+}
+
 }  // namespace
 }  // namespace slideway

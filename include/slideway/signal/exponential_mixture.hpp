@@ -31,6 +31,12 @@ struct ExponentialMixture {
   /// Variance of the mean of n neighbours.
   [[nodiscard]] double variance_of_mean(double n) const;
 
+  /// The noise of means over so many neighbours, its lengths in such means.
+  [[nodiscard]] ExponentialMixture of_means(double neighbours) const;
+
+  /// Of each term, its part of the covariance continued to the distance 0.
+  [[nodiscard]] Terms continued() const;
+
   /// Spectral density: Σ of the covariance over all distances times cos(2π f d).
   [[nodiscard]] double spectrum(double cycles_per_value) const;
 
