@@ -215,14 +215,15 @@ def fits():
 
 def whole_jobs():
     lines = []
-    limit = {20_000: ">= 20", 1_000_000: ">= 12", 10_000_000: ">= 12"}
+    limit = {20_000: ">= 25", 1_000_000: ">= 8", 10_000_000: ">= 8"}
     for n in SIZES:
         problem, path = profile(n)
-        mine, processor = run_timed(n, [BIN / "slideway", "identify", problem, "--no-trace"])
+        command = [BIN / "slideway", "identify", problem, "--no-trace", "--json", WORK / "report.json"]
+        mine, processor = run_timed(n, command)
         lines.append((n, mine, processor))
         for peer in ("loadtxt", "pandas", "lmfit"):
             theirs, _ = run_timed(n, [sys.executable, HERE / "job.py", path, peer])
-            add("whole identify --no-trace", n, f"job.py, {peer}", theirs, mine, limit[n])
+            add("whole identify --no-trace --json", n, f"job.py, {peer}", theirs, mine, limit[n])
     return lines
 
 

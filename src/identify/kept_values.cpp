@@ -1,5 +1,6 @@
 #include "kept_values.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -35,6 +36,24 @@ std::vector<double> stations_of(const Observation& observation) {
   return out;
 }
 
+/// A basis of what the columns span in the kept rows. Of orthonormal columns Q, with those left out
+/// R: Q'Q - R'R has the eigenvalue 0 for what is left out.
+Eigen::MatrixXd without_rows(const Eigen::MatrixXd& columns,
+                             const std::vector<Eigen::Index>& left_out,
+                             const std::vector<Eigen::Index>& rows) {
+  constexpr double kOrthonormal = 1e-10, kLeastKept = 0.01;
+  const Eigen::Index count = columns.cols();
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(count, count);
+  if ((gram_of(columns) - unit).norm() > kOrthonormal)
+    return orthonormal(columns(rows, Eigen::all));
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> kept(
+      unit - gram_of(columns(left_out, Eigen::all)));  // eigenvalues rising
+  const Eigen::Index nothing = (kept.eigenvalues().array() < kOrthonormal).count(),
+                     little = (kept.eigenvalues().array() < kLeastKept).count();
+  if (nothing != little) return orthonormal(columns(rows, Eigen::all));
+  return columns(rows, Eigen::all) * kept.eigenvectors().rightCols(count - nothing);
+}
+
 }  // namespace
 
 LinearProfile kept(LinearProfile profile, const Observation& observation) {
@@ -52,12 +71,7 @@ LinearProfile kept(LinearProfile profile, const Observation& observation) {
     std::ranges::transform(rows, profile.stations.begin(),
                            [&](Eigen::Index row) { return profile.trace[row]; });
   profile.stations.resize(rows.size());
-  const bool are_independent =
-      (profile.nuisances(left_out, Eigen::all).colwise().squaredNorm().array() /
-       profile.nuisances.colwise().squaredNorm().array())
-          .sum() < kMostOutside;
-  profile.nuisances = profile.nuisances(rows, Eigen::all).eval();
-  if (!are_independent) profile.nuisances = orthonormal(std::move(profile.nuisances));
+  profile.nuisances = without_rows(profile.nuisances, left_out, rows);
   profile.columns = profile.columns(rows, Eigen::all).eval();
   if (profile.bounded.cols() > 0) profile.bounded = profile.bounded(rows, Eigen::all).eval();
   profile.residual = profile.residual(rows).eval();

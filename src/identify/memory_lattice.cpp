@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "slideway/base/parallel.hpp"
 
@@ -116,8 +117,10 @@ PoolMemory::PoolMemory(std::vector<const ProfileLikelihood*> profiles, const Eig
     start[static_cast<Eigen::Index>(i)] =
         0.5 * std::log(std::max(profile.residual.squaredNorm(), 1e-300) / std::max(own, 1.0));
   }
+  is_near_ = std::ranges::any_of(profiles_, &ProfileLikelihood::is_thinned);
   visit({MemoryPlace{}}, start);
   if (visited_.begin()->second.freedom.sum() >= gates.values_for_memory) search();
+  if (is_near_) judge_in_full();
   const double best = std::ranges::min_element(visited_, {}, [](const auto& each) {
                         return each.second.cost;
                       })->second.cost;
@@ -135,7 +138,8 @@ FittedSizes PoolMemory::evaluate(const MemoryPlace& place, const Eigen::VectorXd
   const ExponentialMixture covariance = memory_at(place, values_, gates_.longest_memory);
   std::vector<ProfileInformation> information;
   for (const ProfileLikelihood* profile : profiles_)
-    information.push_back(profile->under(covariance));
+    information.push_back(is_near_ ? profile->nearly_under(covariance)
+                                   : profile->under(covariance));
   FittedSizes out = fit_sizes(information, rest_, gates_.noise_likeness, from);
   out.cost += prior_cost(place, gates_.memory_odds);
   if (std::isnan(out.cost)) out.cost = INFINITY;  // more digits than the information has
@@ -174,6 +178,7 @@ bool PoolMemory::is_resolved() const {
 
 /// To all that is plausible from where the search is, the best first.
 void PoolMemory::explore(int step) {
+  step_ = step;
   std::set<MemoryPlace> expanded;
   while (true) {
     const auto next = std::ranges::min_element(visited_, {}, [&](const auto& each) {
@@ -209,6 +214,22 @@ void PoolMemory::search() {
   if (best.texture == 0) visit(with_texture(best), sizes);
   if (best.memory == 0) visit(with_memory(best), sizes);
   explore(kCoarse);
+  refine();
+}
+
+void PoolMemory::judge_in_full() {
+  const std::map<MemoryPlace, FittedSizes> near = std::exchange(visited_, {});
+  is_near_ = false;
+  std::vector<MemoryPlace> places;  // the best of each kind, and all that are allowed
+  double best = INFINITY;
+  for (const auto& [place, sizes] : near) best = std::min(best, sizes.cost);
+  for (const auto& [place, sizes] : near)
+    if (sizes.cost <= best + kAllowed || std::ranges::none_of(near, [&](const auto& other) {
+          return of_one_kind(other.first, place) && other.second.cost < sizes.cost;
+        }))
+      places.push_back(place);
+  visit(places, near.at(places.front()).log_sizes);
+  explore(step_);
   refine();
 }
 

@@ -44,6 +44,8 @@ class PoolMemory {
   [[nodiscard]] const Allowed& best() const;
 
  private:
+  /// What a search without passes over long profiles has found, and what is near it, in full.
+  void judge_in_full();
   [[nodiscard]] FittedSizes evaluate(const MemoryPlace& place, const Eigen::VectorXd& from) const;
   void visit(const std::vector<MemoryPlace>& places, const Eigen::VectorXd& from);
   [[nodiscard]] bool fits(const MemoryPlace& place) const;
@@ -56,7 +58,9 @@ class PoolMemory {
   std::vector<const ProfileLikelihood*> profiles_;
   const Eigen::MatrixXd& rest_;
   const Gates& gates_;
-  double values_ = 0.0;  // of the longest trace
+  double values_ = 0.0;   // of the longest trace
+  bool is_near_ = false;  // costs are those of ProfileLikelihood::nearly_under()
+  int step_ = 1;          // of the lattice, at last
   std::map<MemoryPlace, FittedSizes> visited_;
   std::vector<Allowed> allowed_;
 };

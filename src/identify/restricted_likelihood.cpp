@@ -37,6 +37,24 @@ Eigen::MatrixXd joint_information(std::span<const ProfileInformation> profiles,
   return joint;
 }
 
+MixtureFactor factor_of(const LinearProfile& profile, const ExponentialMixture& covariance) {
+  return profile.stations.empty() ? MixtureFactor(covariance, profile.residual.size())
+                                  : MixtureFactor(covariance, profile.stations);
+}
+
+/// ln det V and r' V^-1 r.
+struct WhiteResidual {
+  double log_determinant = 0.0, square = 0.0;
+
+  WhiteResidual(const LinearProfile& profile, const ExponentialMixture& covariance) {
+    const MixtureFactor factor = factor_of(profile, covariance);
+    Eigen::MatrixXd white = profile.residual;
+    factor.whiten(white);
+    log_determinant = factor.log_determinant();
+    square = white.squaredNorm();
+  }
+};
+
 /// Neighbours among the values of a profile.
 std::vector<Run> runs_of(const LinearProfile& profile) {
   const Eigen::Index n = profile.residual.size();
@@ -86,9 +104,7 @@ ProfileInformation::ProfileInformation(const LinearProfile& profile,
                                        const ExponentialMixture& covariance) {
   const Eigen::Index n = profile.residual.size(), m = profile.nuisances.cols();
   const Eigen::Index r = profile.columns.cols(), q = profile.bounded.cols();
-  const MixtureFactor factor = profile.stations.empty()
-                                   ? MixtureFactor(covariance, n)
-                                   : MixtureFactor(covariance, profile.stations);
+  const MixtureFactor factor = factor_of(profile, covariance);
   Eigen::MatrixXd rows(n, m + q + r + 1);
   rows.leftCols(m) = profile.nuisances;
   if (q > 0) rows.middleCols(m, q) = profile.bounded;
@@ -111,11 +127,10 @@ ProfileInformation::ProfileInformation(const LinearProfile& profile,
   between_ = turned.eigenvectors().transpose() * own.topRightCorner(q, r + 1);
 }
 
-void ProfileInformation::add(const OctavePowers& faster, const ExponentialMixture& covariance) {
-  const OctavePowers::Fit fit = faster.under(covariance);
-  freedom += faster.count();
-  log_determinants += fit.log_determinant;
-  gram_(gram_.rows() - 1, gram_.cols() - 1) += fit.square;
+void ProfileInformation::add(double log_determinant, double square, double values) {
+  log_determinants += log_determinant;
+  gram_(gram_.rows() - 1, gram_.cols() - 1) += square;
+  freedom += values;
 }
 
 Eigen::MatrixXd ProfileInformation::of_shared(double log_size) const {
@@ -146,7 +161,7 @@ double ProfileInformation::log_determinant_of_bounded(double log_size) const {
 }
 
 ProfileLikelihood::ProfileLikelihood(const LinearProfile& profile) : profile_(&profile) {
-  constexpr double kLong = 8192.0;   // values: fewer are quick enough
+  constexpr double kLong = 4096.0;   // values: fewer are quick enough
   constexpr double kFewest = 512.0;  // means: of noise slower than 256 cycles, all is kept
   const auto n = static_cast<double>(profile.residual.size());
   const auto free = static_cast<double>(profile.nuisances.cols() + profile.columns.cols() +
@@ -162,8 +177,20 @@ ProfileLikelihood::ProfileLikelihood(const LinearProfile& profile) : profile_(&p
 
 ProfileInformation ProfileLikelihood::under(const ExponentialMixture& covariance) const {
   if (!thinned_) return {*profile_, covariance};
+  const LinearProfile& means = thinned_->means;
+  const ExponentialMixture of_means = covariance.of_means(thinned_->block);
+  ProfileInformation out(means, of_means);
+  const WhiteResidual whole(*profile_, covariance), part(means, of_means);
+  out.add(whole.log_determinant - part.log_determinant, whole.square - part.square,
+          static_cast<double>(profile_->residual.size() - means.residual.size()));
+  return out;
+}
+
+ProfileInformation ProfileLikelihood::nearly_under(const ExponentialMixture& covariance) const {
+  if (!thinned_) return {*profile_, covariance};
   ProfileInformation out(thinned_->means, covariance.of_means(thinned_->block));
-  out.add(thinned_->faster, covariance);
+  const OctavePowers::Fit fit = thinned_->faster.under(covariance);
+  out.add(fit.log_determinant, fit.square, thinned_->faster.count());
   return out;
 }
 

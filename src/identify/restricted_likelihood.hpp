@@ -20,8 +20,9 @@ struct ProfileInformation {
 
   ProfileInformation(const LinearProfile& profile, const ExponentialMixture& covariance);
 
-  /// Of values that say nothing of (v, w), only of the covariance.
-  void add(const OctavePowers& faster, const ExponentialMixture& covariance);
+  /// Adds what says nothing of (v, w): to the determinants, to the square of the residual and to
+  /// the values.
+  void add(double log_determinant, double square, double values);
 
   /// C / σ² - b' diag(1 / (σ² (σ² + a))) b. r + 1 by r + 1
   [[nodiscard]] Eigen::MatrixXd of_shared(double log_size) const;
@@ -39,17 +40,19 @@ struct ProfileInformation {
   Eigen::ArrayXd bounded_;   // a
 };
 
-/// A profile that is asked for its information under one covariance after another.
-///
-/// Of a long one whose columns are slow, block means take its place, and the octaves beside them
-/// (OctavePowers): the cost of an answer no longer grows with the profile.
+/// A profile that is asked for its information under one covariance after another. Of a long one
+/// whose columns are slow, block means stand for the columns.
 class ProfileLikelihood {
  public:
   explicit ProfileLikelihood(const LinearProfile& profile);
 
   [[nodiscard]] const LinearProfile& profile() const { return *profile_; }
   [[nodiscard]] bool is_thinned() const { return thinned_.has_value(); }
+
+  /// The residual is taken as it is.
   [[nodiscard]] ProfileInformation under(const ExponentialMixture& covariance) const;
+  /// Without a pass over a long residual, nearly: its block means and OctavePowers.
+  [[nodiscard]] ProfileInformation nearly_under(const ExponentialMixture& covariance) const;
 
  private:
   struct Thinned {

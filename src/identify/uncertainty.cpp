@@ -37,7 +37,8 @@ Eigen::MatrixXd more_information(const ProfileLikelihood& of, const Noise& noise
                                  const ExponentialMixture& other, const Eigen::MatrixXd& known) {
   if (!of.is_thinned()) return information_under(noise.factored(other), of.profile()) - known;
   const Eigen::Index r = known.rows();
-  return (of.under(other).of_shared(0.0) - of.under(noise.covariance()).of_shared(0.0))
+  return (of.nearly_under(other).of_shared(0.0) -
+          of.nearly_under(noise.covariance()).of_shared(0.0))
       .topLeftCorner(r, r);
 }
 

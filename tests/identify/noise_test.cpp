@@ -273,9 +273,8 @@ TEST(CoverageFactor, IsTheOneOfTheGuide) {
 }
 
 // A column that is as fast as the values keeps a long profile from being asked by its block means:
-// both ways see the same residual. What cosines of neighbouring segments have in common is
-// neglected by the quick one; a hundredth of the long-run deviation is a hundredth of U.
-TEST(Noise, OfALongProfileIsThatOfItsBlockMeansAndOctaves) {
+// both ways see the same residual. A hundredth of the long-run deviation is a hundredth of U.
+TEST(Noise, OfALongProfileIsThatOfAllItsRows) {
   constexpr Eigen::Index kValues = 20000;
   const Eigen::MatrixXd slow = cosines(kValues, 6);
   Eigen::MatrixXd with_fast(kValues, 7);
