@@ -223,11 +223,13 @@ void PoolMemory::judge_in_full() {
   std::vector<MemoryPlace> places;  // the best of each kind, and all that are allowed
   double best = INFINITY;
   for (const auto& [place, sizes] : near) best = std::min(best, sizes.cost);
-  for (const auto& [place, sizes] : near)
-    if (sizes.cost <= best + kAllowed || std::ranges::none_of(near, [&](const auto& other) {
-          return of_one_kind(other.first, place) && other.second.cost < sizes.cost;
-        }))
-      places.push_back(place);
+  for (const auto& each : near) {
+    const auto is_better = [&](const auto& other) {
+      return of_one_kind(other.first, each.first) && other.second.cost < each.second.cost;
+    };
+    if (each.second.cost <= best + kAllowed || std::ranges::none_of(near, is_better))
+      places.push_back(each.first);
+  }
   visit(places, near.at(places.front()).log_sizes);
   explore(step_);
   refine();
